@@ -1,0 +1,96 @@
+//! `hrdsl emit`: the data at every stop of the way, as JSON.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use hrdsl_compiler::Compilation;
+use serde::Serialize;
+
+use crate::{
+    exit::Exit,
+    input::{self, Fault},
+};
+
+/// Print what the compiler makes of a scenario, at any stop of the way, as JSON.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  hrdsl emit ast scenario.hri\n  hrdsl emit ta scenario.hri | jq '.automata[0].locations'"
+)]
+pub struct Args {
+    /// Which stop.
+    stage: Stage,
+    /// The scenario.
+    file: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Stage {
+    /// What was written, before any name is looked up.
+    Ast,
+    /// What was meant: names resolved, expressions typed.
+    Scenario,
+    /// The agents of the program.
+    Bdi,
+    /// The timed automata and networks of the program.
+    Ta,
+    /// The monitor automata of the requirements, and the assumptions.
+    Monitors,
+    /// Coverage points and crosses.
+    Coverage,
+    /// Bodies, joints, devices, rules and signals.
+    World,
+}
+
+/// # Errors
+/// A file that cannot be read.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let compilation = input::load(&args.file, &[])?;
+    let has_errors = input::report(&compilation);
+    let Some(text) = emit(args.stage, &compilation) else { return Ok(Exit::Errors) };
+    println!("{}", text?);
+    Ok(if has_errors { Exit::Errors } else { Exit::Ok })
+}
+
+/// `None` if the scenario's errors keep it from getting that far.
+fn emit(stage: Stage, compilation: &Compilation) -> Option<Result<String, Fault>> {
+    #[derive(Serialize)]
+    struct Ta<'a> {
+        shared: &'a [hrdsl_ir::ta::Var],
+        automata: &'a [hrdsl_ir::ta::Automaton],
+        networks: &'a [hrdsl_ir::ta::Network],
+    }
+    #[derive(Serialize)]
+    struct Monitors<'a> {
+        monitors: &'a [hrdsl_ir::monitor::Monitor],
+        assumptions: &'a [hrdsl_ir::monitor::Assumption],
+    }
+    #[derive(Serialize)]
+    struct World<'a> {
+        world: &'a Option<hrdsl_ir::world::World>,
+        signals: &'a [hrdsl_ir::world::Signal],
+        system: &'a Option<hrdsl_ir::system::System>,
+    }
+    let program = compilation.program.as_ref();
+    match stage {
+        Stage::Ast => Some(json(&compilation.ast)),
+        Stage::Scenario => Some(json(compilation.scenario.as_ref()?)),
+        Stage::Bdi => Some(json(&program?.agents)),
+        Stage::Ta => {
+            let p = program?;
+            Some(json(&Ta { shared: &p.shared, automata: &p.automata, networks: &p.networks }))
+        }
+        Stage::Monitors => {
+            let p = program?;
+            Some(json(&Monitors { monitors: &p.monitors, assumptions: &p.assumptions }))
+        }
+        Stage::Coverage => Some(json(&program?.coverage)),
+        Stage::World => {
+            let p = program?;
+            Some(json(&World { world: &p.world, signals: &p.signals, system: &p.system }))
+        }
+    }
+}
+
+fn json<T: Serialize>(value: &T) -> Result<String, Fault> {
+    serde_json::to_string_pretty(value).map_err(|e| format!("cannot print: {e}"))
+}

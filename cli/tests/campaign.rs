@@ -1,0 +1,199 @@
+//! `hrdsl gen` and `hrdsl sim` against real robot code.
+
+mod support;
+
+use std::{fs, path::Path};
+
+use serde_json::Value;
+use support::{expect_code, handover, hrdsl, root, stderr, stdout, tree};
+
+fn sim(scenario: &Path, out: &Path, more: &[&str]) -> std::process::Output {
+    let mut args = vec!["sim", scenario.to_str().unwrap(), "-o", out.to_str().unwrap()];
+    args.extend(more);
+    hrdsl(args)
+}
+
+fn results(out: &Path) -> Value {
+    serde_json::from_slice(&fs::read(out.join("results.json")).unwrap()).unwrap()
+}
+
+/// A copy of the example with another robot program.
+fn with_robot(folder: &Path, program: &str) -> std::path::PathBuf {
+    let text = fs::read_to_string(handover()).unwrap();
+    let text = text.replace("limit 300 s", "limit 40 s\n  budget 2 s");
+    fs::write(folder.join("robot.py"), program).unwrap();
+    fs::write(folder.join("scenario.hri"), text).unwrap();
+    folder.join("scenario.hri")
+}
+
+#[test]
+fn generated_tests_check_and_are_the_same_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let dirs = ["a", "b"].map(|d| folder.path().join(d));
+    for dir in &dirs {
+        let out = hrdsl(["gen", handover().to_str().unwrap(), "-o", dir.to_str().unwrap(), "--seed", "3"]);
+        expect_code(&out, 0);
+    }
+    assert_eq!(tree(&dirs[0]), tree(&dirs[1]));
+    assert_eq!(tree(&dirs[0]).len(), 3);
+    expect_code(&hrdsl(["check", handover().to_str().unwrap(), dirs[0].to_str().unwrap()]), 0);
+}
+
+#[test]
+fn another_seed_gives_other_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let make = |seed: &str| {
+        let dir = folder.path().join(seed);
+        let scenario = handover();
+        let args = ["gen", scenario.to_str().unwrap(), "--suite", "random_tests", "-n", "5", "--seed", seed];
+        expect_code(&hrdsl(args.into_iter().chain(["-o", dir.to_str().unwrap()])), 0);
+        tree(&dir)
+    };
+    assert_ne!(make("1"), make("2"));
+}
+
+/// No test holds an action of the robot: only the environment's stimuli.
+#[test]
+fn tests_hold_stimuli_of_the_environment_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("t");
+    expect_code(&hrdsl(["gen", handover().to_str().unwrap(), "-o", dir.to_str().unwrap()]), 0);
+    let own = ["handover_offered", "decided", "released", "discarded", "sense", "sensed", "timed_out"];
+    for (name, bytes) in tree(&dir) {
+        for line in String::from_utf8(bytes).unwrap().lines().map(str::trim) {
+            let word = line.split(['(', ' ']).next().unwrap();
+            assert!(!own.contains(&word), "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn unknown_suites_are_named() {
+    let out = hrdsl(["gen", handover().to_str().unwrap(), "--suite", "bdi_test"]);
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("bdi_tests, ta_tests, random_tests"), "{}", stderr(&out));
+}
+
+#[test]
+fn a_campaign_is_repeatable_to_the_byte_with_any_number_of_workers() {
+    let folder = tempfile::tempdir().unwrap();
+    let dirs = ["1", "2", "3"].map(|j| (j, folder.path().join(j)));
+    for (jobs, dir) in &dirs {
+        let out = sim(&handover(), dir, &["-n", "3", "-j", jobs, "--exit-zero"]);
+        expect_code(&out, 0);
+        assert!(stdout(&out).contains("report.html"));
+    }
+    let first = tree(&dirs[0].1);
+    assert!(first.contains_key("report.html") && first.contains_key("junit.xml"));
+    assert_eq!(first.keys().filter(|k| k.ends_with(".jsonl")).count(), 9);
+    for (_, dir) in &dirs[1..] {
+        let other = tree(dir);
+        assert_eq!(first.keys().collect::<Vec<_>>(), other.keys().collect::<Vec<_>>());
+        for (name, bytes) in &first {
+            assert!(*bytes == other[name], "{name} differs");
+        }
+    }
+    let results = results(&dirs[0].1);
+    for test in results["tests"].as_array().unwrap() {
+        assert!(test["error"].is_null(), "{test}");
+        assert!(test["code"]["lines"].as_u64().unwrap() > 60, "{test}");
+    }
+}
+
+#[test]
+fn tests_from_a_file_run_as_those_that_were_generated() {
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b, tests] = ["a", "b", "tests"].map(|d| folder.path().join(d));
+    let scenario = handover();
+    let pick = ["--suite", "bdi_tests", "-n", "2"];
+    expect_code(&sim(&scenario, &a, &[&pick[..], &["--exit-zero"]].concat()), 0);
+    let gen_args = ["gen", scenario.to_str().unwrap(), "-o", tests.to_str().unwrap()];
+    expect_code(&hrdsl(gen_args.iter().chain(&pick)), 0);
+    expect_code(&sim(&scenario, &b, &[tests.to_str().unwrap(), "--exit-zero"]), 0);
+    let traces = |dir: &Path| tree(&dir.join("traces"));
+    assert_eq!(traces(&a), traces(&b));
+}
+
+/// Each broken robot is an error of its tests, with the reason; the campaign ends with all results.
+#[test]
+fn broken_robots_are_errors_of_their_tests() {
+    let robots = [
+        ("import sys\nsys.exit(3)\n", "ended"),
+        ("raise RuntimeError('no arm today')\n", "no arm today"),
+        ("import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    pass\n", "within 2000 ms"),
+        ("import os\nos.write(int(os.environ['HRDSL_REQUEST_FD']), b'rubbish\\n')\n", "rubbish"),
+    ];
+    for (program, reason) in robots {
+        let folder = tempfile::tempdir().unwrap();
+        let scenario = with_robot(folder.path(), program);
+        let out = sim(&scenario, &folder.path().join("out"), &["--suite", "random_tests", "-n", "2"]);
+        expect_code(&out, 3);
+        let results = results(&folder.path().join("out"));
+        let tests = results["tests"].as_array().unwrap();
+        assert_eq!(tests.len(), 2);
+        for test in tests {
+            assert_eq!(test["ended"], "error");
+            let error = test["error"].as_str().unwrap();
+            assert!(error.contains(reason), "{reason}: {error}");
+            assert!(test["verdicts"].as_array().unwrap().iter().all(|v| v["outcome"] != "pass"));
+        }
+    }
+}
+
+/// A robot that breaks in some tests only spoils those only.
+#[test]
+fn the_other_tests_are_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = "import hrdsl\nn = hrdsl.Node('robot')\nassert n.seed % 2, 'an even day'\nprint('x' * 1000000)\nn.sleep(100)\n";
+    let scenario = with_robot(folder.path(), program);
+    let out = sim(&scenario, &folder.path().join("out"), &["--suite", "random_tests", "-n", "4"]);
+    expect_code(&out, 3);
+    let results = results(&folder.path().join("out"));
+    let ended: Vec<&str> =
+        results["tests"].as_array().unwrap().iter().map(|t| t["ended"].as_str().unwrap()).collect();
+    assert_eq!(ended, ["limit", "error", "limit", "error"]);
+}
+
+#[test]
+fn an_absent_robot_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = with_robot(folder.path(), "");
+    fs::remove_file(folder.path().join("robot.py")).unwrap();
+    let out = sim(&scenario, &folder.path().join("out"), &["--suite", "random_tests", "-n", "1"]);
+    expect_code(&out, 3);
+    let results = results(&folder.path().join("out"));
+    assert!(results["tests"][0]["error"].as_str().unwrap().contains("robot.py"), "{}", results["tests"][0]);
+}
+
+/// What is recorded is what is judged: each failure's witness lines are in the recording at their place.
+#[test]
+fn failures_are_borne_out_by_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    expect_code(&sim(&handover(), &out, &["--suite", "bdi_tests", "-n", "12", "--exit-zero"]), 0);
+    let results = results(&out);
+    let mut failures = 0;
+    for test in results["tests"].as_array().unwrap() {
+        let path = out.join("traces").join(format!("{}.jsonl", test["name"].as_str().unwrap()));
+        let recording = fs::read_to_string(path).unwrap();
+        let lines: Vec<Value> = recording.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+        for verdict in test["verdicts"].as_array().unwrap() {
+            let Some(witness) = verdict["failure"]["witness"].as_array() else { continue };
+            failures += 1;
+            assert!(!witness.is_empty());
+            for step in witness {
+                let line = &lines[step["step"].as_u64().unwrap() as usize + 1];
+                assert_eq!(line["t"].as_f64(), step["time"].as_f64());
+                let named = line["event"].as_str().or(line["signal"].as_str()).unwrap();
+                assert!(step["text"].as_str().unwrap().contains(named), "{step} is not {line}");
+            }
+        }
+    }
+    assert!(failures > 0, "the example's robot has faults, and none was found");
+}
+
+#[test]
+fn the_robot_code_has_fourteen_states() {
+    let text = fs::read_to_string(root().join("examples/handover/robot.py")).unwrap();
+    assert_eq!(text.matches("(RobotState)").count(), 14);
+}

@@ -1,0 +1,87 @@
+//! Coverage points over a trace, and their cross products.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{EventPattern, Span};
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    pub points: Vec<Point>,
+    pub crosses: Vec<Cross>,
+}
+
+/// Index into [`Coverage::points`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct PointId(pub u16);
+
+/// A number of a test, sorted into bins: how often any of the events happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    pub name: String,
+    pub count: Vec<EventPattern>,
+    pub bins: Vec<Bin>,
+    pub origin: Span,
+}
+
+/// `lo..=hi`; no upper end: `lo..`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    pub name: String,
+    pub lo: i64,
+    pub hi: Option<i64>,
+}
+
+impl Bin {
+    #[must_use]
+    pub fn holds(&self, n: i64) -> bool {
+        self.lo <= n && self.hi.is_none_or(|hi| n <= hi)
+    }
+}
+
+/// A cross product of points, collapsed into named bins.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cross {
+    pub name: String,
+    pub points: Vec<PointId>,
+    pub bins: Vec<CrossBin>,
+    /// Combinations that do not count.
+    pub ignore: Vec<Condition>,
+    pub origin: Span,
+}
+
+/// A test falls into each bin whose condition it meets (it may be several), unless an `ignore` holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CrossBin {
+    pub name: String,
+    pub when: Condition,
+    pub origin: Span,
+}
+
+/// A formula over points' bins.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    /// The point's number lies in its bin of this index.
+    In {
+        point: PointId,
+        bin: u16,
+    },
+    Not(Box<Condition>),
+    And(Vec<Condition>),
+    Or(Vec<Condition>),
+}
+
+impl Condition {
+    /// Whether the condition holds, `number(point)` giving each point's number.
+    #[must_use]
+    pub fn holds(&self, coverage: &Coverage, number: &dyn Fn(PointId) -> i64) -> bool {
+        match self {
+            Condition::In { point, bin } => {
+                coverage.points[point.0 as usize].bins[*bin as usize].holds(number(*point))
+            }
+            Condition::Not(c) => !c.holds(coverage, number),
+            Condition::And(cs) => cs.iter().all(|c| c.holds(coverage, number)),
+            Condition::Or(cs) => cs.iter().any(|c| c.holds(coverage, number)),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The vocabulary: actors and the events between them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Expr, Span, Type, Value, world::WorldAction};
+
+/// Index into [`Program::actors`](crate::Program::actors).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct ActorId(pub u16);
+
+/// Index into [`Program::events`](crate::Program::events).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct EventId(pub u16);
+
+/// A role; what plays it depends on the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Actor {
+    pub name: String,
+    pub role: Role,
+    pub origin: Span,
+}
+
+/// Whether an actor makes the stimulus of a test or is what the test is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    Environment,
+    System,
+}
+
+/// A named parameter of an event, belief or goal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Param {
+    pub name: String,
+    pub ty: Type,
+}
+
+/// Something that happens at an instant, made by one actor; or a stimulus, one abstract action of a test.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    pub name: String,
+    pub params: Vec<Param>,
+    /// The actor that makes it.
+    pub from: ActorId,
+    /// The actors it is addressed to; empty: everybody but `from` perceives it. A stimulus is perceived by
+    /// environment actors only, whatever this says.
+    pub to: Vec<ActorId>,
+    /// `Some` for a stimulus: what happens when the actor does it.
+    pub stimulus: Option<Stimulus>,
+    pub origin: Span,
+}
+
+impl Event {
+    #[must_use]
+    pub fn is_stimulus(&self) -> bool {
+        self.stimulus.is_some()
+    }
+}
+
+/// The body of a stimulus: first all samples are drawn, in order, then the steps run in order.
+///
+/// In expressions, `Expr::Var(i)` is the i-th parameter for `i < params.len()`, then the samples in order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stimulus {
+    pub samples: Vec<Sample>,
+    pub steps: Vec<StimulusStep>,
+}
+
+/// A value of the second tier, drawn uniformly from `lo..hi` by the test's seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    pub name: String,
+    pub ty: Type,
+    pub lo: Expr,
+    pub hi: Expr,
+}
+
+/// One step of a stimulus.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StimulusStep {
+    /// Make an event of the same actor.
+    Emit {
+        event: EventId,
+        args: Vec<Expr>,
+    },
+    /// The actor is busy for a time (speech, a pause); an expression in seconds.
+    Hold {
+        seconds: Expr,
+    },
+    /// Change the world; does not wait for a motion to end.
+    Act(WorldAction),
+    If {
+        condition: Expr,
+        then: Vec<StimulusStep>,
+        otherwise: Vec<StimulusStep>,
+    },
+}
+
+/// What an event must look like to match.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventPattern {
+    pub event: EventId,
+    /// One for each parameter.
+    pub args: Vec<ArgPattern>,
+}
+
+/// What one argument must look like to match.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArgPattern {
+    Any,
+    Is(Value),
+}
+
+impl EventPattern {
+    /// Whether an occurrence of `event` with these arguments matches.
+    #[must_use]
+    pub fn matches(&self, event: EventId, args: &[Value]) -> bool {
+        self.event == event
+            && self.args.len() == args.len()
+            && self.args.iter().zip(args).all(|(p, v)| match p {
+                ArgPattern::Any => true,
+                ArgPattern::Is(want) => want.key() == v.key(),
+            })
+    }
+}

@@ -1,0 +1,80 @@
+//! `Program`: what a scenario says, resolved and typed, as plain data.
+//!
+//! This is the waist between the compiler, which makes it, and the runtime, which executes it. It has no behaviour but
+//! the evaluation of expressions ([`expr`]), so that every engine means the same by `+`.
+//!
+//! All quantities are in SI units (metre, second, radian, kilogram, newton) as `f64`; all times that an engine counts
+//! with are integer nanoseconds ([`Nanos`]).
+
+pub mod bdi;
+pub mod coverage;
+pub mod event;
+pub mod expr;
+pub mod monitor;
+pub mod suite;
+pub mod system;
+pub mod ta;
+pub mod test;
+pub mod value;
+pub mod world;
+
+use serde::{Deserialize, Serialize};
+
+pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
+pub use expr::Expr;
+pub use hrdsl_source::Span;
+pub use value::{Nanos, Type, Unit, Value};
+
+/// A whole scenario, ready to generate tests from and to run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    pub name: String,
+    pub actors: Vec<Actor>,
+    /// Events and stimuli, in source order; a stimulus is an event that carries a body.
+    pub events: Vec<Event>,
+    pub agents: Vec<bdi::Agent>,
+    /// Variables that all automata share.
+    pub shared: Vec<ta::Var>,
+    pub automata: Vec<ta::Automaton>,
+    pub networks: Vec<ta::Network>,
+    /// Sensors and every numeric or boolean term over the world that a requirement reads.
+    pub signals: Vec<world::Signal>,
+    pub monitors: Vec<monitor::Monitor>,
+    pub assumptions: Vec<monitor::Assumption>,
+    pub coverage: coverage::Coverage,
+    pub suites: Vec<suite::Suite>,
+    pub tests: Vec<test::Test>,
+    pub world: Option<world::World>,
+    pub system: Option<system::System>,
+}
+
+impl Program {
+    #[must_use]
+    pub fn event(&self, id: EventId) -> &Event {
+        &self.events[id.0 as usize]
+    }
+
+    #[must_use]
+    pub fn actor(&self, id: ActorId) -> &Actor {
+        &self.actors[id.0 as usize]
+    }
+
+    /// The event or stimulus of this name.
+    #[must_use]
+    pub fn event_named(&self, name: &str) -> Option<EventId> {
+        let at = self.events.iter().position(|e| e.name == name)?;
+        u16::try_from(at).ok().map(EventId)
+    }
+
+    /// The actors of a role, in source order.
+    pub fn actors_of(&self, role: Role) -> impl Iterator<Item = ActorId> {
+        let numbered = self.actors.iter().zip(0u16..);
+        numbered.filter(move |(a, _)| a.role == role).map(|(_, i)| ActorId(i))
+    }
+
+    #[must_use]
+    pub fn actor_named(&self, name: &str) -> Option<ActorId> {
+        let at = self.actors.iter().position(|a| a.name == name)?;
+        u16::try_from(at).ok().map(ActorId)
+    }
+}

@@ -1,0 +1,100 @@
+//! Requirements, each a deterministic timed automaton with one clock over the trace.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{EventPattern, Expr, Nanos, Span, Unit, world::SignalId};
+
+/// A requirement, lowered to a monitor automaton.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Monitor {
+    /// `R5`
+    pub name: String,
+    pub kind: RequirementKind,
+    /// The requirement's own words, if it has a title.
+    pub title: String,
+    /// The formal part as written in the source.
+    pub text: String,
+    /// Signals that guards and margins read: `Expr::Var(i)` is `signals[i]`.
+    pub signals: Vec<SignalId>,
+    pub states: Vec<State>,
+    pub initial: StateId,
+    /// In each state the first edge, in order, whose trigger and guard hold is taken; none: the state stays.
+    pub edges: Vec<Edge>,
+    /// The robustness of a numeric requirement: positive as long as it holds. The verdict keeps the least.
+    pub margin: Option<Margin>,
+    pub origin: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RequirementKind {
+    Safety,
+    Functional,
+}
+
+/// Index into [`Monitor::states`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct StateId(pub u16);
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    pub name: String,
+    /// An obligation is pending here: a trace that ends in this state is open, not passed.
+    pub pending: bool,
+    /// The state is left by a [`On::Deadline`] edge once the clock reaches this.
+    pub deadline: Option<Nanos>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Edge {
+    pub from: StateId,
+    pub to: StateId,
+    pub on: On,
+    /// A boolean expression over the signals.
+    pub guard: Option<Expr>,
+    pub effects: Vec<Effect>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum On {
+    /// Any of these events.
+    Event(Vec<EventPattern>),
+    /// Any new sample of a signal that the monitor reads.
+    Sample,
+    /// The clock reached the state's deadline. An event at the very instant of the deadline comes first.
+    Deadline,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// The monitor's clock is set to zero.
+    ResetClock,
+    /// The requirement was triggered: it is checked, and this step is its first witness.
+    Trigger,
+    /// An obligation was met.
+    Discharge,
+    /// The requirement is violated; the first violation is reported, the monitor goes on to count.
+    Fail,
+}
+
+/// `value` is the margin, in `unit`. It is evaluated on each step of the given kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Margin {
+    pub value: Expr,
+    pub unit: Unit,
+    /// Only at these events; empty: on every sample.
+    pub at: Vec<EventPattern>,
+}
+
+/// `assume at most N e within D`: restricts which stimuli are generated; never gives a verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Assumption {
+    pub text: String,
+    pub events: Vec<EventPattern>,
+    pub at_most: u32,
+    /// Within any window of this length; `None`: within the test.
+    pub within: Option<Nanos>,
+    pub origin: Span,
+}

@@ -1,0 +1,84 @@
+//! Suites: how tests are made.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{EventId, EventPattern, Nanos, Span, bdi::AgentId, bdi::BeliefId, ta::AutomatonId};
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Suite {
+    pub name: String,
+    pub method: Method,
+    /// How many concrete tests; abstract tests that are fewer are made concrete several times, with other seeds.
+    pub tests: u32,
+    /// A model run (by agents) ends at this virtual time.
+    pub horizon: Nanos,
+    /// The bound of an `await` in a generated test whose model gives none.
+    pub patience: Nanos,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Run a multi-agent system once for each chosen set of beliefs.
+    Agents { players: Vec<PlayerRef>, choose: Vec<Choice>, explore: Explore },
+    /// Model-check the network for each goal and take the witnesses' stimuli.
+    Search { network: u16, goals: Vec<SearchGoal> },
+    /// Draw stimuli, waits and pauses at random.
+    Random {
+        stimuli: Vec<EventId>,
+        /// Waits for these are drawn as stimuli are.
+        awaits: Vec<EventPattern>,
+        length_lo: u32,
+        length_hi: u32,
+        pause_lo: Nanos,
+        pause_hi: Nanos,
+    },
+}
+
+/// What plays an actor in a model run; an actor is played by at most one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlayerRef {
+    Agent(AgentId),
+    Automaton(AutomatonId),
+}
+
+/// Which ground beliefs an agent starts with: one dimension (or several) of the belief space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    pub agent: AgentId,
+    pub belief: BeliefId,
+    pub how: ChoiceKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChoiceKind {
+    /// `choose one b`: exactly one ground instance
+    One,
+    /// `choose one b per p`: exactly one for each value of the parameter of this index
+    OnePer(u16),
+    /// `choose any b`: each ground instance is held or not
+    Any,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Explore {
+    Exhaustive,
+    /// Every pair of values of two dimensions occurs in some test.
+    Pairwise,
+    Random,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchGoal {
+    /// `reach each bin of C`
+    Bins { cross: u16 },
+    /// `reach each location`
+    Locations,
+    /// `reach each edge`
+    Edges,
+}

@@ -1,0 +1,255 @@
+//! The world as data: bodies, joints, actuators, sensors, and the rules by which it makes events.
+//!
+//! Lengths in metres, angles in radians; x forward, y left, z up; orientations as roll, pitch, yaw about the fixed axes
+//! (the convention of URDF).
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ActorId, EventId, Expr, Nanos, Span, Type};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        pub struct $name(pub u16);
+    )* };
+}
+
+ids! {
+    /// Index into [`World::bodies`].
+    BodyId,
+    /// Index into [`World::joints`].
+    JointId,
+    /// Index into [`World::arms`].
+    ArmId,
+    /// Index into [`World::grippers`].
+    GripperId,
+    /// Index into [`World::currents`].
+    CurrentId,
+    /// Index into [`Program::signals`](crate::Program::signals).
+    SignalId,
+}
+
+pub type Vec3 = [f64; 3];
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct World {
+    /// The physics step.
+    pub step: Nanos,
+    /// Signals are sampled into the trace at this period, and at every event.
+    pub sample: Nanos,
+    pub gravity: Vec3,
+    pub bodies: Vec<Body>,
+    pub joints: Vec<Joint>,
+    pub arms: Vec<Arm>,
+    pub grippers: Vec<Gripper>,
+    pub currents: Vec<Current>,
+    pub rules: Vec<Rule>,
+    pub origin: Span,
+}
+
+/// A rigid body with one shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// `robot.palm`
+    pub name: String,
+    pub motion: Motion,
+    pub shape: Shape,
+    /// Where it starts, in the world.
+    pub position: Vec3,
+    pub rotation: Vec3,
+    /// Kilograms; of no effect on bodies that are not dynamic.
+    pub mass: f64,
+    /// Ghosts collide with nothing but are seen by distances and contacts.
+    pub ghost: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    Fixed,
+    Dynamic,
+    /// Moved by actions only; pushes dynamic bodies.
+    Kinematic,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Full edge lengths.
+    Box {
+        size: Vec3,
+    },
+    Sphere {
+        radius: f64,
+    },
+    /// Along z; length without the caps.
+    Capsule {
+        radius: f64,
+        length: f64,
+    },
+    /// Along z.
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+}
+
+/// A revolute joint; its zero is the bodies' starting poses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Joint {
+    pub name: String,
+    pub parent: BodyId,
+    pub child: BodyId,
+    /// The joint's place at the start, in the world.
+    pub anchor: Vec3,
+    /// A unit vector at the start, in the world.
+    pub axis: Vec3,
+    /// Radians.
+    pub lo: f64,
+    pub hi: f64,
+}
+
+/// A chain of joints under motor control, from the base to the tip, with a small kinematic planner.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Arm {
+    pub name: String,
+    pub joints: Vec<JointId>,
+    /// The body that is brought to a place.
+    pub tip: BodyId,
+    /// The point of the tip that is brought there, in the tip's own frame.
+    pub tool: Vec3,
+    /// The controller's limit on each joint's speed, rad/s, unless the program asks for less.
+    pub max_speed: f64,
+}
+
+/// A hand: it holds what is within reach when it closes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gripper {
+    pub name: String,
+    pub palm: BodyId,
+    /// The point between the fingers, in the palm's frame.
+    pub tool: Vec3,
+    /// A body is taken if the distance from that point to its surface is at most this.
+    pub reach: f64,
+    /// Time from the command until it holds, or lets go.
+    pub delay: Nanos,
+    /// What it can hold.
+    pub holds: Vec<BodyId>,
+}
+
+/// A name for one of several bodies: the one that the gripper holds; or, if none, the first that no gripper has yet
+/// taken; or the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Current {
+    pub name: String,
+    pub of: Vec<BodyId>,
+    pub by: GripperId,
+}
+
+/// A body, named outright or as [`Current`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyRef {
+    Body(BodyId),
+    Current(CurrentId),
+}
+
+/// `on trigger when guard { emit event(args) }`: what the world, playing environment actors, answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rule {
+    pub on: RuleOn,
+    /// A boolean over signals: `Expr::Var(i)` is `signals[i]`.
+    pub guard: Option<Expr>,
+    pub event: EventId,
+    pub args: Vec<Expr>,
+    pub signals: Vec<SignalId>,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleOn {
+    Event(crate::EventPattern),
+    /// A gripper was told to close.
+    Closes(GripperId),
+    /// A gripper was told to open.
+    Opens(GripperId),
+}
+
+/// A named quantity of the world, read by the robot code, by rules, and by requirements.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Signal {
+    /// `gaze`, or for an unnamed term of a requirement its text.
+    pub name: String,
+    pub ty: Type,
+    /// The actors that can read it.
+    pub to: Vec<ActorId>,
+    /// What is measured; `Expr::Var(i)` in `value` is `terms[i]`.
+    pub terms: Vec<Term>,
+    pub value: Expr,
+    /// A requirement reads it: it is sampled into the trace.
+    pub recorded: bool,
+    pub origin: Span,
+}
+
+/// A primitive measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Term {
+    /// `distance(a, b)`: between the surfaces, m; 0 if they touch or overlap
+    Distance(BodyRef, BodyRef),
+    /// `range(a, b)`: between the centres, m
+    Range(BodyRef, BodyRef),
+    /// `angle(a, b)`: between a's own x axis and the direction from a's centre to b's, rad, 0..π
+    Angle(BodyRef, BodyRef),
+    /// `visible(a, b)`: whether a straight line from a's centre reaches b without meeting another body first, bool.
+    /// Lines to b's centre and to points a third of the way to its ends are tried; one suffices.
+    Visible(BodyRef, BodyRef),
+    /// `b.x`, `b.y`, `b.z`: m
+    Coordinate(BodyRef, Axis),
+    /// `holds(gripper, b)`: bool
+    Holds(GripperId, BodyRef),
+    /// `holds(gripper)`: whether it holds anything, bool
+    HoldsAny(GripperId),
+    /// `joint_speed(arm)`: the largest speed of its joints, rad/s
+    JointSpeed(ArmId),
+    /// `speed(b)`: m/s
+    Speed(BodyRef),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// A point: a place in the world, or relative to a body's centre (in world axes) at the time of the action.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    pub of: Option<BodyRef>,
+    /// Metres.
+    pub offset: [Expr; 3],
+}
+
+/// A change of the world by an environment actor; variables are those of the stimulus.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WorldAction {
+    /// `move(b, to, over)`: a kinematic body goes to the point on a straight line, in the given seconds; the body keeps
+    /// its rotation.
+    Move { body: BodyId, to: Point, over: Expr },
+    /// `look(b, at, offset, distance, angle)`: a kinematic body goes, in half a second, to look at a target. The line of
+    /// sight runs level through the target's centre, along the body's own x axis at the start of the run. The body goes
+    /// to that end of it where it is now, then `offset` to the left as seen from the target, at its present height but
+    /// no lower than the target and no more than 10 cm above it, so that `range` is exactly `distance`. It turns
+    /// its x axis to the target and then, about the vertical and to its left, until `angle` is what was asked for.
+    /// All of this for where the target is at the time of the action. Metres and radians.
+    Look { body: BodyId, at: BodyRef, offset: Expr, distance: Expr, angle: Expr },
+    /// `grasp(g)`: the gripper closes, and holds the first thing it can from then on.
+    Grasp { gripper: GripperId },
+    /// `let_go(g)`
+    LetGo { gripper: GripperId },
+}

@@ -1,0 +1,136 @@
+//! Coverage points, their bins, and cross products.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, UnaryOp};
+
+use super::{Checker, table::Table};
+use crate::{
+    Bin, Condition, CoverPoint, Cross, PointId, Value,
+    noun::Noun,
+    report::{coverage::overlap, names, types},
+};
+
+impl Checker<'_> {
+    pub(super) fn coverage(&mut self) {
+        for (item, span) in self.each_item() {
+            if let ItemKind::Cover(cover) = item {
+                self.point_of(cover, span);
+            }
+        }
+        for (item, span) in self.each_item() {
+            if let ItemKind::Cross(cross) = item {
+                self.cross_of(cross, span);
+            }
+        }
+    }
+
+    fn point_of(&mut self, cover: &ast::Cover, span: Span) {
+        let count = self.patterns(&cover.count);
+        let mut table = Table::default();
+        let mut bins: Vec<(Bin, Span)> = Vec::new();
+        for bin in &cover.bins {
+            Self::declare(&mut self.issues, &mut table, Noun::Bin, &bin.name);
+            let resolved = self.bin(bin).unwrap_or(Bin { name: bin.name.text.clone(), lo: -1, hi: Some(-1) });
+            let meets = |other: &Bin| {
+                resolved.lo >= 0
+                    && other.lo >= 0
+                    && resolved.hi.is_none_or(|hi| other.lo <= hi)
+                    && other.hi.is_none_or(|hi| resolved.lo <= hi)
+            };
+            if let Some((other, first)) = bins.iter().find(|(b, _)| meets(b)) {
+                let issue = overlap(&bin.name.text, bin.span, &other.name, *first);
+                self.report(issue);
+            }
+            bins.push((resolved, bin.span));
+        }
+        if Self::declare(&mut self.issues, &mut self.points, Noun::Point, &cover.name).is_some() {
+            let bins = bins.into_iter().map(|(b, _)| b).collect();
+            self.s.points.push(CoverPoint { name: cover.name.text.clone(), count, bins, span });
+        }
+    }
+
+    fn bin(&mut self, bin: &ast::Bin) -> Option<Bin> {
+        let lo = self.count(&bin.lo, "a bin's number", 0)?;
+        let hi = match &bin.hi {
+            Some(hi) => Some(self.count(hi, "a bin's number", 0)?),
+            None => (!bin.open).then_some(lo),
+        };
+        if let Some(hi) = hi.filter(|hi| *hi < lo) {
+            self.report(types::empty_range(Value::Int(lo), Value::Int(hi), bin.span));
+            return None;
+        }
+        Some(Bin { name: bin.name.text.clone(), lo, hi })
+    }
+
+    fn cross_of(&mut self, cross: &ast::Cross, span: Span) {
+        let mut points = Vec::new();
+        for name in &cross.points {
+            match self.points.get(&name.text) {
+                Some(id) => points.push(PointId(id)),
+                None => {
+                    let all: Vec<String> = self.points.names().map(str::to_owned).collect();
+                    self.unknown(Noun::Point, name, &all, None);
+                }
+            }
+        }
+        let mut titles = Table::default();
+        let (mut bins, mut ignore) = (Vec::new(), Vec::new());
+        for member in &cross.members {
+            match &member.kind {
+                Member::Bin { name, when } => {
+                    if let Err(first) = titles.insert(&name.text, name.span) {
+                        self.report(names::duplicate(Noun::Bin, &name.text, name.span, Some(first)));
+                    }
+                    let when = self.cross_condition(when, &points);
+                    bins.extend(when.map(|when| (name.text.clone(), when, member.span)));
+                }
+                Member::Ignore { when } => ignore.extend(self.cross_condition(when, &points)),
+                Member::Error => {}
+            }
+        }
+        if Self::declare(&mut self.issues, &mut self.crosses, Noun::Cross, &cross.name).is_some() {
+            self.s.crosses.push(Cross { name: cross.name.text.clone(), points, bins, ignore, span });
+        }
+    }
+
+    /// A formula over `point.bin`.
+    fn cross_condition(&mut self, e: &ast::Expr, points: &[PointId]) -> Option<Condition> {
+        match &e.kind {
+            Syntax::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
+                let (l, r) = (self.cross_condition(left, points), self.cross_condition(right, points));
+                let both = vec![l?, r?];
+                Some(if *op == BinaryOp::And { Condition::And(both) } else { Condition::Or(both) })
+            }
+            Syntax::Unary { op: UnaryOp::Not, operand } => {
+                Some(Condition::Not(Box::new(self.cross_condition(operand, points)?)))
+            }
+            Syntax::Path(path) => match path.names.as_slice() {
+                [point, bin] => self.in_bin(point, bin, points),
+                _ => {
+                    self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
+                    None
+                }
+            },
+            Syntax::Error => None,
+            _ => {
+                self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
+                None
+            }
+        }
+    }
+
+    fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId]) -> Option<Condition> {
+        let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
+        let Some(id) = points.iter().copied().find(|p| name_of(self, p) == point.text) else {
+            let all: Vec<String> = points.iter().map(|p| name_of(self, p)).collect();
+            self.unknown(Noun::Point, point, &all, None);
+            return None;
+        };
+        let bins: Vec<String> = self.s.points[usize::from(id.0)].bins.iter().map(|b| b.name.clone()).collect();
+        let Some(at) = bins.iter().position(|b| *b == bin.text) else {
+            self.unknown(Noun::Bin, bin, &bins, Some(Noun::Bin));
+            return None;
+        };
+        Some(Condition::In(id, u16::try_from(at).unwrap_or(u16::MAX)))
+    }
+}

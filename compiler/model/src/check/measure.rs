@@ -1,0 +1,214 @@
+//! Names and measurements of the world in expressions.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+
+use super::{Checker, Env, expr::FUNCTIONS};
+use crate::{
+    ArmId, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    noun::Noun,
+    report::{names, types},
+    world::BodyRef,
+};
+
+const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed"];
+
+impl Checker<'_> {
+    /// A declared signal.
+    pub(super) fn signal_named(&mut self, name: &Name, env: &Env) -> Option<Expr> {
+        let prefix = env.world.as_ref()?;
+        let id = self.in_world.signals.get(&format!("{prefix}{}", name.text))?;
+        Some(self.signal(id, name.span))
+    }
+
+    fn signal(&self, id: u16, span: Span) -> Expr {
+        let ty = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id)));
+        let ty = ty.map_or(Kind::Unknown, |s| s.ty.kind());
+        Expr { kind: ExprKind::Leaf(Leaf::Signal(SignalId(id))), ty, span }
+    }
+
+    pub(super) fn signal_names(&self, env: &Env) -> Vec<String> {
+        match &env.world {
+            Some(prefix) => self.in_world.below(Noun::Signal, prefix),
+            None => Vec::new(),
+        }
+    }
+
+    /// `person.hand.x`, `robot.signal`
+    pub(super) fn dotted(&mut self, path: &ast::Path, env: &Env) -> Expr {
+        let Some(prefix) = env.world.clone() else {
+            self.report(names::unknown(env.noun.unwrap_or(Noun::Constant), &text(&path.names), path.span, []));
+            return Expr::error(path.span);
+        };
+        if let Some(id) = self.in_world.signals.get(&format!("{prefix}{}", text(&path.names))) {
+            return self.signal(id, path.span);
+        }
+        let (axis, body) = path.names.split_last().expect("a path has a name");
+        let whole = self.in_world.is_body(&prefix, &text(&path.names));
+        if whole {
+            let issue = types::no_value(&format!("the body `{}`", text(&path.names)), path.span);
+            self.report(issue.help(format!("name a coordinate: `{}.x`", text(&path.names))));
+            return Expr::error(path.span);
+        }
+        let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
+        match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
+            Some(axis) => term(Term::Coordinate(body, axis as u8), Kind::Float(Dim::LENGTH), path.span),
+            None => Expr::error(path.span),
+        }
+    }
+
+    /// A function over the world.
+    pub(super) fn measured(
+        &mut self,
+        callee: &ast::Path,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut Env,
+    ) -> Expr {
+        let name = text(&callee.names);
+        let known = MEASURES.contains(&name.as_str());
+        let Some(prefix) = env.world.clone().filter(|_| known) else {
+            self.no_function(callee, env, known);
+            args.iter().for_each(|a| drop(self.expr_quietly(a, env)));
+            return Expr::error(span);
+        };
+        let want = match name.as_str() {
+            "distance" | "range" | "angle" | "visible" => 2..=2,
+            "holds" => 1..=2,
+            _ => 1..=1,
+        };
+        if !want.contains(&args.len()) {
+            self.report(types::counts(Noun::Function, &name, *want.start(), args.len(), span));
+            return Expr::error(span);
+        }
+        self.term(&name, args, &prefix, span).unwrap_or_else(|| Expr::error(span))
+    }
+
+    fn term(&mut self, name: &str, args: &[ast::Expr], prefix: &str, span: Span) -> Option<Expr> {
+        let length = Kind::Float(Dim::LENGTH);
+        let (what, ty) = match name {
+            "joint_speed" => {
+                let arm = self.world_arg(Noun::Arm, &args[0], prefix)?;
+                (Term::JointSpeed(ArmId(arm)), Kind::Float(Dim::ANGULAR_SPEED))
+            }
+            "holds" => {
+                let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
+                let body = args.get(1).map(|a| self.body_arg(a, prefix));
+                match body {
+                    Some(body) => (Term::Holds(gripper?, body?), Kind::Bool),
+                    None => (Term::HoldsAny(gripper?), Kind::Bool),
+                }
+            }
+            "speed" => (Term::Speed(self.body_arg(&args[0], prefix)?), Kind::Float(Dim::SPEED)),
+            _ => {
+                let (a, b) = (self.body_arg(&args[0], prefix), self.body_arg(&args[1], prefix));
+                let (a, b) = (a?, b?);
+                match name {
+                    "distance" => (Term::Distance(a, b), length),
+                    "range" => (Term::Range(a, b), length),
+                    "angle" => (Term::Angle(a, b), Kind::Float(Dim::ANGLE)),
+                    _ => (Term::Visible(a, b), Kind::Bool),
+                }
+            }
+        };
+        Some(term(what, ty, span))
+    }
+
+    /// An argument that names a body.
+    pub(super) fn body_arg(&mut self, arg: &ast::Expr, prefix: &str) -> Option<BodyRef> {
+        match &arg.kind {
+            Syntax::Path(path) => self.body_ref(&path.names, prefix),
+            _ => {
+                self.report(not_a_name(Noun::Body, arg.span));
+                None
+            }
+        }
+    }
+
+    fn world_arg(&mut self, noun: Noun, arg: &ast::Expr, prefix: &str) -> Option<u16> {
+        match &arg.kind {
+            Syntax::Path(path) => self.world_name(noun, &path.names, prefix),
+            _ => {
+                self.report(not_a_name(noun, arg.span));
+                None
+            }
+        }
+    }
+
+    /// A body or current body.
+    pub(super) fn body_ref(&mut self, names: &[Name], prefix: &str) -> Option<BodyRef> {
+        if let Some(body) = self.in_world.body_ref(&format!("{prefix}{}", text(names))) {
+            return Some(body);
+        }
+        self.world_name(Noun::Body, names, prefix);
+        None
+    }
+
+    /// Something in the world by its dotted name, or a diagnostic at the first name that leads nowhere.
+    pub(super) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
+        if let Some(id) = self.in_world.get(noun, &format!("{prefix}{}", text(names))) {
+            return Some(id);
+        }
+        if !self.has_world && prefix.is_empty() {
+            let span = names[0].span.to(names[names.len() - 1].span);
+            let message = format!("`{}` needs a world, and the scenario has none", text(names));
+            self.report(names::missing(span, message, "declare it: `world { … }`"));
+            return None;
+        }
+        let mut base = prefix.to_owned();
+        for name in &names[..names.len() - 1] {
+            let full = format!("{base}{}", name.text);
+            if !self.in_world.is_instance(&full) {
+                let near = self.in_world.below(Noun::PartInstance, &base);
+                let is = self.in_world.kind_of(&full);
+                self.unknown(Noun::PartInstance, name, &near, is);
+                return None;
+            }
+            base = format!("{full}.");
+        }
+        let last = &names[names.len() - 1];
+        let near = self.in_world.below(noun, &base);
+        let is = self.in_world.kind_of(&format!("{base}{}", last.text));
+        // Within a part, what the name is elsewhere says nothing.
+        let is = is.or(if base.is_empty() { None } else { Some(noun) });
+        self.unknown(noun, last, &near, is);
+        None
+    }
+
+    fn no_function(&mut self, callee: &ast::Path, env: &Env, known: bool) {
+        let name = text(&callee.names);
+        if known {
+            let message = format!("`{name}` is measured in the world, which cannot be read here");
+            let issue = types::no_value("a measurement", callee.span);
+            self.report(hrdsl_source::Diagnostic { message, ..issue });
+            return;
+        }
+        let mut all: Vec<String> = FUNCTIONS.iter().map(|f| f.0.to_owned()).collect();
+        if env.world.is_some() {
+            all.extend(MEASURES.map(str::to_owned));
+        }
+        let callee = Name { text: name, span: callee.span };
+        self.unknown(Noun::Function, &callee, &all, None);
+    }
+
+    /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
+    fn expr_quietly(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Expr> {
+        match e.kind {
+            Syntax::Path(_) | Syntax::Any => None,
+            _ => Some(self.expr(e, env)),
+        }
+    }
+}
+
+fn not_a_name(noun: Noun, span: Span) -> hrdsl_source::Diagnostic {
+    types::no_value("this expression", span).help(format!("name {} of the world here", noun.with_article()))
+}
+
+fn term(term: Term, ty: Kind, span: Span) -> Expr {
+    Expr { kind: ExprKind::Term(term), ty, span }
+}
+
+/// A dotted name as text.
+pub(super) fn text(names: &[Name]) -> String {
+    names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".")
+}

@@ -1,0 +1,275 @@
+//! Suites: how tests are made.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member};
+
+use super::{Checker, Env};
+use crate::{
+    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, NetworkId, Player, Role, SearchGoal,
+    Suite, Value,
+    noun::Noun,
+    report::{coverage::bad_suite, names, roles, types},
+};
+
+/// What the members of a suite say, whatever its method.
+#[derive(Default)]
+struct Said {
+    choose: Vec<Choice>,
+    explore: Option<Explore>,
+    goals: Vec<SearchGoal>,
+    stimuli: Vec<EventId>,
+    awaits: Vec<EventPattern>,
+    length: Option<(u32, u32)>,
+    pause: Option<(f64, f64)>,
+    tests: Option<u32>,
+    horizon: Option<f64>,
+    patience: Option<f64>,
+}
+
+impl Checker<'_> {
+    pub(super) fn suites(&mut self) {
+        for (item, span) in self.each_item() {
+            if let ItemKind::Suite(suite) = item {
+                let resolved = self.suite(suite, span);
+                let new = Self::declare(&mut self.issues, &mut self.suites, Noun::Suite, &suite.name).is_some();
+                self.s.suites.extend(resolved.filter(|_| new));
+            }
+        }
+    }
+
+    fn suite(&mut self, suite: &ast::Suite, span: Span) -> Option<Suite> {
+        let players = match &suite.method {
+            SyntaxMethod::Agents(names) => self.suite_players(names),
+            SyntaxMethod::Search(_) | SyntaxMethod::Random => Vec::new(),
+        };
+        let network = match &suite.method {
+            SyntaxMethod::Search(name) => self.suite_network(name),
+            SyntaxMethod::Agents(_) | SyntaxMethod::Random => None,
+        };
+        let mut said = Said::default();
+        for member in &suite.members {
+            if self.fits_method(member, &suite.method) {
+                self.member(member, &players, &mut said);
+            }
+        }
+        let method = match &suite.method {
+            SyntaxMethod::Agents(_) => {
+                let explore = said.explore.unwrap_or(Explore::Pairwise);
+                Method::Agents { players, choose: said.choose, explore }
+            }
+            SyntaxMethod::Search(_) => {
+                if !suite.members.iter().any(|m| is_goal(m)) {
+                    let message = format!("the suite `{}` has nothing to reach", suite.name.text);
+                    self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
+                }
+                Method::Search { network: network?, goals: said.goals }
+            }
+            SyntaxMethod::Random => {
+                if !suite.members.iter().any(|m| matches!(m.kind, Member::Stimuli(_) | Member::Error)) {
+                    let message = format!("the suite `{}` has no stimuli to draw", suite.name.text);
+                    self.report(bad_suite(suite.name.span, message, "add `stimuli …`"));
+                }
+                let (stimuli, awaits) = (said.stimuli, said.awaits);
+                let (length, pause) = (said.length.unwrap_or((5, 20)), said.pause.unwrap_or((0.0, 10.0)));
+                Method::Random { stimuli, awaits, length, pause }
+            }
+        };
+        Some(Suite {
+            name: suite.name.text.clone(),
+            method,
+            tests: said.tests.unwrap_or(100),
+            horizon: said.horizon.unwrap_or(300.0),
+            patience: said.patience.unwrap_or(60.0),
+            span,
+        })
+    }
+
+    /// Agents and automata; at most one for an actor.
+    fn suite_players(&mut self, list: &[Name]) -> Vec<Player> {
+        let mut players = Vec::new();
+        let mut actors = Vec::new();
+        for name in list {
+            let Some(id) = self.players.get(&name.text) else {
+                let all: Vec<String> = self.players.names().map(str::to_owned).collect();
+                self.unknown(Noun::Player, name, &all, None);
+                continue;
+            };
+            let player = self.player_ids[usize::from(id)];
+            let actor = match player {
+                Player::Agent(a) => self.s.agents[usize::from(a.0)].actor,
+                Player::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
+            };
+            if let Some((_, first)) = actors.iter().find(|(a, _)| *a == actor) {
+                let message = format!("`{}` plays `{}` a second time", name.text, self.actor_name(actor));
+                let issue = bad_suite(name.span, message, "an actor is played by at most one");
+                self.report(issue.label(*first, "this plays it already"));
+                continue;
+            }
+            actors.push((actor, name.span));
+            players.push(player);
+        }
+        let acts = actors.iter().any(|(a, _)| self.role_of(*a) == Role::Environment);
+        if let (false, [first, ..], true) = (acts, list, players.len() == list.len()) {
+            let message = "nobody here plays the environment: the tests would be empty";
+            self.report(bad_suite(first.span, message, "add an agent that plays an environment actor"));
+        }
+        players
+    }
+
+    fn suite_network(&mut self, name: &Name) -> Option<NetworkId> {
+        let found = self.networks.get(&name.text).map(NetworkId);
+        if found.is_none() {
+            let all: Vec<String> = self.networks.names().map(str::to_owned).collect();
+            self.unknown(Noun::Network, name, &all, None);
+        }
+        found
+    }
+
+    /// Some members belong to one method only.
+    fn fits_method(&mut self, member: &SuiteMember, method: &SyntaxMethod) -> bool {
+        let needs = match &member.kind {
+            Member::Choose { .. } | Member::Explore(_) | Member::Horizon(_) => "agents",
+            Member::ReachBins(_) | Member::ReachLocations | Member::ReachEdges => "search",
+            Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
+            Member::Tests(_) | Member::Patience(_) | Member::Error => return true,
+        };
+        let is = match method {
+            SyntaxMethod::Agents(_) => "agents",
+            SyntaxMethod::Search(_) => "search",
+            SyntaxMethod::Random => "random",
+        };
+        if is != needs {
+            let message = format!("this belongs to a suite `by {needs}`, and this one is `by {is}`");
+            self.report(bad_suite(member.span, message, "remove it, or change the suite's method"));
+        }
+        is == needs
+    }
+
+    fn member(&mut self, member: &SuiteMember, players: &[Player], said: &mut Said) {
+        match &member.kind {
+            Member::Choose { any, belief, agent, per } => {
+                said.choose.extend(self.choose(*any, belief, agent, per.as_ref(), players));
+            }
+            Member::Explore(name) => {
+                let ways = [Explore::Exhaustive, Explore::Pairwise, Explore::Random];
+                let chosen = self.choice(Noun::Explore, name, &["exhaustive", "pairwise", "random"]);
+                said.explore = chosen.map(|i| ways[i]);
+            }
+            Member::Tests(e) => {
+                said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
+            }
+            Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
+            Member::Patience(e) => said.patience = self.time(e, "the patience", true),
+            Member::ReachBins(name) => match self.crosses.get(&name.text) {
+                Some(id) => said.goals.push(SearchGoal::Bins(CrossId(id))),
+                None => {
+                    let all: Vec<String> = self.crosses.names().map(str::to_owned).collect();
+                    self.unknown(Noun::Cross, name, &all, None);
+                }
+            },
+            Member::ReachLocations => said.goals.push(SearchGoal::Locations),
+            Member::ReachEdges => said.goals.push(SearchGoal::Edges),
+            Member::Stimuli(names) => {
+                for name in names {
+                    said.stimuli.extend(self.test_stimulus(name));
+                }
+            }
+            Member::Await(events) => said.awaits.extend(self.patterns(events)),
+            Member::Length(range) => said.length = self.length(range),
+            Member::Pause(range) => said.pause = self.pause(range),
+            Member::Error => {}
+        }
+    }
+
+    fn choose(
+        &mut self,
+        any: bool,
+        belief: &Name,
+        agent: &Name,
+        per: Option<&Name>,
+        players: &[Player],
+    ) -> Option<Choice> {
+        let player = self.players.get(&agent.text).map(|id| self.player_ids[usize::from(id)]);
+        let Some(Player::Agent(id)) = player else {
+            let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
+            self.unknown(Noun::Agent, agent, &all, None);
+            return None;
+        };
+        if !players.contains(&Player::Agent(id)) {
+            let message = format!("`{}` does not play in this suite", agent.text);
+            self.report(bad_suite(agent.span, message, "add it after `by agents`"));
+        }
+        let table = &self.beliefs[usize::from(id.0)];
+        let Some(belief_id) = table.get(&belief.text).map(crate::BeliefId) else {
+            let all: Vec<String> = table.names().map(str::to_owned).collect();
+            self.unknown(Noun::Belief, belief, &all, None);
+            return None;
+        };
+        let params = self.belief_params(id, belief_id);
+        if let Some(param) = params.iter().find(|p| !p.ty.is_finite()) {
+            let message = format!("`{}` cannot be chosen: `{}` has infinitely many values", belief.text, param.name);
+            self.report(bad_suite(belief.span, message, "give the parameter the type `bool` or a range"));
+        }
+        let how = match per {
+            None if any => ChoiceKind::Any,
+            None => ChoiceKind::One,
+            Some(per) => {
+                let all: Vec<String> = params.iter().map(|p| p.name.clone()).collect();
+                let Some(at) = all.iter().position(|p| *p == per.text) else {
+                    self.unknown(Noun::Parameter, per, &all, Some(Noun::Parameter));
+                    return None;
+                };
+                ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
+            }
+        };
+        Some(Choice { agent: id, belief: belief_id, how })
+    }
+
+    /// A stimulus that a test can do.
+    pub(super) fn test_stimulus(&mut self, name: &Name) -> Option<EventId> {
+        if let Some(id) = self.events.get(&name.text) {
+            let event = &self.s.events[usize::from(id)];
+            if self.role_of(event.from) == Role::System {
+                let actor = self.actor_name(event.from);
+                let issue = roles::test_acts_for_system(&name.text, actor, name.span);
+                self.report(issue);
+                return None;
+            }
+        }
+        self.event(Noun::Stimulus, name, None)
+    }
+
+    fn length(&mut self, range: &ast::Range) -> Option<(u32, u32)> {
+        let lo = self.count(&range.lo, "a length", 0)?;
+        let hi = match &range.hi {
+            Some(hi) => self.count(hi, "a length", 1)?,
+            None => {
+                self.report(names::missing(range.span, "a length has an upper end", "write `length 5..20`"));
+                return None;
+            }
+        };
+        if lo > hi {
+            self.report(types::empty_range(Value::Int(lo), Value::Int(hi), range.span));
+        }
+        Some((u32::try_from(lo).ok()?, u32::try_from(hi).ok()?))
+    }
+
+    fn pause(&mut self, range: &ast::Range) -> Option<(f64, f64)> {
+        let mut end = |e: &ast::Expr| self.expr_of(e, Kind::Float(Dim::TIME), &mut Env::constants());
+        let lo = end(&range.lo);
+        let Some(hi) = range.hi.as_ref().map(end) else {
+            self.report(names::missing(range.span, "a pause has an upper end", "write `pause 0 s .. 10 s`"));
+            return None;
+        };
+        self.ordered(&lo, &hi, range.span);
+        let (lo, hi) = (lo.constant()?.number()?, hi.constant()?.number()?);
+        if lo < 0.0 {
+            self.report(types::must_be("a pause", "at least 0 s", range.span));
+        }
+        Some((lo, hi))
+    }
+}
+
+fn is_goal(member: &SuiteMember) -> bool {
+    matches!(member.kind, Member::ReachBins(_) | Member::ReachLocations | Member::ReachEdges | Member::Error)
+}

@@ -1,0 +1,161 @@
+//! Tests: written by hand or by a generator, in the scenario's vocabulary.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Call, ItemKind, Name, TestMemberKind as Member, Text};
+
+use super::{Checker, Env, measure::text, table::Table};
+use crate::{
+    Kind, Test, TestStep, Value,
+    noun::Noun,
+    report::{names, tests::bad_test, types},
+};
+
+impl Checker<'_> {
+    /// The tests of the scenario itself, then those of the files of tests, which hold nothing else.
+    pub(super) fn tests(&mut self, files: &[&ast::File]) {
+        let mut table = Table::default();
+        for (item, span) in self.each_item() {
+            if let ItemKind::Test(test) = item {
+                self.test(test, span, &mut table);
+            }
+        }
+        for item in files.iter().flat_map(|f| &f.items) {
+            match &item.kind {
+                ItemKind::Test(test) => self.test(test, item.span, &mut table),
+                ItemKind::Error => {}
+                _ => {
+                    let message = "a file of tests holds tests only";
+                    self.report(bad_test(item.span, message, "move this to the scenario"));
+                }
+            }
+        }
+        for scenario in files.iter().filter_map(|f| f.scenario.as_ref()) {
+            if scenario.text != self.s.name {
+                let message = format!("these are tests of `{}`, not of `{}`", scenario.text, self.s.name);
+                let issue = bad_test(scenario.span, message, format!("did you mean `{}`?", self.s.name));
+                self.report(issue);
+            }
+        }
+    }
+
+    fn test(&mut self, test: &ast::Test, span: Span, table: &mut Table) {
+        let full = text(&test.name.names);
+        let suite = test.name.names.split_last().map_or_else(String::new, |(_, before)| text(before));
+        let method = "hand".to_owned();
+        let (because, predicts, steps) = (Vec::new(), Vec::new(), Vec::new());
+        let mut resolved =
+            Test { name: full.clone(), suite, seed: 0, method, because, predicts, steps, span };
+        for member in &test.members {
+            self.test_member(&member.kind, &mut resolved);
+        }
+        let (issues, noun) = (&mut self.issues, Noun::Test);
+        if Self::declare_as(issues, table, noun, &full, test.name.span).is_some() {
+            self.s.tests.push(resolved);
+        }
+    }
+
+    fn test_member(&mut self, member: &Member, test: &mut Test) {
+        match member {
+            Member::Seed(e) => test.seed = self.seed(e),
+            Member::Method(name) => {
+                if self.choice(Noun::Method, name, &["agents", "search", "random", "hand"]).is_some() {
+                    test.method.clone_from(&name.text);
+                }
+            }
+            Member::Because(text) => test.because.push(text.text.clone()),
+            Member::Predicts(text) => {
+                self.predicted(text);
+                test.predicts.push(text.text.clone());
+            }
+            Member::Do { call, with } => test.steps.extend(self.test_do(call, with)),
+            Member::Await { events, within } => {
+                let events = self.patterns(events);
+                let within = self.time(within, "the time to wait", true).unwrap_or(1.0);
+                test.steps.push(TestStep::Await { events, within });
+            }
+            Member::Wait(e) => {
+                let time = self.time(e, "the time to wait", false).unwrap_or(0.0);
+                test.steps.push(TestStep::Wait(time));
+            }
+            Member::Error => {}
+        }
+    }
+
+    fn seed(&mut self, e: &ast::Expr) -> u64 {
+        let Some(Value::Int(n)) = self.constant(e, Kind::Int, &mut Env::constants()) else { return 0 };
+        let seed = u64::try_from(n);
+        if seed.is_err() {
+            self.report(types::must_be("a seed", "at least 0", e.span));
+        }
+        seed.unwrap_or(0)
+    }
+
+    /// `cross.bin`
+    fn predicted(&mut self, text: &Text) {
+        let (cross, bin) = text.text.split_once('.').unwrap_or((&text.text, ""));
+        let Some(id) = self.crosses.get(cross) else {
+            let all: Vec<String> = self.crosses.names().map(str::to_owned).collect();
+            let name = Name { text: cross.to_owned(), span: text.span };
+            self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
+            return;
+        };
+        let bins: Vec<String> =
+            self.s.crosses[usize::from(id)].bins.iter().map(|(n, _, _)| n.clone()).collect();
+        if !bins.iter().any(|b| b == bin) {
+            let issue = names::unknown(Noun::Bin, bin, text.span, bins.iter().map(String::as_str));
+            self.report(issue);
+        }
+    }
+
+    fn test_do(&mut self, call: &Call, with: &[(Name, ast::Expr)]) -> Option<TestStep> {
+        let event = self.test_stimulus(&call.name)?;
+        let params = self.params_of(event);
+        let args = self.args(Noun::Stimulus, call, &params, &mut Env::constants());
+        for arg in &args {
+            if arg.constant().is_none() && arg.ty != Kind::Unknown {
+                self.report(types::not_constant(arg.span));
+            }
+        }
+        let samples = self.samples(event, call, with)?;
+        let args: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
+        Some(TestStep::Do { event, args: args.filter(|a| a.len() == params.len())?, samples })
+    }
+
+    /// The values of the second tier: of every sample, or of none.
+    fn samples(
+        &mut self,
+        event: crate::EventId,
+        call: &Call,
+        with: &[(Name, ast::Expr)],
+    ) -> Option<Vec<Value>> {
+        let stimulus = self.s.events[usize::from(event.0)].stimulus.clone().unwrap_or_default();
+        let all: Vec<String> = stimulus.samples.iter().map(|s| s.name.clone()).collect();
+        let mut values: Vec<Option<Value>> = vec![None; all.len()];
+        for (name, value) in with {
+            let Some(at) = all.iter().position(|s| *s == name.text) else {
+                self.unknown(Noun::Sample, name, &all, Some(Noun::Sample));
+                continue;
+            };
+            if values[at].is_some() {
+                self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));
+            }
+            let e = self.expr_for(value, stimulus.samples[at].ty, &mut Env::constants());
+            if e.constant().is_none() && e.ty != Kind::Unknown {
+                self.report(types::not_constant(e.span));
+            }
+            // A value with a diagnostic of its own is not missing.
+            values[at] = Some(e.constant().unwrap_or(Value::Float(0.0)));
+        }
+        if with.is_empty() {
+            return Some(Vec::new());
+        }
+        let missing: Vec<&str> =
+            all.iter().zip(&values).filter(|(_, v)| v.is_none()).map(|(n, _)| n.as_str()).collect();
+        if !missing.is_empty() {
+            let message = format!("`{}` is given some of its samples only", call.name.text);
+            let help = format!("add `{}`, or leave all to the seed", missing.join("`, `"));
+            self.report(bad_test(call.name.span, message, help));
+        }
+        values.into_iter().collect()
+    }
+}

@@ -1,0 +1,186 @@
+//! Names of the world, and the instantiation of parts.
+
+use hrdsl_source::{Diagnostic, Span};
+use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
+
+use super::{Checker, table::Table};
+use crate::{
+    BodyId, CurrentId, Dim, Kind,
+    noun::Noun,
+    report::{types, world::bad_world},
+    world::{BodyRef, Frame},
+};
+
+/// How deep parts can be in parts; more is a part that contains itself.
+const MAX_DEPTH: usize = 16;
+
+/// Full names (`robot.palm`) of everything in the world, by kind.
+#[derive(Default)]
+pub(crate) struct WorldNames {
+    pub instances: Table,
+    pub bodies: Table,
+    pub joints: Table,
+    pub arms: Table,
+    pub grippers: Table,
+    pub currents: Table,
+    pub signals: Table,
+    /// The parts that have been used.
+    pub used: Vec<String>,
+}
+
+impl WorldNames {
+    fn tables(&self) -> [(Noun, &Table); 7] {
+        [
+            (Noun::Body, &self.bodies),
+            (Noun::Current, &self.currents),
+            (Noun::Gripper, &self.grippers),
+            (Noun::Arm, &self.arms),
+            (Noun::Joint, &self.joints),
+            (Noun::Signal, &self.signals),
+            (Noun::PartInstance, &self.instances),
+        ]
+    }
+
+    pub fn get(&self, noun: Noun, full: &str) -> Option<u16> {
+        self.tables().into_iter().find(|(n, _)| *n == noun).and_then(|(_, t)| t.get(full))
+    }
+
+    pub fn kind_of(&self, full: &str) -> Option<Noun> {
+        self.tables().into_iter().find(|(_, t)| t.get(full).is_some()).map(|(n, _)| n)
+    }
+
+    pub fn body_ref(&self, full: &str) -> Option<BodyRef> {
+        let body = self.bodies.get(full).map(|id| BodyRef::Body(BodyId(id)));
+        body.or_else(|| self.currents.get(full).map(|id| BodyRef::Current(CurrentId(id))))
+    }
+
+    pub fn is_body(&self, prefix: &str, name: &str) -> bool {
+        self.body_ref(&format!("{prefix}{name}")).is_some()
+    }
+
+    pub fn is_instance(&self, full: &str) -> bool {
+        self.instances.get(full).is_some()
+    }
+
+    /// The names of this kind directly below a prefix. Where a body is meant, a current body will do.
+    pub fn below(&self, noun: Noun, prefix: &str) -> Vec<String> {
+        let fits = |n: Noun| n == noun || noun == Noun::Body && n == Noun::Current;
+        let tables = self.tables().into_iter().filter(|(n, _)| fits(*n));
+        let names = tables.flat_map(|(_, t)| t.names().filter_map(|n| n.strip_prefix(prefix)));
+        names.filter(|n| !n.contains('.')).map(str::to_owned).collect()
+    }
+}
+
+/// A member of the world, or of a part of it.
+#[derive(Clone)]
+pub(crate) struct Placed<'a> {
+    /// `robot.`, or empty
+    pub prefix: String,
+    pub frame: Frame,
+    pub member: &'a WorldMember,
+}
+
+impl<'a> Checker<'a> {
+    /// The world's members and those of its parts, in source order, parts in place of their use.
+    pub(super) fn flatten(
+        &mut self,
+        members: &'a [WorldMember],
+        prefix: &str,
+        frame: Frame,
+        depth: usize,
+    ) -> Vec<Placed<'a>> {
+        let mut all = Vec::new();
+        for member in members {
+            match &member.kind {
+                Member::Part { name, of, at, rotated } => {
+                    let inner = self.frame(at, rotated.as_ref());
+                    let full = format!("{prefix}{}", name.text);
+                    let instances = &mut self.in_world.instances;
+                    let noun = Noun::PartInstance;
+                    let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
+                    let Some(part) = self.part(of, depth) else { continue };
+                    if new {
+                        let frame = compose(frame, inner);
+                        all.extend(self.flatten(&part.members, &format!("{full}."), frame, depth + 1));
+                    }
+                }
+                Member::Step(_)
+                | Member::Sample(_)
+                | Member::Gravity(_)
+                | Member::Body(_)
+                | Member::Joint { .. }
+                | Member::Arm { .. }
+                | Member::Gripper { .. }
+                | Member::Current { .. }
+                | Member::Signal { .. }
+                | Member::Rule(_)
+                | Member::Error => all.push(Placed { prefix: prefix.to_owned(), frame, member }),
+            }
+        }
+        all
+    }
+
+    fn part(&mut self, of: &Name, depth: usize) -> Option<&'a ast::Part> {
+        let Some((part, _)) = self.parts.get(of.text.as_str()) else {
+            let names: Vec<String> = self.parts.keys().map(|k| (*k).to_owned()).collect();
+            // A part often has the name of an actor or of its instance, which would say nothing.
+            self.unknown(Noun::Part, of, &names, Some(Noun::Part));
+            return None;
+        };
+        if depth >= MAX_DEPTH {
+            self.report(bad_world(
+                of.span,
+                format!("the part `{}` contains itself", of.text),
+                "remove it from its own members",
+            ));
+            return None;
+        }
+        self.in_world.used.push(of.text.clone());
+        Some(part)
+    }
+
+    /// `at (…) rotated (0 deg, 0 deg, 90 deg)`
+    fn frame(&mut self, at: &ast::Expr, rotated: Option<&ast::Expr>) -> Frame {
+        let position = self.vector(at, Kind::Float(Dim::LENGTH)).unwrap_or_default();
+        let angles = rotated.and_then(|r| self.vector(r, Kind::Float(Dim::ANGLE))).unwrap_or_default();
+        if let (Some(rotated), true) = (rotated, angles[0] != 0.0 || angles[1] != 0.0) {
+            self.report(bad_world(
+                rotated.span,
+                "a part can only be turned about the vertical",
+                "write `rotated (0 deg, 0 deg, …)`",
+            ));
+        }
+        Frame { at: position, yaw: angles[2] }
+    }
+
+    /// Three constants of one kind.
+    pub(super) fn vector(&mut self, e: &ast::Expr, want: Kind) -> Option<[f64; 3]> {
+        let ast::ExprKind::Tuple(parts) = &e.kind else {
+            if e.kind != ast::ExprKind::Error {
+                self.report(not_a_vector(want, e.span));
+            }
+            return None;
+        };
+        if parts.len() != 3 {
+            self.report(not_a_vector(want, e.span));
+            return None;
+        }
+        let mut vector = [0.0; 3];
+        for (slot, part) in vector.iter_mut().zip(parts) {
+            *slot = self.constant(part, want, &mut super::Env::constants())?.number()?;
+        }
+        Some(vector)
+    }
+}
+
+fn not_a_vector(want: Kind, span: Span) -> Diagnostic {
+    let unit = want.dim().and_then(Dim::symbol).unwrap_or_default();
+    let zero = format!("0 {unit}");
+    let zero = zero.trim();
+    types::no_value("this", span).help(format!("three numbers are needed: `({zero}, {zero}, {zero})`"))
+}
+
+/// The frame of `inner`, which is given in the coordinates of `outer`, in the world.
+fn compose(outer: Frame, inner: Frame) -> Frame {
+    Frame { at: outer.place(inner.at), yaw: outer.yaw + inner.yaw }
+}

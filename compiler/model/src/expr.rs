@@ -1,0 +1,112 @@
+//! Typed expressions: names resolved, units converted, constants folded, with the spans of the source.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+use serde::Serialize;
+
+use crate::{ArmId, GripperId, Kind, SignalId, Value, world::BodyRef};
+
+/// A typed expression.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Expr {
+    pub kind: ExprKind,
+    pub ty: Kind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExprKind {
+    Const(Value),
+    Leaf(Leaf),
+    /// A measurement of the world.
+    Term(Term),
+    Unary(UnaryOp, Box<Expr>),
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    If(Box<Expr>, Box<Expr>, Box<Expr>),
+    Call(Function, Vec<Expr>),
+    /// Has a diagnostic.
+    Error,
+}
+
+/// A name that has a value at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Leaf {
+    /// A stimulus's parameters, then its samples; a plan's variables; an edge's selects, then what it binds.
+    Local(u16),
+    /// A variable of the automaton.
+    Own(u16),
+    /// A variable shared by all automata.
+    Shared(u16),
+    Signal(SignalId),
+}
+
+/// A function on numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Function {
+    Abs,
+    Min,
+    Max,
+}
+
+/// A primitive measurement of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Term {
+    Distance(BodyRef, BodyRef),
+    Range(BodyRef, BodyRef),
+    Angle(BodyRef, BodyRef),
+    Visible(BodyRef, BodyRef),
+    /// Axis 0, 1, 2: x, y, z
+    Coordinate(BodyRef, u8),
+    Holds(GripperId, BodyRef),
+    HoldsAny(GripperId),
+    JointSpeed(ArmId),
+    Speed(BodyRef),
+}
+
+impl Expr {
+    pub(crate) fn error(span: Span) -> Self {
+        Expr { kind: ExprKind::Error, ty: Kind::Unknown, span }
+    }
+
+    pub(crate) fn value(value: Value, ty: Kind, span: Span) -> Self {
+        Expr { kind: ExprKind::Const(value), ty, span }
+    }
+
+    /// The value, if it is a constant.
+    #[must_use]
+    pub fn constant(&self) -> Option<Value> {
+        match self.kind {
+            ExprKind::Const(value) => Some(value),
+            ExprKind::Leaf(_)
+            | ExprKind::Term(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Call(..)
+            | ExprKind::Error => None,
+        }
+    }
+
+    /// Calls `f` with the expression and each part of it, the whole first.
+    pub fn each(&self, f: &mut dyn FnMut(&Expr)) {
+        f(self);
+        match &self.kind {
+            ExprKind::Const(_) | ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => {}
+            ExprKind::Unary(_, a) => a.each(f),
+            ExprKind::Binary(_, a, b) => {
+                a.each(f);
+                b.each(f);
+            }
+            ExprKind::If(c, a, b) => {
+                c.each(f);
+                a.each(f);
+                b.each(f);
+            }
+            ExprKind::Call(_, args) => args.iter().for_each(|a| a.each(f)),
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! AST → [`Scenario`]: every name resolved to an id, every expression typed and its constants folded. What does not fit is
+//! said where it was written, with the nearest right name; nothing stops at the first error.
+
+mod check;
+mod expr;
+mod nearest;
+mod noun;
+mod report;
+mod scenario;
+mod types;
+mod value;
+pub mod world;
+
+pub use check::resolve;
+pub use expr::{Expr, ExprKind, Function, Leaf, Term};
+pub use nearest::{distance, nearest};
+pub use scenario::*;
+pub use types::{Dim, Kind, Type, UNITS, Unit};
+pub use value::{FoldError, Value};

@@ -1,0 +1,81 @@
+//! The nearest name: which declared name a misspelt one was meant to be.
+
+/// Costs of the edits. A slip of the keyboard more often adds, drops or swaps letters than it exchanges one for another,
+/// which also decides between `m` and `mm` for `mx`.
+const INDEL: usize = 2;
+const SWAP: usize = 2;
+const REPLACE: usize = 3;
+
+/// The weighted edit distance of optimal string alignment (Damerau–Levenshtein without edits inside a transposition).
+#[must_use]
+pub fn distance(a: &str, b: &str) -> usize {
+    let a: Vec<char> = a.chars().collect();
+    let b: Vec<char> = b.chars().collect();
+    // INVARIANT: row[j] is the distance of a[..i] and b[..j]; `last` and `before` are the rows of i - 1 and i - 2.
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).map(|j| j * INDEL).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i * INDEL];
+        for j in 1..=b.len() {
+            let replace = if a[i - 1] == b[j - 1] { 0 } else { REPLACE };
+            let mut best = (last[j - 1] + replace).min(last[j] + INDEL).min(row[j - 1] + INDEL);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(before[j - 2] + SWAP);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}
+
+/// The candidate nearest to `name`, if one is near enough to have been meant; the first of equals. A difference of case
+/// alone is always near.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = (name.chars().count() * INDEL / 2).max(REPLACE);
+    candidates
+        .into_iter()
+        .filter(|c| *c != name)
+        .map(|c| (if c.eq_ignore_ascii_case(name) { 1 } else { distance(name, c) }, c))
+        .filter(|(d, _)| *d <= limit)
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, c)| c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn slips_find_their_name() {
+        let units = ["s", "ms", "m", "cm", "mm", "min"];
+        assert_eq!(nearest("mx", units), Some("m"));
+        assert_eq!(nearest("sm", units), Some("ms"));
+        assert_eq!(nearest("leg_reqeust", ["leg", "leg_request", "request"]), Some("leg_request"));
+        assert_eq!(nearest("legx", ["leg1", "leg2", "leg"]), Some("leg"));
+        assert_eq!(nearest("human", ["Human", "humane"]), Some("Human"));
+        assert_eq!(nearest("zebra", ["leg", "hand"]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn distance_is_a_symmetric_premetric(a in "[abc]{0,6}", b in "[abc]{0,6}") {
+            prop_assert_eq!(distance(&a, &b), distance(&b, &a));
+            prop_assert_eq!(distance(&a, &b) == 0, a == b);
+            prop_assert!(distance(&a, &b) <= INDEL * (a.len() + b.len()));
+        }
+
+        #[test]
+        fn one_insertion_or_swap_costs_one_edit(a in "[a-z]{2,8}", at in 0usize..8) {
+            let at = at.min(a.len() - 2);
+            let mut longer = a.clone();
+            longer.insert(at, '_');
+            prop_assert_eq!(distance(&a, &longer), INDEL);
+            let mut swapped: Vec<char> = a.chars().collect();
+            swapped.swap(at, at + 1);
+            let swapped: String = swapped.into_iter().collect();
+            prop_assert!(distance(&a, &swapped) <= SWAP);
+        }
+    }
+}

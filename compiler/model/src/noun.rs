@@ -1,0 +1,157 @@
+//! The kinds of names, in the words of a person.
+
+use std::fmt;
+
+/// What a name can be the name of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Noun {
+    Actor,
+    Role,
+    Constant,
+    Event,
+    Stimulus,
+    /// Where both are good.
+    EventOrStimulus,
+    Parameter,
+    Sample,
+    Unit,
+    Type,
+    Function,
+    Agent,
+    Automaton,
+    /// An agent or automaton.
+    Player,
+    Belief,
+    Goal,
+    Label,
+    Variable,
+    Clock,
+    Location,
+    Network,
+    Requirement,
+    RequirementKind,
+    Point,
+    Bin,
+    Cross,
+    Suite,
+    Method,
+    Explore,
+    Test,
+    Part,
+    PartInstance,
+    Body,
+    Motion,
+    Shape,
+    Joint,
+    Arm,
+    Gripper,
+    Current,
+    Signal,
+    Action,
+    Coordinate,
+}
+
+impl Noun {
+    /// `a clock`
+    pub fn with_article(self) -> String {
+        let word = self.to_string();
+        let article = if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
+        format!("{article} {word}")
+    }
+
+    pub fn plural(self) -> String {
+        match self {
+            Noun::Stimulus => "stimuli".to_owned(),
+            Noun::Automaton => "automata".to_owned(),
+            Noun::Body => "bodies".to_owned(),
+            Noun::EventOrStimulus => "events and stimuli".to_owned(),
+            Noun::Player => "agents and automata".to_owned(),
+            Noun::RequirementKind => "kinds of requirement".to_owned(),
+            Noun::Explore => "ways to explore".to_owned(),
+            Noun::Cross => "cross products".to_owned(),
+            Noun::Motion => "kinds of body".to_owned(),
+            Noun::PartInstance => "parts of the world".to_owned(),
+            Noun::Coordinate
+            | Noun::Actor
+            | Noun::Role
+            | Noun::Constant
+            | Noun::Event
+            | Noun::Parameter
+            | Noun::Sample
+            | Noun::Unit
+            | Noun::Type
+            | Noun::Function
+            | Noun::Agent
+            | Noun::Belief
+            | Noun::Goal
+            | Noun::Label
+            | Noun::Variable
+            | Noun::Clock
+            | Noun::Location
+            | Noun::Network
+            | Noun::Requirement
+            | Noun::Point
+            | Noun::Bin
+            | Noun::Suite
+            | Noun::Method
+            | Noun::Test
+            | Noun::Part
+            | Noun::Shape
+            | Noun::Joint
+            | Noun::Arm
+            | Noun::Gripper
+            | Noun::Current
+            | Noun::Signal
+            | Noun::Action => format!("{self}s"),
+        }
+    }
+}
+
+impl fmt::Display for Noun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Noun::Actor => "actor",
+            Noun::Role => "role",
+            Noun::Constant => "constant",
+            Noun::Event => "event",
+            Noun::Stimulus => "stimulus",
+            Noun::EventOrStimulus => "event or stimulus",
+            Noun::Parameter => "parameter",
+            Noun::Sample => "sample",
+            Noun::Unit => "unit",
+            Noun::Type => "type",
+            Noun::Function => "function",
+            Noun::Agent => "agent",
+            Noun::Automaton => "automaton",
+            Noun::Player => "agent or automaton",
+            Noun::Belief => "belief",
+            Noun::Goal => "goal",
+            Noun::Label => "plan label",
+            Noun::Variable => "variable",
+            Noun::Clock => "clock",
+            Noun::Location => "location",
+            Noun::Network => "network",
+            Noun::Requirement => "requirement",
+            Noun::RequirementKind => "kind of requirement",
+            Noun::Point => "coverage point",
+            Noun::Bin => "bin",
+            Noun::Cross => "cross product",
+            Noun::Suite => "suite",
+            Noun::Method => "method",
+            Noun::Explore => "way to explore",
+            Noun::Test => "test",
+            Noun::Part => "part",
+            Noun::PartInstance => "part of the world",
+            Noun::Body => "body",
+            Noun::Motion => "kind of body",
+            Noun::Shape => "shape",
+            Noun::Joint => "joint",
+            Noun::Arm => "arm",
+            Noun::Gripper => "gripper",
+            Noun::Current => "current body",
+            Noun::Signal => "signal",
+            Noun::Action => "action",
+            Noun::Coordinate => "coordinate",
+        })
+    }
+}

@@ -1,0 +1,11 @@
+//! What the checker has to say: one function for each diagnostic, one file for each group of codes.
+
+pub(crate) mod agents;
+pub(crate) mod automata;
+pub(crate) mod coverage;
+pub(crate) mod names;
+pub(crate) mod requirements;
+pub(crate) mod roles;
+pub(crate) mod tests;
+pub(crate) mod types;
+pub(crate) mod world;

@@ -1,0 +1,117 @@
+//! HR02xx: types, units, constants, arguments, ranges.
+
+use hrdsl_source::{Code, Diagnostic, Span};
+
+use crate::{Dim, Kind, Param, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError};
+
+/// HR0202
+pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
+    let error = Diagnostic::error(Code::UNKNOWN_UNIT, span, format!("no unit is called `{text}`"));
+    with_nearest(error, Noun::Unit, text, UNITS.iter().map(|u| u.symbol))
+}
+
+/// HR0201, HR0203 or the bare number: `want` is needed and `got` is there.
+pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) -> Diagnostic {
+    match (want, got.dim()) {
+        (Kind::Float(dim), Some(_)) if got.is_bare() => bare_number(dim, value, span),
+        (Kind::Float(_), Some(_)) => {
+            Diagnostic::error(Code::UNIT_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+        }
+        (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Unknown, _) => {
+            Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+        }
+    }
+}
+
+/// HR0203: a number without the unit that the place needs.
+pub(crate) fn bare_number(dim: Dim, value: Option<Value>, span: Span) -> Diagnostic {
+    let error =
+        Diagnostic::error(Code::UNIT_MISMATCH, span, format!("{dim} needs a unit, but this is a bare number"));
+    match (value, dim.symbol()) {
+        (Some(value), Some(unit)) => error.help(format!("write `{value} {unit}`")),
+        (None, Some(unit)) => error.help(format!("give it the unit `{unit}`")),
+        (_, None) => error,
+    }
+}
+
+/// HR0203: the operands have different dimensions.
+pub(crate) fn dimensions(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
+    let (l, r) = (left.0, right.0);
+    Diagnostic::error(Code::UNIT_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
+        .label(left.1, format!("this is {l}"))
+        .label(right.1, format!("this is {r}"))
+        .help("both sides must have the same dimension")
+}
+
+/// HR0201: the operands have different types.
+pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
+    let (l, r) = (left.0, right.0);
+    Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
+        .label(left.1, format!("this is {l}"))
+        .label(right.1, format!("this is {r}"))
+}
+
+/// HR0201: something that has no value.
+pub(crate) fn no_value(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{what} is not a value"))
+}
+
+/// HR0201: floats where the models need finitely many values.
+pub(crate) fn not_finite(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{what} must have finitely many values"))
+        .help("use `bool` or a range such as `0..4`")
+}
+
+/// HR0204
+pub(crate) fn not_constant(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NOT_CONSTANT, span, "a constant is needed here")
+        .help("use a literal or a name declared by `const`")
+}
+
+/// HR0208
+pub(crate) fn constant_cycle(name: &str, span: Span, declared: Span) -> Diagnostic {
+    Diagnostic::error(Code::CONSTANT_CYCLE, span, format!("the constant `{name}` needs its own value"))
+        .label(declared, "declared here")
+}
+
+/// HR0206: arithmetic on constants that has no result.
+pub(crate) fn fold(error: FoldError, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_RANGE, span, error.to_string())
+}
+
+/// HR0206
+pub(crate) fn out_of_range(value: Value, lo: i64, hi: i64, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_RANGE, span, format!("{value} is outside {lo}..{hi}"))
+        .help(format!("a value of {lo}..{hi} is needed"))
+}
+
+/// HR0206
+pub(crate) fn must_be(what: &str, rule: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_RANGE, span, format!("{what} must be {rule}"))
+}
+
+/// HR0207
+pub(crate) fn empty_range(lo: Value, hi: Value, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::EMPTY_RANGE, span, format!("no value lies in {lo}..{hi}"))
+        .help(format!("write `{hi}..{lo}`, the smaller end first"))
+}
+
+/// HR0205
+pub(crate) fn arity(noun: Noun, name: &str, params: &[Param], got: usize, span: Span) -> Diagnostic {
+    let names: Vec<&str> = params.iter().map(|p| p.name.as_str()).collect();
+    counts(noun, name, params.len(), got, span).help(if names.is_empty() {
+        format!("write `{name}`")
+    } else {
+        format!("write `{name}({})`", names.join(", "))
+    })
+}
+
+/// HR0205
+pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span) -> Diagnostic {
+    let s = if want == 1 { "" } else { "s" };
+    Diagnostic::error(
+        Code::ARITY,
+        span,
+        format!("the {noun} `{name}` has {want} argument{s}, but {got} {} given", if got == 1 { "is" } else { "are" }),
+    )
+}

@@ -1,0 +1,494 @@
+//! `Scenario`: what was written, with every name resolved to an id and every expression typed.
+//!
+//! It still has the language's own constructs (requirement patterns, stimuli on edges, parts' frames); lowering turns
+//! them into what the engines execute.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::LocationKind;
+use serde::Serialize;
+
+use crate::{
+    Expr, Type, Value,
+    world::{Action, World},
+};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        pub struct $name(pub u16);
+    )* };
+}
+
+ids! {
+    /// Index into [`Scenario::actors`].
+    ActorId,
+    /// Index into [`Scenario::events`].
+    EventId,
+    /// Index into [`Scenario::agents`].
+    AgentId,
+    /// Index into [`Agent::beliefs`].
+    BeliefId,
+    /// Index into [`Agent::goals`].
+    GoalId,
+    /// Index into [`Scenario::automata`].
+    AutomatonId,
+    /// Index into [`Automaton::locations`].
+    LocationId,
+    /// Index into [`Automaton::clocks`].
+    ClockId,
+    /// Index into [`Scenario::networks`].
+    NetworkId,
+    /// Index into [`Scenario::points`].
+    PointId,
+    /// Index into [`Scenario::crosses`].
+    CrossId,
+    /// Index into [`World::bodies`].
+    BodyId,
+    /// Index into [`World::joints`].
+    JointId,
+    /// Index into [`World::arms`].
+    ArmId,
+    /// Index into [`World::grippers`].
+    GripperId,
+    /// Index into [`World::currents`].
+    CurrentId,
+    /// Index into [`World::signals`].
+    SignalId,
+}
+
+/// A whole scenario, resolved. If there were errors, what they concern is missing from it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Scenario {
+    pub name: String,
+    pub actors: Vec<Actor>,
+    pub events: Vec<Event>,
+    pub agents: Vec<Agent>,
+    pub shared: Vec<Var>,
+    pub automata: Vec<Automaton>,
+    pub networks: Vec<Network>,
+    pub requirements: Vec<Requirement>,
+    pub assumptions: Vec<Assumption>,
+    pub points: Vec<CoverPoint>,
+    pub crosses: Vec<Cross>,
+    pub suites: Vec<Suite>,
+    pub tests: Vec<Test>,
+    pub world: Option<World>,
+    pub system: Option<System>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    Environment,
+    System,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Actor {
+    pub name: String,
+    pub role: Role,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Param {
+    pub name: String,
+    pub ty: Type,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Event {
+    pub name: String,
+    pub params: Vec<Param>,
+    pub from: ActorId,
+    /// Empty: everybody else.
+    pub to: Vec<ActorId>,
+    pub stimulus: Option<Stimulus>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Stimulus {
+    pub samples: Vec<Sample>,
+    pub steps: Vec<StimulusStep>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sample {
+    pub name: String,
+    pub ty: Type,
+    pub lo: Expr,
+    pub hi: Expr,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StimulusStep {
+    Emit { event: EventId, args: Vec<Expr> },
+    Hold(Expr),
+    Act(Action),
+    If { condition: Expr, then: Vec<StimulusStep>, otherwise: Vec<StimulusStep> },
+}
+
+/// What an event must look like; an argument that is `None` may be anything.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventPattern {
+    pub event: EventId,
+    pub args: Vec<Option<Value>>,
+}
+
+// ── Agents ──
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Agent {
+    pub name: String,
+    pub actor: ActorId,
+    pub beliefs: Vec<Belief>,
+    pub goals: Vec<Goal>,
+    pub initial_beliefs: Vec<(BeliefId, Vec<Value>)>,
+    pub initial_goals: Vec<(GoalId, Vec<Value>)>,
+    pub plans: Vec<Plan>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Belief {
+    pub name: String,
+    pub params: Vec<Param>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Goal {
+    pub name: String,
+    pub arity: u16,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    pub label: String,
+    pub trigger: TriggerOn,
+    pub args: Vec<Arg>,
+    pub context: Context,
+    pub body: Vec<Step>,
+    pub vars: Vec<String>,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TriggerOn {
+    Added(BeliefId),
+    Removed(BeliefId),
+    Achieve(GoalId),
+    Failed(GoalId),
+    Test(BeliefId),
+    Perceived(EventId),
+}
+
+/// An argument that is matched.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Arg {
+    Any,
+    /// Bound here, or compared if it has a value already.
+    Var(u16),
+    Expr(Expr),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Context {
+    True,
+    Belief(BeliefId, Vec<Arg>),
+    Not(Box<Context>),
+    And(Vec<Context>),
+    Or(Vec<Context>),
+    Test(Expr),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Step {
+    pub kind: StepKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepKind {
+    Do(EventId, Vec<Expr>),
+    Achieve(GoalId, Vec<Expr>),
+    Spawn(GoalId, Vec<Expr>),
+    Query(BeliefId, Vec<Arg>),
+    Add(BeliefId, Vec<Expr>),
+    Remove(BeliefId, Vec<Arg>),
+    Replace(BeliefId, Vec<Expr>),
+    /// `within` in seconds
+    Await {
+        events: Vec<EventPattern>,
+        within: Option<f64>,
+    },
+    Wait(Expr),
+}
+
+// ── Automata ──
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Var {
+    pub name: String,
+    /// Finite.
+    pub ty: Type,
+    pub init: Value,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Automaton {
+    pub name: String,
+    pub actor: ActorId,
+    pub clocks: Vec<String>,
+    pub vars: Vec<Var>,
+    pub locations: Vec<Location>,
+    pub initial: LocationId,
+    pub edges: Vec<Edge>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Location {
+    pub name: String,
+    pub kind: LocationKind,
+    pub invariant: Vec<ClockConstraint>,
+    pub span: Span,
+}
+
+/// `clock - minus op bound`, the bound in seconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ClockConstraint {
+    pub clock: ClockId,
+    pub minus: Option<ClockId>,
+    pub op: ClockOp,
+    pub bound: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClockOp {
+    Lt,
+    Le,
+    Eq,
+    Ge,
+    Gt,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Edge {
+    pub from: LocationId,
+    pub to: LocationId,
+    /// Finite types.
+    pub selects: Vec<Param>,
+    pub clock_guard: Vec<ClockConstraint>,
+    pub guard: Option<Expr>,
+    pub sync: Sync,
+    pub updates: Vec<Update>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sync {
+    Internal,
+    Send { event: EventId, args: Vec<Expr> },
+    Receive { event: EventId, args: Vec<ReceiveArg> },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReceiveArg {
+    Any,
+    Is(Value),
+    /// The next local of the edge, after the selects.
+    Bind,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Update {
+    Shared(u16, Expr),
+    Own(u16, Expr),
+    Reset(ClockId),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Network {
+    pub name: String,
+    pub automata: Vec<AutomatonId>,
+    pub span: Span,
+}
+
+// ── Requirements ──
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RequirementKind {
+    Safety,
+    Functional,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Requirement {
+    pub name: String,
+    pub kind: RequirementKind,
+    pub title: String,
+    pub pattern: Pattern,
+    /// The formal part.
+    pub text: Span,
+    pub span: Span,
+}
+
+/// Times in seconds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pattern {
+    Causes { trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<f64> },
+    Forbids { trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern> },
+    NeverWhile { events: Vec<EventPattern>, condition: Option<Expr> },
+    Globally(Expr),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Assumption {
+    pub events: Vec<EventPattern>,
+    pub at_most: u32,
+    /// Seconds.
+    pub within: Option<f64>,
+    pub span: Span,
+}
+
+// ── Coverage ──
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CoverPoint {
+    pub name: String,
+    pub count: Vec<EventPattern>,
+    pub bins: Vec<Bin>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bin {
+    pub name: String,
+    pub lo: i64,
+    pub hi: Option<i64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cross {
+    pub name: String,
+    pub points: Vec<PointId>,
+    pub bins: Vec<(String, Condition, Span)>,
+    pub ignore: Vec<Condition>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    In(PointId, u16),
+    Not(Box<Condition>),
+    And(Vec<Condition>),
+    Or(Vec<Condition>),
+}
+
+// ── Suites and tests ──
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Suite {
+    pub name: String,
+    pub method: Method,
+    pub tests: u32,
+    /// Seconds.
+    pub horizon: f64,
+    pub patience: f64,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    Agents { players: Vec<Player>, choose: Vec<Choice>, explore: Explore },
+    Search { network: NetworkId, goals: Vec<SearchGoal> },
+    Random { stimuli: Vec<EventId>, awaits: Vec<EventPattern>, length: (u32, u32), pause: (f64, f64) },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Player {
+    Agent(AgentId),
+    Automaton(AutomatonId),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    pub agent: AgentId,
+    pub belief: BeliefId,
+    pub how: ChoiceKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChoiceKind {
+    One,
+    OnePer(u16),
+    Any,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Explore {
+    Exhaustive,
+    Pairwise,
+    Random,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchGoal {
+    Bins(CrossId),
+    Locations,
+    Edges,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Test {
+    /// As written: `bdi_tests.t017`
+    pub name: String,
+    /// The names before the last, joined.
+    pub suite: String,
+    pub seed: u64,
+    pub method: String,
+    pub because: Vec<String>,
+    pub predicts: Vec<String>,
+    pub steps: Vec<TestStep>,
+    pub span: Span,
+}
+
+/// Times in seconds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestStep {
+    Do { event: EventId, args: Vec<Value>, samples: Vec<Value> },
+    Await { events: Vec<EventPattern>, within: f64 },
+    Wait(f64),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct System {
+    pub actor: ActorId,
+    pub run: String,
+    pub coverage: Vec<String>,
+    /// Seconds.
+    pub limit: f64,
+    pub budget: f64,
+    pub span: Span,
+}

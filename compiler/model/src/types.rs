@@ -1,0 +1,240 @@
+//! Types and dimensions: what a value is, and in which unit a quantity is counted.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// A physical dimension: exponents of metre, kilogram, second and radian.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Dim {
+    pub m: i8,
+    pub kg: i8,
+    pub s: i8,
+    pub rad: i8,
+}
+
+const fn dim(m: i8, kg: i8, s: i8, rad: i8) -> Dim {
+    Dim { m, kg, s, rad }
+}
+
+/// The dimensions that have a name: its type's name, the name in a sentence, its SI unit.
+const NAMED: &[(Dim, &str, &str, &str)] = &[
+    (Dim::NUMBER, "number", "a bare number", ""),
+    (Dim::LENGTH, "length", "a length", "m"),
+    (Dim::TIME, "time", "a time", "s"),
+    (Dim::ANGLE, "angle", "an angle", "rad"),
+    (Dim::MASS, "mass", "a mass", "kg"),
+    (Dim::FORCE, "force", "a force", "N"),
+    (Dim::SPEED, "speed", "a speed", "m/s"),
+    (Dim::ANGULAR_SPEED, "angular_speed", "an angular speed", "rad/s"),
+];
+
+impl Dim {
+    pub const NUMBER: Dim = dim(0, 0, 0, 0);
+    pub const LENGTH: Dim = dim(1, 0, 0, 0);
+    pub const TIME: Dim = dim(0, 0, 1, 0);
+    pub const ANGLE: Dim = dim(0, 0, 0, 1);
+    pub const MASS: Dim = dim(0, 1, 0, 0);
+    pub const FORCE: Dim = dim(1, 1, -2, 0);
+    pub const SPEED: Dim = dim(1, 0, -1, 0);
+    pub const ANGULAR_SPEED: Dim = dim(0, 0, -1, 1);
+
+    /// The dimension of a product.
+    #[must_use]
+    pub fn times(self, other: Dim) -> Dim {
+        let add = i8::saturating_add;
+        dim(add(self.m, other.m), add(self.kg, other.kg), add(self.s, other.s), add(self.rad, other.rad))
+    }
+
+    /// The dimension of a quotient.
+    #[must_use]
+    pub fn per(self, other: Dim) -> Dim {
+        let sub = i8::saturating_sub;
+        dim(sub(self.m, other.m), sub(self.kg, other.kg), sub(self.s, other.s), sub(self.rad, other.rad))
+    }
+
+    /// The SI unit's symbol; `None` for a dimension without a name.
+    #[must_use]
+    pub fn symbol(self) -> Option<&'static str> {
+        NAMED.iter().find(|n| n.0 == self).map(|n| n.3)
+    }
+}
+
+impl fmt::Display for Dim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(named) = NAMED.iter().find(|n| n.0 == *self) {
+            return f.write_str(named.2);
+        }
+        f.write_str("a quantity in")?;
+        for (unit, power) in [("m", self.m), ("kg", self.kg), ("s", self.s), ("rad", self.rad)] {
+            match power {
+                0 => {}
+                1 => write!(f, " {unit}")?,
+                _ => write!(f, " {unit}^{power}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A declared type: of a parameter, variable, belief argument or signal.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Type {
+    Bool,
+    /// An integer of `lo..=hi`.
+    Int {
+        lo: i64,
+        hi: i64,
+    },
+    /// A quantity, in SI units.
+    Float(Dim),
+}
+
+impl Type {
+    #[must_use]
+    pub fn kind(self) -> Kind {
+        match self {
+            Type::Bool => Kind::Bool,
+            Type::Int { .. } => Kind::Int,
+            Type::Float(dim) => Kind::Float(dim),
+        }
+    }
+
+    /// Whether its values can be enumerated.
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        match self {
+            Type::Bool | Type::Int { .. } => true,
+            Type::Float(_) => false,
+        }
+    }
+
+    /// The type of this name that is not a range.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Type> {
+        match name {
+            "bool" => Some(Type::Bool),
+            "float" => Some(Type::Float(Dim::NUMBER)),
+            _ => NAMED.iter().find(|n| n.1 == name).map(|n| Type::Float(n.0)),
+        }
+    }
+
+    /// The names that [`Type::named`] knows.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        ["bool", "float"].into_iter().chain(NAMED.iter().map(|n| n.1))
+    }
+}
+
+/// What an expression yields, as far as the checker can tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    Bool,
+    Int,
+    Float(Dim),
+    /// Not known: a goal's argument, or an expression that already has a diagnostic. It fits everywhere.
+    Unknown,
+}
+
+impl Kind {
+    /// The dimension of a number; a whole number is a bare number.
+    #[must_use]
+    pub fn dim(self) -> Option<Dim> {
+        match self {
+            Kind::Int => Some(Dim::NUMBER),
+            Kind::Float(dim) => Some(dim),
+            Kind::Bool | Kind::Unknown => None,
+        }
+    }
+
+    #[must_use]
+    pub fn is_bare(self) -> bool {
+        self.dim() == Some(Dim::NUMBER)
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Kind::Bool => f.write_str("a bool"),
+            Kind::Int => f.write_str("a whole number"),
+            Kind::Float(dim) => dim.fmt(f),
+            Kind::Unknown => f.write_str("a value"),
+        }
+    }
+}
+
+/// A unit of the language: its symbol, dimension, and the factor to SI as a fraction, so that `55.55 cm` is exactly
+/// `55.55 / 100`.
+pub struct Unit {
+    pub symbol: &'static str,
+    pub dim: Dim,
+    times: f64,
+    per: f64,
+}
+
+impl Unit {
+    /// The number in SI units.
+    #[must_use]
+    pub fn to_si(&self, number: f64) -> f64 {
+        number * self.times / self.per
+    }
+
+    #[must_use]
+    pub fn of(symbol: &str) -> Option<&'static Unit> {
+        UNITS.iter().find(|u| u.symbol == symbol)
+    }
+}
+
+const fn unit(symbol: &'static str, dim: Dim, times: f64, per: f64) -> Unit {
+    Unit { symbol, dim, times, per }
+}
+
+/// All units, by dimension.
+pub const UNITS: &[Unit] = &[
+    unit("s", Dim::TIME, 1.0, 1.0),
+    unit("ms", Dim::TIME, 1.0, 1e3),
+    unit("us", Dim::TIME, 1.0, 1e6),
+    unit("ns", Dim::TIME, 1.0, 1e9),
+    unit("min", Dim::TIME, 60.0, 1.0),
+    unit("h", Dim::TIME, 3600.0, 1.0),
+    unit("m", Dim::LENGTH, 1.0, 1.0),
+    unit("cm", Dim::LENGTH, 1.0, 1e2),
+    unit("mm", Dim::LENGTH, 1.0, 1e3),
+    unit("km", Dim::LENGTH, 1e3, 1.0),
+    unit("rad", Dim::ANGLE, 1.0, 1.0),
+    unit("deg", Dim::ANGLE, std::f64::consts::PI, 180.0),
+    unit("kg", Dim::MASS, 1.0, 1.0),
+    unit("g", Dim::MASS, 1.0, 1e3),
+    unit("N", Dim::FORCE, 1.0, 1.0),
+    unit("m/s", Dim::SPEED, 1.0, 1.0),
+    unit("cm/s", Dim::SPEED, 1.0, 1e2),
+    unit("mm/s", Dim::SPEED, 1.0, 1e3),
+    unit("rad/s", Dim::ANGULAR_SPEED, 1.0, 1.0),
+    unit("deg/s", Dim::ANGULAR_SPEED, std::f64::consts::PI, 180.0),
+    unit("%", Dim::NUMBER, 1.0, 1e2),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_convert_as_fractions() {
+        let si = |n, u: &str| Unit::of(u).unwrap().to_si(n);
+        assert_eq!(si(55.55, "cm"), 0.5555);
+        assert_eq!(si(3.0, "ms"), 0.003);
+        assert_eq!(si(180.0, "deg"), std::f64::consts::PI);
+        assert_eq!(si(2.0, "h"), 7200.0);
+        assert_eq!(si(50.0, "%"), 0.5);
+    }
+
+    #[test]
+    fn a_length_per_time_is_a_speed() {
+        assert_eq!(Dim::LENGTH.per(Dim::TIME), Dim::SPEED);
+        assert_eq!(Dim::MASS.times(Dim::LENGTH).per(Dim::TIME).per(Dim::TIME), Dim::FORCE);
+        assert_eq!(Dim::SPEED.to_string(), "a speed");
+        assert_eq!(Dim::LENGTH.times(Dim::LENGTH).to_string(), "a quantity in m^2");
+    }
+}

@@ -1,0 +1,143 @@
+//! Values, and the folding of constants. The operators mean what they mean at run time; the compiler's tests compare the two.
+
+use std::fmt;
+
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+use serde::Serialize;
+
+use crate::Function;
+
+/// A value of a scalar type; quantities in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    Bool(bool),
+    Int(i64),
+    Float(f64),
+}
+
+/// Why a constant has no value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldError {
+    DivisionByZero,
+    Overflow,
+    /// Operands that do not fit; the type checker has said so.
+    Type,
+}
+
+impl fmt::Display for FoldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            FoldError::DivisionByZero => "this divides by zero",
+            FoldError::Overflow => "this number is too large",
+            FoldError::Type => "the operands do not fit the operator",
+        })
+    }
+}
+
+impl Value {
+    /// The number, whether whole or not.
+    #[must_use]
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Value::Int(n) => Some(n as f64),
+            Value::Float(x) => Some(x),
+            Value::Bool(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Bool(b) => write!(f, "{b}"),
+            Value::Int(n) => write!(f, "{n}"),
+            Value::Float(x) => write!(f, "{x}"),
+        }
+    }
+}
+
+pub(crate) fn unary(op: UnaryOp, v: Value) -> Result<Value, FoldError> {
+    match (op, v) {
+        (UnaryOp::Not, Value::Bool(b)) => Ok(Value::Bool(!b)),
+        (UnaryOp::Neg, Value::Int(n)) => n.checked_neg().map(Value::Int).ok_or(FoldError::Overflow),
+        (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
+        (UnaryOp::Not, Value::Int(_) | Value::Float(_)) | (UnaryOp::Neg, Value::Bool(_)) => {
+            Err(FoldError::Type)
+        }
+    }
+}
+
+pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldError> {
+    match (a, b) {
+        (Value::Bool(a), Value::Bool(b)) => bools(op, a, b),
+        (Value::Int(a), Value::Int(b)) => ints(op, a, b),
+        (Value::Bool(_), _) | (_, Value::Bool(_)) => Err(FoldError::Type),
+        (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
+            let (Some(a), Some(b)) = (a.number(), b.number()) else { return Err(FoldError::Type) };
+            floats(op, a, b)
+        }
+    }
+}
+
+fn bools(op: BinaryOp, a: bool, b: bool) -> Result<Value, FoldError> {
+    match op {
+        BinaryOp::And => Ok(Value::Bool(a && b)),
+        BinaryOp::Or => Ok(Value::Bool(a || b)),
+        BinaryOp::Eq => Ok(Value::Bool(a == b)),
+        BinaryOp::Ne => Ok(Value::Bool(a != b)),
+        BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => Err(FoldError::Type),
+        BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => Err(FoldError::Type),
+    }
+}
+
+fn ints(op: BinaryOp, a: i64, b: i64) -> Result<Value, FoldError> {
+    let int = |n: Option<i64>| n.map(Value::Int).ok_or(FoldError::Overflow);
+    match op {
+        BinaryOp::Add => int(a.checked_add(b)),
+        BinaryOp::Sub => int(a.checked_sub(b)),
+        BinaryOp::Mul => int(a.checked_mul(b)),
+        BinaryOp::Div | BinaryOp::Rem if b == 0 => Err(FoldError::DivisionByZero),
+        BinaryOp::Div => int(a.checked_div(b)),
+        BinaryOp::Rem => int(a.checked_rem(b)),
+        BinaryOp::And | BinaryOp::Or => Err(FoldError::Type),
+        BinaryOp::Eq => Ok(Value::Bool(a == b)),
+        BinaryOp::Ne => Ok(Value::Bool(a != b)),
+        BinaryOp::Lt => Ok(Value::Bool(a < b)),
+        BinaryOp::Le => Ok(Value::Bool(a <= b)),
+        BinaryOp::Gt => Ok(Value::Bool(a > b)),
+        BinaryOp::Ge => Ok(Value::Bool(a >= b)),
+    }
+}
+
+fn floats(op: BinaryOp, a: f64, b: f64) -> Result<Value, FoldError> {
+    Ok(match op {
+        BinaryOp::Add => Value::Float(a + b),
+        BinaryOp::Sub => Value::Float(a - b),
+        BinaryOp::Mul => Value::Float(a * b),
+        BinaryOp::Div | BinaryOp::Rem if b == 0.0 => return Err(FoldError::DivisionByZero),
+        BinaryOp::Div => Value::Float(a / b),
+        BinaryOp::Rem => Value::Float(a % b),
+        BinaryOp::And | BinaryOp::Or => return Err(FoldError::Type),
+        BinaryOp::Eq => Value::Bool(a == b),
+        BinaryOp::Ne => Value::Bool(a != b),
+        BinaryOp::Lt => Value::Bool(a < b),
+        BinaryOp::Le => Value::Bool(a <= b),
+        BinaryOp::Gt => Value::Bool(a > b),
+        BinaryOp::Ge => Value::Bool(a >= b),
+    })
+}
+
+pub(crate) fn call(f: Function, args: &[Value]) -> Result<Value, FoldError> {
+    match (f, args) {
+        (Function::Abs, [Value::Int(n)]) => n.checked_abs().map(Value::Int).ok_or(FoldError::Overflow),
+        (Function::Abs, [Value::Float(x)]) => Ok(Value::Float(x.abs())),
+        (Function::Min, [a, b]) => pick(*a, *b, BinaryOp::Le),
+        (Function::Max, [a, b]) => pick(*a, *b, BinaryOp::Ge),
+        (Function::Abs | Function::Min | Function::Max, _) => Err(FoldError::Type),
+    }
+}
+
+fn pick(a: Value, b: Value, keep_first: BinaryOp) -> Result<Value, FoldError> {
+    Ok(if binary(keep_first, a, b)? == Value::Bool(true) { a } else { b })
+}

@@ -1,0 +1,224 @@
+//! The resolved world: parts instantiated, bodies by id. Poses are still in the coordinates of their part, with its frame.
+
+use hrdsl_source::Span;
+use serde::Serialize;
+
+use crate::{
+    ActorId, BodyId, CurrentId, EventId, EventPattern, Expr, GripperId, JointId, Type,
+};
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct World {
+    /// Seconds.
+    pub step: f64,
+    pub sample: f64,
+    pub gravity: [f64; 3],
+    pub bodies: Vec<Body>,
+    pub joints: Vec<Joint>,
+    pub arms: Vec<Arm>,
+    pub grippers: Vec<Gripper>,
+    pub currents: Vec<Current>,
+    pub signals: Vec<Signal>,
+    pub rules: Vec<Rule>,
+    pub span: Span,
+}
+
+/// Where a part's coordinates lie in the world: turned about z by `yaw`, then moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Frame {
+    pub at: [f64; 3],
+    pub yaw: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    Fixed,
+    Dynamic,
+    Kinematic,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    Box([f64; 3]),
+    Sphere { radius: f64 },
+    Capsule { radius: f64, length: f64 },
+    Cylinder { radius: f64, length: f64 },
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Body {
+    /// `robot.palm`
+    pub name: String,
+    pub motion: Motion,
+    pub shape: Shape,
+    pub frame: Frame,
+    pub position: [f64; 3],
+    pub rotation: [f64; 3],
+    pub mass: f64,
+    pub ghost: bool,
+    pub graspable: bool,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Joint {
+    pub name: String,
+    pub parent: BodyId,
+    pub child: BodyId,
+    pub frame: Frame,
+    pub anchor: [f64; 3],
+    /// Not zero; not yet of length 1.
+    pub axis: [f64; 3],
+    pub lo: f64,
+    pub hi: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Arm {
+    pub name: String,
+    pub joints: Vec<JointId>,
+    pub tip: BodyId,
+    pub tool: [f64; 3],
+    pub speed: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gripper {
+    pub name: String,
+    pub palm: BodyId,
+    pub tool: [f64; 3],
+    pub reach: f64,
+    /// Seconds.
+    pub delay: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Current {
+    pub name: String,
+    pub of: Vec<BodyId>,
+    pub by: GripperId,
+}
+
+/// A body, named outright or as a `current`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyRef {
+    Body(BodyId),
+    Current(CurrentId),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Signal {
+    pub name: String,
+    pub ty: Type,
+    pub to: Vec<ActorId>,
+    /// Over terms and earlier signals.
+    pub value: Expr,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rule {
+    pub on: RuleOn,
+    /// Over terms and signals.
+    pub guard: Option<Expr>,
+    pub event: EventId,
+    pub args: Vec<Expr>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleOn {
+    Event(EventPattern),
+    Closes(GripperId),
+    Opens(GripperId),
+}
+
+/// A place: fixed, or relative to a body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    pub of: Option<BodyRef>,
+    /// `None`: the body's own place.
+    pub offset: Option<Box<[Expr; 3]>>,
+}
+
+/// What a stimulus does to the world.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Action {
+    Move { body: BodyId, to: Point, over: Expr },
+    Look { body: BodyId, at: BodyRef, offset: Expr, distance: Expr, angle: Expr },
+    Grasp(GripperId),
+    LetGo(GripperId),
+}
+
+
+impl Frame {
+    /// A direction of the part, in the world.
+    #[must_use]
+    pub fn turn(self, v: [f64; 3]) -> [f64; 3] {
+        let (sin, cos) = sin_cos(self.yaw);
+        [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]]
+    }
+
+    /// A place of the part, in the world.
+    #[must_use]
+    pub fn place(self, v: [f64; 3]) -> [f64; 3] {
+        let turned = self.turn(v);
+        [self.at[0] + turned[0], self.at[1] + turned[1], self.at[2] + turned[2]]
+    }
+}
+
+/// Sine and cosine by power series on an eighth of a turn: the same bits on every platform, exact at quarter turns.
+#[must_use]
+pub fn sin_cos(angle: f64) -> (f64, f64) {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turns = (angle / quarter).round();
+    let x = angle - turns * quarter;
+    let series = |mut term: f64, mut n: f64| {
+        let mut sum = 0.0;
+        // The 12th term is below 1e-20 for |x| <= π/4.
+        for _ in 0..12 {
+            sum += term;
+            term *= -x * x / ((n + 1.0) * (n + 2.0));
+            n += 2.0;
+        }
+        sum
+    };
+    let (sin, cos) = (series(x, 1.0), series(1.0, 0.0));
+    match turns.rem_euclid(4.0) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        let turned = |k: f64| Frame { at: [1.0, 2.0, 3.0], yaw: k * FRAC_PI_2 }.place([0.5, 0.25, 0.125]);
+        assert_eq!(turned(0.0), [1.5, 2.25, 3.125]);
+        assert_eq!(turned(1.0), [0.75, 2.5, 3.125]);
+        assert_eq!(turned(2.0), [0.5, 1.75, 3.125]);
+        assert_eq!(turned(-1.0), [1.25, 1.5, 3.125]);
+    }
+
+    proptest! {
+        #[test]
+        #[allow(clippy::disallowed_methods, reason = "the platform's own is the oracle here")]
+        fn sin_cos_agree_with_the_platform(angle in -20.0f64..20.0) {
+            let (sin, cos) = sin_cos(angle);
+            prop_assert!((sin - angle.sin()).abs() < 1e-14);
+            prop_assert!((cos - angle.cos()).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The registry of diagnostic codes: HR00xx lexical and syntax, HR01xx names, HR02xx types and units, HR03xx roles,
+//! HR04xx agents, HR05xx automata, HR06xx requirements, HR07xx coverage and suites, HR08xx world and system, HR09xx tests.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+/// A diagnostic code; its page is `spec/codes/HRnnnn.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Code(pub u16);
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "HR{:04}", self.0)
+    }
+}
+
+impl Serialize for Code {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        s.collect_str(self)
+    }
+}
+
+/// One row of the registry.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeInfo {
+    pub code: Code,
+    /// The rule in a few words.
+    pub title: &'static str,
+}
+
+macro_rules! codes {
+    ($($(#[$doc:meta])* $name:ident = $number:literal $title:literal),* $(,)?) => {
+        impl Code {
+            $($(#[$doc])* pub const $name: Code = Code($number);)*
+        }
+
+        /// All codes, in order.
+        pub const REGISTRY: &[CodeInfo] = &[$(CodeInfo { code: Code::$name, title: $title }),*];
+    };
+}
+
+codes! {
+    BAD_CHARACTER = 1 "a character that the language does not use",
+    SYNTAX = 2 "text that does not fit the grammar",
+    UNTERMINATED_STRING = 3 "a string without an end",
+    BAD_NUMBER = 4 "a number that cannot be represented",
+    TOO_DEEP = 5 "nesting beyond the limit",
+    UNKNOWN_NAME = 101 "a name that is not declared",
+    DUPLICATE_NAME = 102 "a name declared twice",
+    WRONG_KIND = 103 "a name of another kind than the place needs",
+    UNKNOWN_MODULE = 104 "a module that does not exist",
+    MISSING_DECLARATION = 105 "a declaration that the scenario needs",
+    TYPE_MISMATCH = 201 "a value of the wrong type",
+    UNKNOWN_UNIT = 202 "a unit that does not exist",
+    UNIT_MISMATCH = 203 "a quantity of the wrong dimension",
+    NOT_CONSTANT = 204 "a constant is needed here",
+    ARITY = 205 "the wrong number of arguments",
+    OUT_OF_RANGE = 206 "a value outside its range",
+    EMPTY_RANGE = 207 "a range without a value",
+    CONSTANT_CYCLE = 208 "a constant that needs its own value",
+    WRONG_ROLE = 301 "an actor in a role it does not have",
+    NOT_ITS_EVENT = 302 "an event made by another actor than it belongs to",
+    NOT_PERCEIVED = 303 "an event that its receiver never perceives",
+    UNBOUND_VARIABLE = 401 "a variable without a value",
+    NO_PLAN = 402 "a goal that no plan achieves",
+    NO_INITIAL_LOCATION = 501 "an automaton without exactly one initial location",
+    BAD_CLOCK_CONSTRAINT = 502 "a clock used other than in a bound",
+    TWO_SENDS = 503 "an edge that sends twice",
+    SAMPLED_EVENT = 504 "an event that depends on a sample, sent by an automaton",
+    BAD_PATTERN = 601 "a requirement that says nothing",
+    OVERLAPPING_BINS = 701 "bins that overlap",
+    BAD_SUITE = 702 "a suite that cannot make tests",
+    BAD_WORLD = 801 "a world that cannot be built",
+    BAD_TEST = 901 "a test that cannot run",
+}

@@ -1,0 +1,11 @@
+//! Where text came from: spans, files, line index, diagnostics and the registry of diagnostic codes.
+
+mod codes;
+mod diagnostic;
+mod files;
+mod span;
+
+pub use codes::{Code, CodeInfo, REGISTRY};
+pub use diagnostic::{Diagnostic, Label, Severity};
+pub use files::{Files, Position, SourceFile};
+pub use span::{FileId, Span};

@@ -1,0 +1,84 @@
+//! The compiler: `.hri` text to [`Program`]. It is pure: text comes in as [`Input`]s, nothing touches files or clocks.
+//!
+//! # Steps
+//! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
+//! 2. [`modules::load`]: the standard modules that are used, and those that they use
+//! 3. [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
+//! 4. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
+//!
+//! [`compile`] does them all.
+
+pub mod lower;
+pub mod modules;
+
+use hrdsl_ir::Program;
+use hrdsl_model::Scenario;
+use hrdsl_source::{Diagnostic, FileId, Files};
+use hrdsl_syntax::ast;
+
+/// A file: its name as it is to be shown, and its text.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
+/// What became of a scenario and its tests.
+#[derive(Clone, Debug)]
+pub struct Compilation {
+    /// The scenario (always [`FileId`] 0), the files of tests, then the modules.
+    pub files: Files,
+    /// By [`FileId`].
+    pub ast: Vec<ast::File>,
+    /// As far as it could be resolved; `None` if the scenario is no text that can be looked at.
+    pub scenario: Option<Scenario>,
+    /// `Some` if and only if there are no errors.
+    pub program: Option<Program>,
+    /// By file, then by place.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Compilation {
+    /// Whether something is wrong with the text.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(Diagnostic::is_error)
+    }
+}
+
+/// Compiles a scenario with the tests that belong to it.
+#[must_use]
+pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
+    let mut files = Files::default();
+    let mut diagnostics = Vec::new();
+    let mut ast = Vec::new();
+    for input in std::iter::once(&scenario).chain(tests) {
+        let id = files.add(input.name, input.text);
+        let (file, issues) = hrdsl_syntax::parse(id, input.text);
+        ast.push(file);
+        diagnostics.extend(issues);
+    }
+    let first_module = ast.len();
+    modules::load(&mut files, &mut ast, &mut diagnostics);
+
+    let tests: Vec<&ast::File> = ast[1..first_module].iter().collect();
+    let used: Vec<&ast::File> = ast[first_module..].iter().collect();
+    diagnostics.extend(unnamed(&ast[0], &diagnostics));
+    let (resolved, issues) = hrdsl_model::resolve(&ast[0], &used, &tests);
+    diagnostics.extend(issues);
+    diagnostics.sort_by_key(|d| (d.span(), d.code));
+
+    let program =
+        (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
+    Compilation { files, ast, scenario: Some(resolved), program, diagnostics }
+}
+
+/// A scenario without its `scenario` line. If something could not be read, that may have been it.
+fn unnamed(file: &ast::File, so_far: &[Diagnostic]) -> Option<Diagnostic> {
+    let unread = so_far.iter().any(|d| d.span().file == FileId(0) && d.is_error());
+    (file.scenario.is_none() && !unread).then(|| {
+        let span = hrdsl_source::Span::new(FileId(0), 0, 0);
+        Diagnostic::error(hrdsl_source::Code::MISSING_DECLARATION, span, "the scenario has no name")
+            .help("begin with `scenario NAME`")
+    })
+}

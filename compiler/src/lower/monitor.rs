@@ -1,0 +1,188 @@
+//! Requirements → monitor automata.
+
+use hrdsl_ir::{
+    EventPattern, Expr, Nanos, Unit,
+    expr::{BinaryOp, Function, UnaryOp},
+    monitor::{Assumption, Edge, Effect, Margin, Monitor, On, RequirementKind, State, StateId},
+    value::nanos,
+    world::SignalId,
+};
+use hrdsl_model::{self as model, ExprKind, Kind, Pattern};
+use hrdsl_source::Files;
+use hrdsl_syntax::ast;
+
+use super::{
+    expr, vocabulary::patterns,
+    world::{Reader, Signals},
+};
+use Effect::{Discharge, Fail, ResetClock, Trigger};
+
+/// The part of a monitor that its pattern decides.
+#[derive(Default)]
+struct Machine {
+    states: Vec<State>,
+    edges: Vec<Edge>,
+    signals: Vec<SignalId>,
+    margin: Option<Margin>,
+}
+
+pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signals<'_>) -> Monitor {
+    let machine = match &r.pattern {
+        Pattern::Causes { trigger, response, within } => {
+            causes(patterns(trigger), patterns(response), within.map(nanos))
+        }
+        Pattern::Forbids { trigger, forbidden, until } => {
+            forbids(patterns(trigger), patterns(forbidden), patterns(until))
+        }
+        Pattern::NeverWhile { events, condition } => never(patterns(events), condition.as_ref(), signals),
+        Pattern::Globally(condition) => globally(condition, signals),
+    };
+    Monitor {
+        name: r.name.clone(),
+        kind: match r.kind {
+            model::RequirementKind::Safety => RequirementKind::Safety,
+            model::RequirementKind::Functional => RequirementKind::Functional,
+        },
+        title: r.title.clone(),
+        text: one_line(files.text(r.text)),
+        signals: machine.signals,
+        states: machine.states,
+        initial: StateId(0),
+        edges: machine.edges,
+        margin: machine.margin,
+        origin: r.span,
+    }
+}
+
+pub(crate) fn assumption(a: &model::Assumption, files: &Files) -> Assumption {
+    Assumption {
+        text: one_line(files.text(a.span)),
+        events: patterns(&a.events),
+        at_most: a.at_most,
+        within: a.within.map(nanos),
+        origin: a.span,
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn state(name: &str, pending: bool, deadline: Option<Nanos>) -> State {
+    State { name: name.to_owned(), pending, deadline }
+}
+
+fn edge(from: u16, to: u16, on: On, guard: Option<Expr>, effects: &[Effect]) -> Edge {
+    Edge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
+}
+
+/// While an answer is due, an event that is both answer and trigger answers.
+fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<Nanos>) -> Machine {
+    let mut edges = vec![
+        edge(0, 1, On::Event(trigger.clone()), None, &[Trigger, ResetClock]),
+        edge(1, 0, On::Event(response), None, &[Discharge]),
+        edge(1, 1, On::Event(trigger), None, &[Trigger]),
+    ];
+    if within.is_some() {
+        edges.push(edge(1, 0, On::Deadline, None, &[Fail]));
+    }
+    let states = vec![state("idle", false, None), state("pending", true, within)];
+    Machine { states, edges, ..Machine::default() }
+}
+
+fn forbids(trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern>) -> Machine {
+    let edges = vec![
+        edge(0, 1, On::Event(trigger.clone()), None, &[Trigger]),
+        edge(1, 1, On::Event(forbidden), None, &[Fail]),
+        edge(1, 0, On::Event(until), None, &[Discharge]),
+        edge(1, 1, On::Event(trigger), None, &[Trigger]),
+    ];
+    let states = vec![state("idle", false, None), state("armed", false, None)];
+    Machine { states, edges, ..Machine::default() }
+}
+
+/// The margin is that of the negated condition, at the events.
+fn never(events: Vec<EventPattern>, condition: Option<&model::Expr>, signals: &mut Signals<'_>) -> Machine {
+    let mut reader = Reader::new(signals);
+    let guard = condition.map(|c| reader.expr(c));
+    let margin = condition.and_then(|c| margin(c, false, &mut reader));
+    let mut edges = vec![edge(0, 0, On::Event(events.clone()), guard, &[Trigger, Fail])];
+    if condition.is_some() {
+        edges.push(edge(0, 0, On::Event(events.clone()), None, &[Trigger]));
+    }
+    Machine {
+        states: vec![state("watch", false, None)],
+        edges,
+        signals: reader.read(),
+        margin: margin.map(|(value, unit)| Margin { value, unit, at: events }),
+    }
+}
+
+/// The first sample triggers; each time the condition ceases to hold is one failure.
+fn globally(condition: &model::Expr, signals: &mut Signals<'_>) -> Machine {
+    let mut reader = Reader::new(signals);
+    let holds = reader.expr(condition);
+    let broken = not(holds.clone());
+    let margin = margin(condition, true, &mut reader);
+    let edges = vec![
+        edge(0, 2, On::Sample, Some(broken.clone()), &[Trigger, Fail]),
+        edge(0, 1, On::Sample, Some(holds.clone()), &[Trigger]),
+        edge(1, 2, On::Sample, Some(broken), &[Fail]),
+        edge(2, 1, On::Sample, Some(holds), &[]),
+    ];
+    let states = vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
+    Machine {
+        states,
+        edges,
+        signals: reader.read(),
+        margin: margin.map(|(value, unit)| Margin { value, unit, at: Vec::new() }),
+    }
+}
+
+fn not(e: Expr) -> Expr {
+    Expr::Unary(UnaryOp::Not, Box::new(e))
+}
+
+/// The robustness of a condition (of its negation, if not `positive`): `a < c` has c − a, a conjunction the least of its
+/// parts, a disjunction the greatest (Fainekos and Pappas, 2009). `None` if some part is not a comparison of numbers, or
+/// the parts' units differ.
+fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Option<(Expr, Unit)> {
+    match &e.kind {
+        ExprKind::Unary(ast::UnaryOp::Not, a) => margin(a, !positive, reader),
+        ExprKind::Binary(op @ (ast::BinaryOp::And | ast::BinaryOp::Or), a, b) => {
+            let ((a, unit), (b, other)) = (margin(a, positive, reader)?, margin(b, positive, reader)?);
+            let least = (*op == ast::BinaryOp::And) == positive;
+            let pick = if least { Function::Min } else { Function::Max };
+            (unit == other).then(|| (Expr::Call(pick, vec![a, b]), unit))
+        }
+        ExprKind::Binary(op, a, b) => {
+            let smaller_first = match op {
+                ast::BinaryOp::Lt | ast::BinaryOp::Le => true,
+                ast::BinaryOp::Gt | ast::BinaryOp::Ge => false,
+                ast::BinaryOp::Add
+                | ast::BinaryOp::Sub
+                | ast::BinaryOp::Mul
+                | ast::BinaryOp::Div
+                | ast::BinaryOp::Rem
+                | ast::BinaryOp::Eq
+                | ast::BinaryOp::Ne
+                | ast::BinaryOp::And
+                | ast::BinaryOp::Or => return None,
+            };
+            let unit = match a.ty {
+                Kind::Float(dim) => expr::unit(dim),
+                Kind::Int | Kind::Bool | Kind::Unknown => Unit::None,
+            };
+            let (a, b) = (reader.expr(a), reader.expr(b));
+            let (small, large) = if smaller_first == positive { (a, b) } else { (b, a) };
+            Some((Expr::binary(BinaryOp::Sub, large, small), unit))
+        }
+        ExprKind::Unary(ast::UnaryOp::Neg, _)
+        | ExprKind::Const(_)
+        | ExprKind::Leaf(_)
+        | ExprKind::Term(_)
+        | ExprKind::If(..)
+        | ExprKind::Call(..)
+        | ExprKind::Error => None,
+    }
+}

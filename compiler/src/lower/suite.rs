@@ -1,0 +1,72 @@
+//! Suites.
+
+use hrdsl_ir::{
+    EventId,
+    bdi::{AgentId, BeliefId},
+    suite::{Choice, ChoiceKind, Explore, Method, PlayerRef, SearchGoal, Suite},
+    ta::AutomatonId,
+    value::nanos,
+};
+use hrdsl_model as model;
+
+use super::vocabulary::patterns;
+
+pub(crate) fn suite(s: &model::Suite) -> Suite {
+    Suite {
+        name: s.name.clone(),
+        method: method(&s.method),
+        tests: s.tests,
+        horizon: nanos(s.horizon),
+        patience: nanos(s.patience),
+        origin: s.span,
+    }
+}
+
+fn method(m: &model::Method) -> Method {
+    match m {
+        model::Method::Agents { players, choose, explore } => Method::Agents {
+            players: players.iter().map(|p| player(*p)).collect(),
+            choose: choose.iter().map(choice).collect(),
+            explore: match explore {
+                model::Explore::Exhaustive => Explore::Exhaustive,
+                model::Explore::Pairwise => Explore::Pairwise,
+                model::Explore::Random => Explore::Random,
+            },
+        },
+        model::Method::Search { network, goals } => {
+            Method::Search { network: network.0, goals: goals.iter().map(|g| goal(*g)).collect() }
+        }
+        model::Method::Random { stimuli, awaits, length, pause } => Method::Random {
+            stimuli: stimuli.iter().map(|e| EventId(e.0)).collect(),
+            awaits: patterns(awaits),
+            length_lo: length.0,
+            length_hi: length.1,
+            pause_lo: nanos(pause.0),
+            pause_hi: nanos(pause.1),
+        },
+    }
+}
+
+fn player(p: model::Player) -> PlayerRef {
+    match p {
+        model::Player::Agent(a) => PlayerRef::Agent(AgentId(a.0)),
+        model::Player::Automaton(a) => PlayerRef::Automaton(AutomatonId(a.0)),
+    }
+}
+
+fn choice(c: &model::Choice) -> Choice {
+    let how = match c.how {
+        model::ChoiceKind::One => ChoiceKind::One,
+        model::ChoiceKind::OnePer(param) => ChoiceKind::OnePer(param),
+        model::ChoiceKind::Any => ChoiceKind::Any,
+    };
+    Choice { agent: AgentId(c.agent.0), belief: BeliefId(c.belief.0), how }
+}
+
+fn goal(g: model::SearchGoal) -> SearchGoal {
+    match g {
+        model::SearchGoal::Bins(cross) => SearchGoal::Bins { cross: cross.0 },
+        model::SearchGoal::Locations => SearchGoal::Locations,
+        model::SearchGoal::Edges => SearchGoal::Edges,
+    }
+}

@@ -1,0 +1,43 @@
+//! Tests.
+
+use hrdsl_ir::{
+    EventId,
+    test::{Provenance, Test, TestStep},
+    value::nanos,
+};
+use hrdsl_model as model;
+
+use super::{expr, vocabulary::patterns};
+
+/// The test's full name starts with the scenario's, whether it was written or not.
+pub(crate) fn test(t: &model::Test, scenario: &str) -> Test {
+    let prefix = format!("{scenario}.");
+    let name = t.name.strip_prefix(&prefix).unwrap_or(&t.name);
+    let suite = name.rsplit_once('.').map_or("", |(suite, _)| suite);
+    Test {
+        name: format!("{prefix}{name}"),
+        seed: t.seed,
+        provenance: Provenance {
+            suite: suite.to_owned(),
+            method: t.method.clone(),
+            because: t.because.clone(),
+            predicts: t.predicts.clone(),
+        },
+        steps: t.steps.iter().map(step).collect(),
+        origin: t.span,
+    }
+}
+
+fn step(s: &model::TestStep) -> TestStep {
+    match s {
+        model::TestStep::Do { event, args, samples } => TestStep::Do {
+            event: EventId(event.0),
+            args: expr::values(args),
+            samples: expr::values(samples),
+        },
+        model::TestStep::Await { events, within } => {
+            TestStep::Await { events: patterns(events), within: nanos(*within) }
+        }
+        model::TestStep::Wait(time) => TestStep::Wait { time: nanos(*time) },
+    }
+}

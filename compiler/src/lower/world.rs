@@ -1,0 +1,263 @@
+//! The world: bodies in world coordinates, signals over primitive measurements, rules.
+
+use hrdsl_ir::{
+    self as ir, ActorId, EventId, Expr, Span, Type, Unit,
+    value::nanos,
+    world::{
+        Arm, Axis, Body, BodyId, BodyRef, Current, CurrentId, Gripper, GripperId, Joint, JointId, Motion, Point,
+        Rule, RuleOn, Shape, Signal, SignalId, Term, World, WorldAction,
+    },
+};
+use hrdsl_model::{self as model, Leaf, world as from};
+use hrdsl_source::Files;
+
+use super::{
+    expr::{self, Source},
+    vocabulary::pattern,
+};
+
+pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
+    let graspable: Vec<BodyId> =
+        (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
+    let gripper = |g: &from::Gripper| Gripper {
+        name: g.name.clone(),
+        palm: BodyId(g.palm.0),
+        tool: g.tool,
+        reach: g.reach,
+        delay: nanos(g.delay),
+        holds: graspable.clone(),
+    };
+    let arm = |a: &from::Arm| Arm {
+        name: a.name.clone(),
+        joints: a.joints.iter().map(|j| JointId(j.0)).collect(),
+        tip: BodyId(a.tip.0),
+        tool: a.tool,
+        max_speed: a.speed,
+    };
+    let current = |c: &from::Current| Current {
+        name: c.name.clone(),
+        of: c.of.iter().map(|b| BodyId(b.0)).collect(),
+        by: GripperId(c.by.0),
+    };
+    World {
+        step: nanos(w.step),
+        sample: nanos(w.sample),
+        gravity: w.gravity,
+        bodies: w.bodies.iter().map(body).collect(),
+        joints: w.joints.iter().map(joint).collect(),
+        arms: w.arms.iter().map(arm).collect(),
+        grippers: w.grippers.iter().map(gripper).collect(),
+        currents: w.currents.iter().map(current).collect(),
+        rules: w.rules.iter().map(|r| rule(r, signals)).collect(),
+        origin: w.span,
+    }
+}
+
+/// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.
+fn body(b: &from::Body) -> Body {
+    let [roll, pitch, yaw] = b.rotation;
+    Body {
+        name: b.name.clone(),
+        motion: match b.motion {
+            from::Motion::Fixed => Motion::Fixed,
+            from::Motion::Dynamic => Motion::Dynamic,
+            from::Motion::Kinematic => Motion::Kinematic,
+        },
+        shape: match b.shape {
+            from::Shape::Box(size) => Shape::Box { size },
+            from::Shape::Sphere { radius } => Shape::Sphere { radius },
+            from::Shape::Capsule { radius, length } => Shape::Capsule { radius, length },
+            from::Shape::Cylinder { radius, length } => Shape::Cylinder { radius, length },
+        },
+        position: b.frame.place(b.position),
+        rotation: [roll, pitch, yaw + b.frame.yaw],
+        mass: b.mass,
+        ghost: b.ghost,
+    }
+}
+
+fn joint(j: &from::Joint) -> Joint {
+    let axis = j.frame.turn(j.axis);
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    Joint {
+        name: j.name.clone(),
+        parent: BodyId(j.parent.0),
+        child: BodyId(j.child.0),
+        anchor: j.frame.place(j.anchor),
+        axis: axis.map(|x| x / length),
+        lo: j.lo,
+        hi: j.hi,
+    }
+}
+
+fn rule(r: &from::Rule, signals: &mut Signals<'_>) -> Rule {
+    let mut reader = Reader { signals, read: Vec::new(), recorded: false };
+    let guard = r.guard.as_ref().map(|g| reader.expr(g));
+    let args = r.args.iter().map(|a| reader.expr(a)).collect();
+    Rule {
+        on: match &r.on {
+            from::RuleOn::Event(p) => RuleOn::Event(pattern(p)),
+            from::RuleOn::Closes(g) => RuleOn::Closes(GripperId(g.0)),
+            from::RuleOn::Opens(g) => RuleOn::Opens(GripperId(g.0)),
+        },
+        guard,
+        event: EventId(r.event.0),
+        args,
+        signals: reader.read(),
+        origin: r.span,
+    }
+}
+
+pub(crate) fn action(a: &from::Action) -> WorldAction {
+    match a {
+        from::Action::Move { body, to, over } => {
+            WorldAction::Move { body: BodyId(body.0), to: point(to), over: expr::local(over) }
+        }
+        from::Action::Look { body, at, offset, distance, angle } => WorldAction::Look {
+            body: BodyId(body.0),
+            at: body_ref(*at),
+            offset: expr::local(offset),
+            distance: expr::local(distance),
+            angle: expr::local(angle),
+        },
+        from::Action::Grasp(g) => WorldAction::Grasp { gripper: GripperId(g.0) },
+        from::Action::LetGo(g) => WorldAction::LetGo { gripper: GripperId(g.0) },
+    }
+}
+
+fn point(p: &from::Point) -> Point {
+    let offset = match &p.offset {
+        Some(offset) => offset.each_ref().map(expr::local),
+        None => [Expr::float(0.0), Expr::float(0.0), Expr::float(0.0)],
+    };
+    Point { of: p.of.map(body_ref), offset }
+}
+
+fn body_ref(b: from::BodyRef) -> BodyRef {
+    match b {
+        from::BodyRef::Body(b) => BodyRef::Body(BodyId(b.0)),
+        from::BodyRef::Current(c) => BodyRef::Current(CurrentId(c.0)),
+    }
+}
+
+fn term(t: model::Term) -> Term {
+    match t {
+        model::Term::Distance(a, b) => Term::Distance(body_ref(a), body_ref(b)),
+        model::Term::Range(a, b) => Term::Range(body_ref(a), body_ref(b)),
+        model::Term::Angle(a, b) => Term::Angle(body_ref(a), body_ref(b)),
+        model::Term::Visible(a, b) => Term::Visible(body_ref(a), body_ref(b)),
+        model::Term::Coordinate(b, 0) => Term::Coordinate(body_ref(b), Axis::X),
+        model::Term::Coordinate(b, 1) => Term::Coordinate(body_ref(b), Axis::Y),
+        model::Term::Coordinate(b, _) => Term::Coordinate(body_ref(b), Axis::Z),
+        model::Term::Holds(g, b) => Term::Holds(GripperId(g.0), body_ref(b)),
+        model::Term::HoldsAny(g) => Term::HoldsAny(GripperId(g.0)),
+        model::Term::JointSpeed(a) => Term::JointSpeed(ir::world::ArmId(a.0)),
+        model::Term::Speed(b) => Term::Speed(body_ref(b)),
+    }
+}
+
+fn type_of(t: Term) -> Type {
+    match t {
+        Term::Distance(..) | Term::Range(..) | Term::Coordinate(..) => Type::Float(Unit::Metre),
+        Term::Angle(..) => Type::Float(Unit::Radian),
+        Term::Visible(..) | Term::Holds(..) | Term::HoldsAny(_) => Type::Bool,
+        Term::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
+        Term::Speed(_) => Type::Float(Unit::MetrePerSecond),
+    }
+}
+
+/// All signals: those declared, with their ids, then one for each other term that a requirement or rule reads.
+pub(crate) struct Signals<'a> {
+    list: Vec<Signal>,
+    files: &'a Files,
+}
+
+impl<'a> Signals<'a> {
+    pub fn declared(scenario: &model::Scenario, files: &'a Files) -> Self {
+        let declared = scenario.world.as_ref().map_or(&[][..], |w| w.signals.as_slice());
+        let signal = |s: &from::Signal| {
+            let mut terms = Vec::new();
+            let value = measured(&s.value, declared, &mut terms);
+            let to = s.to.iter().map(|a| ActorId(a.0)).collect();
+            let (name, ty) = (s.name.clone(), expr::ty(s.ty));
+            Signal { name, ty, to, terms, value, recorded: false, origin: s.span }
+        };
+        Self { list: declared.iter().map(signal).collect(), files }
+    }
+
+    pub fn into_list(self) -> Vec<Signal> {
+        self.list
+    }
+
+    /// The signal that measures just this term; a new one, named by its text, if there is none.
+    fn of_term(&mut self, term: Term, span: Span) -> usize {
+        let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
+        if let Some(at) = self.list.iter().position(is) {
+            return at;
+        }
+        let name = self.files.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+        self.list.push(Signal {
+            name,
+            ty: type_of(term),
+            to: Vec::new(),
+            terms: vec![term],
+            value: Expr::Var(0),
+            recorded: false,
+            origin: span,
+        });
+        self.list.len() - 1
+    }
+}
+
+/// An expression over primitive terms; an earlier signal stands for its own expression.
+fn measured(e: &model::Expr, declared: &[from::Signal], terms: &mut Vec<Term>) -> Expr {
+    expr::expr(e, &mut |source| match source {
+        Source::Term(t, _) => {
+            let t = term(t);
+            let at = terms.iter().position(|known| *known == t).unwrap_or_else(|| {
+                terms.push(t);
+                terms.len() - 1
+            });
+            Expr::Var(u16::try_from(at).unwrap_or(u16::MAX))
+        }
+        Source::Leaf(Leaf::Signal(id)) => measured(&declared[usize::from(id.0)].value, declared, terms),
+        // INVARIANT: signals have no other variables.
+        Source::Leaf(Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_)) => Expr::bool(false),
+    })
+}
+
+/// Collects the signals that a requirement or rule reads: `Expr::Var(i)` is the i-th.
+pub(crate) struct Reader<'s, 'a> {
+    signals: &'s mut Signals<'a>,
+    read: Vec<SignalId>,
+    recorded: bool,
+}
+
+impl<'s, 'a> Reader<'s, 'a> {
+    /// For a requirement: what it reads is recorded.
+    pub fn new(signals: &'s mut Signals<'a>) -> Self {
+        Self { signals, read: Vec::new(), recorded: true }
+    }
+
+    pub fn expr(&mut self, e: &model::Expr) -> Expr {
+        expr::expr(e, &mut |source| {
+            let at = match source {
+                Source::Term(t, e) => self.signals.of_term(term(t), e.span),
+                Source::Leaf(Leaf::Signal(id)) => usize::from(id.0),
+                // INVARIANT: requirements and rules have no other variables.
+                Source::Leaf(Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_)) => return Expr::bool(false),
+            };
+            self.signals.list[at].recorded |= self.recorded;
+            let id = SignalId(u16::try_from(at).unwrap_or(u16::MAX));
+            let var = self.read.iter().position(|known| *known == id).unwrap_or_else(|| {
+                self.read.push(id);
+                self.read.len() - 1
+            });
+            Expr::Var(u16::try_from(var).unwrap_or(u16::MAX))
+        })
+    }
+
+    pub fn read(self) -> Vec<SignalId> {
+        self.read
+    }
+}

@@ -1,0 +1,6 @@
+//! Generates the parser from `src/grammar.lalrpop`.
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    lalrpop::Configuration::new().emit_rerun_directives(true).use_cargo_dir_conventions().process()?;
+    Ok(())
+}

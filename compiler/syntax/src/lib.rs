@@ -1,0 +1,28 @@
+//! Text to tokens to AST. Nothing outside this crate sees logos or lalrpop.
+//!
+//! # Steps
+//!
+//! 1. [`token`]: the vocabulary, one table of all keywords.
+//! 2. `lex`: text to tokens; comments go, doc comments are kept aside, numbers take their units.
+//! 3. `outline`: tokens to one run for each declaration; missing closing braces are put in.
+//! 4. `grammar`: one run to one AST node (LALRPOP).
+//! 5. [`parse()`]: drives the above; a run that does not fit is read again member by member (`recover`), and what does
+//!    not fit then costs that member alone (`report` says why).
+
+pub mod ast;
+mod context;
+mod lex;
+mod outline;
+mod parse;
+mod recover;
+mod report;
+pub mod token;
+
+#[allow(clippy::all, clippy::pedantic, unused, missing_docs)]
+mod grammar {
+    lalrpop_util::lalrpop_mod!(generated, "/grammar.rs");
+    pub use generated::UnitParser;
+}
+
+pub use outline::{MAX_HEIGHT, MAX_NESTING};
+pub use parse::{MAX_BYTES, parse};

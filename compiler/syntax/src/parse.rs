@@ -1,0 +1,126 @@
+//! Text to AST: lexes, splits into declarations, reads each, and hands the broken ones to recovery.
+
+use std::cell::Cell;
+
+use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use lalrpop_util::ParseError;
+
+use crate::ast::{File, Item, ItemKind};
+use crate::context::{Context, Unit};
+use crate::grammar::UnitParser;
+use crate::lex::{Lexed, lex};
+use crate::outline::{Chunk, Outline, Sort, outline};
+use crate::recover::Recovery;
+use crate::report::{Fault, report};
+use crate::token::{Kind, Lexeme};
+
+/// The largest file that is read.
+pub const MAX_BYTES: usize = 64 << 20;
+
+/// Reads a file. Whatever the text, the result is a tree; where the text does not fit, there is a diagnostic, in the
+/// order of the text.
+#[must_use]
+pub fn parse(file: FileId, text: &str) -> (File, Vec<Diagnostic>) {
+    if text.len() > MAX_BYTES {
+        let message = format!("the file is larger than {} MiB", MAX_BYTES >> 20);
+        let diagnostic = Diagnostic::error(Code::TOO_DEEP, Span::new(file, 0, 0), message)
+            .help("divide it into several files");
+        return (File::default(), vec![diagnostic]);
+    }
+    let Lexed { tokens, docs, mut diagnostics } = lex(file, text);
+    let Outline { tokens, chunks } = outline(file, text, &tokens, &mut diagnostics);
+    let mut cx = Context { file, text, docs: &docs, diagnostics };
+    let mut result = File { scenario: None, items: Vec::with_capacity(chunks.len()) };
+    for chunk in chunks {
+        declaration(&mut cx, &tokens, chunk, &mut result);
+    }
+    cx.diagnostics.sort_by_key(|d| (d.span().start, d.span().end));
+    (result, cx.diagnostics)
+}
+
+fn declaration(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
+    let run = &tokens[chunk.start..chunk.end];
+    let [first, .., last] = run else {
+        return short(cx, tokens, chunk, result);
+    };
+    if first.kind == Kind::Scenario && chunk.sort == Sort::Item {
+        return scenario(cx, tokens, chunk, result);
+    }
+    let kind = match chunk.sort {
+        Sort::Item => item(cx, tokens, chunk),
+        Sort::Unread => ItemKind::Error,
+    };
+    let span = cx.span(first.start, last.end);
+    result.items.push(Item { doc: cx.doc(first.start), kind, span });
+}
+
+/// A declaration of one token: always broken.
+fn short(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
+    let Some(only) = tokens[chunk.start..chunk.end].first() else { return };
+    if only.kind == Kind::Scenario && chunk.sort == Sort::Item {
+        return scenario(cx, tokens, chunk, result);
+    }
+    let kind = match chunk.sort {
+        Sort::Item => item(cx, tokens, chunk),
+        Sort::Unread => ItemKind::Error,
+    };
+    result.items.push(Item { doc: cx.doc(only.start), kind, span: cx.span_of(*only) });
+}
+
+fn item(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk) -> ItemKind {
+    match run(cx, None, &tokens[chunk.start..chunk.end]) {
+        Ok(Unit::Item(kind)) => kind,
+        Ok(_) => ItemKind::Error,
+        Err(fault) => Recovery { cx, tokens }.item(chunk.start..chunk.end, &fault),
+    }
+}
+
+/// `scenario name`: the first line, once.
+fn scenario(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
+    let run = &tokens[chunk.start..chunk.end];
+    let name = run.get(1).filter(|t| t.kind.is_name());
+    if name.is_none() || run.len() > 2 {
+        let expected = if name.is_some() { "END" } else { "IDENT" };
+        let fault = Fault { at: if name.is_some() { 2 } else { 1 }, expected: vec![expected.to_owned()] };
+        report(cx, &fault, run, tokens.get(chunk.end).copied());
+    }
+    let Some(name) = name else { return };
+    if result.scenario.is_some() || !result.items.is_empty() {
+        let span = cx.span_of(run[0]);
+        cx.diagnostics.push(
+            Diagnostic::error(Code::SYNTAX, span, "`scenario` comes first, and once")
+                .help("begin the file with this line, or take it away"),
+        );
+    }
+    let name = cx.name(*name);
+    result.scenario.get_or_insert(name);
+}
+
+/// Reads one run of tokens as what `start` says: `None` a declaration. Of a run that does not fit, no diagnostics stay.
+pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Result<Unit, Fault> {
+    let said = cx.diagnostics.len();
+    let (from, to) = (tokens.first().map_or(0, |t| t.start), tokens.last().map_or(0, |t| t.end));
+    let taken = Cell::new(0_usize);
+    let stream = start
+        .map(|kind| Lexeme::synthetic(kind, from))
+        .into_iter()
+        .chain(tokens.iter().copied())
+        .chain(std::iter::once(Lexeme::synthetic(Kind::End, to)))
+        .map(|t| {
+            taken.set(taken.get() + 1);
+            (t.start, t, t.end)
+        });
+    let error = match UnitParser::new().parse(cx, stream) {
+        Ok(unit) => return Ok(*unit),
+        Err(error) => error,
+    };
+    cx.diagnostics.truncate(said);
+    // The token that does not fit is the last that was taken.
+    let at = taken.get().saturating_sub(1 + usize::from(start.is_some()));
+    let expected = match error {
+        ParseError::UnrecognizedToken { expected, .. } | ParseError::UnrecognizedEof { expected, .. } => expected,
+        ParseError::InvalidToken { .. } | ParseError::ExtraToken { .. } => Vec::new(),
+        ParseError::User { error } => match error {},
+    };
+    Err(Fault { at, expected })
+}

@@ -1,0 +1,425 @@
+//! A declaration that does not fit, read again member by member, so that a fault costs one member or one step.
+//!
+//! The grammar itself says where a member ends: the first token that cannot belong to it. Only after a broken member the
+//! next one is looked for by its keyword.
+
+use std::ops::Range;
+
+use hrdsl_source::{Code, Diagnostic, Span};
+
+use crate::ast::{
+    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind, Expr, ExprKind,
+    ItemKind, Plan, Step, StepKind, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind, SystemMember,
+    SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
+};
+use crate::context::{Context, Unit};
+use crate::parse::run;
+use crate::report::{Fault, found, report};
+use crate::token::{Kind, Lexeme};
+
+pub(crate) struct Recovery<'a, 't> {
+    pub cx: &'a mut Context<'t>,
+    /// All tokens of the file.
+    pub tokens: &'a [Lexeme],
+}
+
+/// What the members of a block are.
+trait Member: Sized {
+    const START: Kind;
+    fn of(unit: Unit) -> Option<Self>;
+    fn broken(doc: String, span: Span) -> Self;
+    /// A token that starts a member of this sort.
+    fn starts(kind: Kind) -> bool;
+}
+
+impl Recovery<'_, '_> {
+    /// Reads what can be read of a declaration; there is a diagnostic afterwards.
+    pub(crate) fn item(&mut self, range: Range<usize>, fault: &Fault) -> ItemKind {
+        let said = self.cx.diagnostics.len();
+        let erroneous = self.tokens[range.clone()].iter().any(|t| t.kind == Kind::Error);
+        let kind = match self.block(&range) {
+            Some((open, close)) => self.with_block(range.start, open, close),
+            None => {
+                self.report(fault, range.clone());
+                self.without_block(&range, fault)
+            }
+        };
+        if self.cx.diagnostics.len() == said && !erroneous {
+            self.report(fault, range);
+        }
+        kind
+    }
+
+    fn report(&mut self, fault: &Fault, range: Range<usize>) {
+        let next = self.tokens.get(range.end).copied();
+        report(self.cx, fault, &self.tokens[range], next);
+    }
+
+    /// From the first token to the last that is not a semicolon.
+    fn span(&self, range: &Range<usize>) -> Span {
+        let mut run = &self.tokens[range.clone()];
+        while let [rest @ .., last] = run
+            && last.kind == Kind::Semi
+        {
+            run = rest;
+        }
+        let (start, end) = (run.first().map_or(0, |t| t.start), run.last().map_or(0, |t| t.end));
+        self.cx.span(start, end)
+    }
+
+    // ── Declarations ──
+
+    /// The braces of the declaration's block.
+    fn block(&self, range: &Range<usize>) -> Option<(usize, usize)> {
+        let open = range.clone().find(|i| self.tokens[*i].kind == Kind::LBrace)?;
+        let close = range.end - 1;
+        (self.tokens[close].kind == Kind::RBrace && close > open).then_some((open, close))
+    }
+
+    fn with_block(&mut self, start: usize, open: usize, close: usize) -> ItemKind {
+        let shell = self.shell(start, &[(open, close)]);
+        let mut kind = match run(self.cx, None, &shell) {
+            Ok(Unit::Item(kind)) => kind,
+            Ok(_) => ItemKind::Error,
+            Err(fault) => {
+                report(self.cx, &fault, &shell, None);
+                ItemKind::Error
+            }
+        };
+        let block = open + 1..close;
+        // INVARIANT: a header that could not be read still has its members looked at, for their faults.
+        match (&mut kind, self.tokens[start].kind) {
+            (ItemKind::Stimulus(item), _) => item.body = self.members(block),
+            (ItemKind::Agent(item), _) => item.members = self.members(block),
+            (ItemKind::Automaton(item), _) => item.members = self.members(block),
+            (ItemKind::Cross(item), _) => item.members = self.members(block),
+            (ItemKind::Suite(item), _) => item.members = self.members(block),
+            (ItemKind::Test(item), _) => item.members = self.members(block),
+            (ItemKind::Part(item), _) => item.members = self.members(block),
+            (ItemKind::World(item), _) => item.members = self.members(block),
+            (ItemKind::System(item), _) => item.members = self.members(block),
+            (_, Kind::Stimulus) => drop(self.members::<StimulusStep>(block)),
+            (_, Kind::Agent) => drop(self.members::<AgentMember>(block)),
+            (_, Kind::Automaton) => drop(self.members::<AutomatonMember>(block)),
+            (_, Kind::Cross) => drop(self.members::<CrossMember>(block)),
+            (_, Kind::Suite) => drop(self.members::<SuiteMember>(block)),
+            (_, Kind::Test) => drop(self.members::<TestMember>(block)),
+            (_, Kind::Part | Kind::World) => drop(self.members::<WorldMember>(block)),
+            (_, Kind::System) => drop(self.members::<SystemMember>(block)),
+            (_, _) => {}
+        }
+        kind
+    }
+
+    /// The tokens from `start`, with these blocks, up to the last, empty.
+    fn shell(&self, start: usize, blocks: &[(usize, usize)]) -> Vec<Lexeme> {
+        let mut shell = Vec::new();
+        let mut from = start;
+        for (open, close) in blocks {
+            shell.extend_from_slice(&self.tokens[from..=*open]);
+            from = *close;
+        }
+        shell.extend(self.tokens.get(from));
+        shell
+    }
+
+    /// Keeps the name of a constant or a requirement whose rest is broken: it is used elsewhere.
+    fn without_block(&mut self, range: &Range<usize>, fault: &Fault) -> ItemKind {
+        let run_ = &self.tokens[range.clone()];
+        match run_ {
+            [head, name, assign, ..]
+                if head.kind == Kind::Const && name.kind.is_name() && assign.kind == Kind::Assign =>
+            {
+                let span = self.span(&(range.start + 3..range.end));
+                let value = Expr { kind: ExprKind::Error, span };
+                ItemKind::Const { name: self.cx.name(*name), value }
+            }
+            [head, name, kind, rest @ ..]
+                if head.kind == Kind::Require && name.kind.is_name() && kind.kind.is_name() =>
+            {
+                let header = 3 + usize::from(rest.first().is_some_and(|t| t.kind == Kind::Str));
+                if fault.at < header {
+                    return ItemKind::Error;
+                }
+                let mut shell = run_[..header].to_vec();
+                let span = self.span(&(range.start + header..range.end));
+                shell.push(Lexeme { end: span.end, ..Lexeme::synthetic(Kind::Error, span.start) });
+                match run(self.cx, None, &shell) {
+                    Ok(Unit::Item(kind)) => kind,
+                    Ok(_) | Err(_) => ItemKind::Error,
+                }
+            }
+            _ => ItemKind::Error,
+        }
+    }
+
+    // ── Members ──
+
+    fn members<M: Member>(&mut self, block: Range<usize>) -> Vec<M> {
+        let mut members = Vec::new();
+        let mut at = block.start;
+        while at < block.end {
+            if self.tokens[at].kind == Kind::Semi {
+                at += 1;
+                continue;
+            }
+            match run(self.cx, Some(M::START), &self.tokens[at..block.end]) {
+                Ok(unit) => {
+                    members.extend(M::of(unit));
+                    break;
+                }
+                Err(fault) => {
+                    let stop = at + fault.at;
+                    if stop > at
+                        && fault.complete()
+                        && let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop])
+                    {
+                        members.extend(M::of(unit));
+                        at = stop;
+                        continue;
+                    }
+                    let next = self.resume::<M>(at, stop, block.end);
+                    members.push(self.broken::<M>(at..next, block.end, &fault));
+                    at = next;
+                }
+            }
+        }
+        members
+    }
+
+    /// Where the next member starts after a broken one that starts at `at` and stops to fit at `stop`.
+    fn resume<M: Member>(&self, at: usize, stop: usize, end: usize) -> usize {
+        let mut depth = 0_usize;
+        for i in at..end {
+            let token = self.tokens[i];
+            if i > at && i >= stop && depth == 0 && M::starts(token.kind) {
+                let before = self.tokens[i - 1].kind;
+                let keyword = !matches!(token.kind, Kind::Ident) && before != Kind::RBrace;
+                let fresh = token.first && !before.continues();
+                let apart = keyword && before.ends_operand() && before.class().is_none();
+                if before == Kind::Semi || before == Kind::RBrace || fresh || apart {
+                    return i;
+                }
+            }
+            match token.kind {
+                Kind::LBrace => depth += 1,
+                Kind::RBrace => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+        }
+        end
+    }
+
+    /// A member that does not fit: of plans and conditions the blocks are read, of others nothing.
+    fn broken<M: Member>(&mut self, range: Range<usize>, end: usize, fault: &Fault) -> M {
+        let said = self.cx.diagnostics.len();
+        let unit = match self.tokens[range.start].kind {
+            Kind::Plan if M::START == Kind::StartAgentMember => self.plan(&range),
+            Kind::If if M::START == Kind::StartStimulusStep => self.condition(&range),
+            _ => None,
+        };
+        if self.cx.diagnostics.len() == said {
+            let next = self.tokens.get(range.end.max(end.min(range.start + fault.at))).copied();
+            self.report_member::<M>(fault, &range, next);
+        }
+        unit.and_then(M::of).unwrap_or_else(|| {
+            let start = self.tokens[range.start].start;
+            M::broken(self.cx.doc(start), self.span(&range))
+        })
+    }
+
+    fn report_member<M: Member>(&mut self, fault: &Fault, range: &Range<usize>, next: Option<Lexeme>) {
+        let said = self.cx.diagnostics.len();
+        report(self.cx, fault, &self.tokens[range.clone()], next);
+        let start = self.tokens[range.start];
+        let helpless = self.cx.diagnostics.get(said).is_some_and(|d| d.help.is_none());
+        let line = self.tokens[..range.start].iter().rposition(|t| t.first).unwrap_or(0);
+        let acts = self.tokens[line..range.start].iter().any(|t| t.kind == Kind::Do);
+        if M::START == Kind::StartAutomatonMember && acts && fault.at == 0 && !start.first && helpless {
+            self.cx.diagnostics[said].help = Some("put `;` between two actions of an edge".to_owned());
+        }
+    }
+
+    /// The brace pairs of a run that are in no other.
+    fn pairs(&self, range: &Range<usize>) -> Vec<(usize, usize)> {
+        let mut pairs = Vec::new();
+        let mut depth = 0_usize;
+        let mut open = range.start;
+        for i in range.clone() {
+            match self.tokens[i].kind {
+                Kind::LBrace => {
+                    if depth == 0 {
+                        open = i;
+                    }
+                    depth += 1;
+                }
+                Kind::RBrace if depth > 0 => {
+                    depth -= 1;
+                    if depth == 0 {
+                        pairs.push((open, i));
+                    }
+                }
+                _ => {}
+            }
+        }
+        pairs
+    }
+
+    /// A plan whose header or body is broken.
+    fn plan(&mut self, range: &Range<usize>) -> Option<Unit> {
+        let (open, close) = self.pairs(range).pop()?;
+        let shell = self.shell(range.start, &[(open, close)]);
+        let unit = run(self.cx, Some(Kind::StartAgentMember), &shell);
+        let unit = match unit {
+            Ok(unit) => Some(unit),
+            Err(fault) => {
+                report(self.cx, &fault, &shell, None);
+                None
+            }
+        };
+        let body = self.steps(open + 1..close);
+        match unit {
+            Some(Unit::AgentMember(AgentMember { doc, kind: AgentMemberKind::Plan(plan), .. })) => {
+                let kind = AgentMemberKind::Plan(Plan { body, ..plan });
+                let span = self.span(&(range.start..close + 1));
+                Some(Unit::AgentMember(AgentMember { doc, kind, span }))
+            }
+            _ => None,
+        }
+    }
+
+    /// The steps of a plan's body, one by one.
+    fn steps(&mut self, block: Range<usize>) -> Vec<Step> {
+        let mut steps = Vec::new();
+        let mut at = block.start;
+        while at < block.end {
+            if self.tokens[at].kind == Kind::Semi {
+                at = self.empty_step(&block, at);
+                continue;
+            }
+            let end = self.end_of_step(at, block.end);
+            match run(self.cx, Some(Kind::StartStep), &self.tokens[at..end]) {
+                Ok(Unit::Step(step)) => steps.push(step),
+                Ok(_) => {}
+                Err(fault) => {
+                    let stop = at + fault.at;
+                    if stop > at
+                        && fault.complete()
+                        && let Ok(Unit::Step(step)) = run(self.cx, Some(Kind::StartStep), &self.tokens[at..stop])
+                    {
+                        steps.push(step);
+                        self.missing_semicolon(stop);
+                        at = stop;
+                        continue;
+                    }
+                    self.report(&fault, at..end);
+                    steps.push(Step { kind: StepKind::Error, span: self.span(&(at..end)) });
+                }
+            }
+            at = end + 1;
+        }
+        steps
+    }
+
+    /// Two semicolons, or one before the first step.
+    fn empty_step(&mut self, block: &Range<usize>, at: usize) -> usize {
+        let span = self.cx.span_of(self.tokens[at]);
+        self.cx.diagnostics.push(
+            Diagnostic::error(Code::SYNTAX, span, "expected a step such as `!goal` or `await`, found `;`")
+                .help("take the `;` away"),
+        );
+        (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
+    }
+
+    fn missing_semicolon(&mut self, at: usize) {
+        let token = self.tokens[at];
+        if token.kind == Kind::Error {
+            return;
+        }
+        let message = format!("expected `;`, found {}", found(token, self.cx.text));
+        let span = self.cx.span_of(token);
+        let before = self.tokens[at - 1];
+        let end = self.cx.span(before.end.saturating_sub(1), before.end);
+        self.cx.diagnostics.push(
+            Diagnostic::error(Code::SYNTAX, span, message)
+                .label(end, "the step before ends here")
+                .help("put `;` between two steps of a plan"),
+        );
+    }
+
+    fn end_of_step(&self, at: usize, end: usize) -> usize {
+        let mut depth = 0_usize;
+        for i in at..end {
+            match self.tokens[i].kind {
+                Kind::LBrace => depth += 1,
+                Kind::RBrace => depth = depth.saturating_sub(1),
+                Kind::Semi if depth == 0 => return i,
+                _ => {}
+            }
+        }
+        end
+    }
+
+    /// `if c { … } else { … }` in a stimulus.
+    fn condition(&mut self, range: &Range<usize>) -> Option<Unit> {
+        let pairs = self.pairs(range);
+        let last = *pairs.last()?;
+        // The condition may have braces itself: the blocks are the last pair, and with `else` the last two.
+        let both = pairs.len() >= 2 && self.tokens[last.0 - 1].kind == Kind::Else;
+        let blocks = if both { &pairs[pairs.len() - 2..] } else { &pairs[pairs.len() - 1..] };
+        let shell = self.shell(range.start, blocks);
+        let unit = match run(self.cx, Some(Kind::StartStimulusStep), &shell) {
+            Ok(unit) => Some(unit),
+            Err(fault) => {
+                report(self.cx, &fault, &shell, None);
+                None
+            }
+        };
+        let mut bodies: Vec<Vec<StimulusStep>> =
+            blocks.iter().map(|(open, close)| self.members(open + 1..*close)).collect();
+        let second = if both { bodies.pop().unwrap_or_default() } else { Vec::new() };
+        let first = bodies.pop().unwrap_or_default();
+        match unit {
+            Some(Unit::StimulusStep(StimulusStep { kind: StimulusStepKind::If { condition, .. }, .. })) => {
+                let kind = StimulusStepKind::If { condition, then: first, otherwise: second };
+                let span = self.span(&(range.start..last.1 + 1));
+                Some(Unit::StimulusStep(StimulusStep { kind, span }))
+            }
+            _ => None,
+        }
+    }
+}
+
+macro_rules! members {
+    ($($member:ident $kinds:ident $start:ident [$($doc:ident)?] $($names:ident)? : $($kind:ident)|*;)*) => {$(
+        impl Member for $member {
+            const START: Kind = Kind::$start;
+
+            fn of(unit: Unit) -> Option<Self> {
+                if let Unit::$member(member) = unit { Some(member) } else { None }
+            }
+
+            fn broken(_doc: String, span: Span) -> Self {
+                Self { $($doc: _doc,)? kind: $kinds::Error, span }
+            }
+
+            fn starts(kind: Kind) -> bool {
+                matches!(kind, $(Kind::$kind)|*) $(|| kind.$names())?
+            }
+        }
+    )*};
+}
+
+members! {
+    StimulusStep StimulusStepKind StartStimulusStep [] is_name: Emit | If;
+    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Goal | Plan;
+    AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
+        Clock | Var | Init | Committed | Urgent | Location | From;
+    CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore;
+    SuiteMember SuiteMemberKind StartSuiteMember []:
+        Choose | Explore | Tests | Horizon | Patience | Reach | Stimuli | Await | Length | Pause;
+    TestMember TestMemberKind StartTestMember [] is_name: Await;
+    WorldMember WorldMemberKind StartWorldMember [doc]:
+        Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On;
+    SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget;
+}

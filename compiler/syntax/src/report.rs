@@ -1,0 +1,281 @@
+//! What did not fit, in words: what was found, what was expected there, and what to type.
+
+use hrdsl_source::{Code, Diagnostic};
+
+use crate::context::Context;
+use crate::token::{Class, KEYWORDS, Kind, Lexeme};
+
+/// Where a run stopped fitting the grammar.
+#[derive(Clone, Debug)]
+pub(crate) struct Fault {
+    /// The index of the token; that of the end, if it was the end that did not fit.
+    pub at: usize,
+    /// The terminals that would have fitted, as the grammar calls them.
+    pub expected: Vec<String>,
+}
+
+impl Fault {
+    /// The run could have ended here: what is before is complete.
+    pub(crate) fn complete(&self) -> bool {
+        self.has("END")
+    }
+
+    fn has(&self, terminal: &str) -> bool {
+        self.expected.iter().any(|e| e.trim_matches('"') == terminal)
+    }
+}
+
+/// The diagnostic of a fault in these tokens, which `next` follows; none if the lexer has made it.
+pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], next: Option<Lexeme>) {
+    let token = tokens.get(fault.at).copied().or(next);
+    if token.is_some_and(|t| t.kind == Kind::Error) {
+        return;
+    }
+    let end = tokens.last().map_or(0, |t| t.end);
+    let span = token.map_or(cx.span(end, end), |t| cx.span_of(t));
+    let what = token.map_or("the end of the file".to_owned(), |t| found(t, cx.text));
+    let wanted = describe(&fault.expected);
+    let message = if wanted.is_empty() {
+        format!("{what} does not fit here")
+    } else {
+        format!("expected {}, found {what}", any_of(&wanted))
+    };
+    let mut diagnostic = Diagnostic::error(Code::SYNTAX, span, message);
+    if let Some(open) = unclosed(fault, tokens) {
+        diagnostic = diagnostic.label(cx.span_of(open), "this `(` is not closed");
+    }
+    let before = fault.at.checked_sub(1).and_then(|i| tokens.get(i)).copied();
+    if let Some(help) = token.and_then(|t| help(cx, fault, before, t)) {
+        diagnostic = diagnostic.help(help);
+    }
+    cx.diagnostics.push(diagnostic);
+}
+
+/// A token as a message names it.
+pub(crate) fn found(token: Lexeme, text: &str) -> String {
+    match token.kind {
+        Kind::Str => "a text".to_owned(),
+        Kind::RBrace => "`}`".to_owned(),
+        _ => format!("`{}`", text.get(token.start as usize..token.end as usize).unwrap_or("")),
+    }
+}
+
+/// `a`, `a or b`, `a, b or c`; five at most.
+fn any_of(words: &[String]) -> String {
+    let words = &words[..words.len().min(5)];
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} or {last}", most.join(", ")),
+    }
+}
+
+// ── What was expected ──
+
+const OPERATORS: &[&str] =
+    &["+", "-", "*", "/", "%", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or"];
+
+/// Terminals that together mean one thing to a person. The first that fits is taken.
+struct Group {
+    /// All of these are expected,
+    if_all: &'static [&'static str],
+    /// and none of these.
+    if_none: &'static [&'static str],
+    /// Names, and with them all soft keywords, are part of it.
+    names: bool,
+    /// The others that are part of it.
+    covers: &'static [&'static str],
+    says: &'static [&'static str],
+}
+
+const EXPRESSION: &[&str] =
+    &["INT", "FLOAT", "QUANTITY", "(", "-", "!", "!!", "not", "true", "false", "_", "if", "ERROR", "."];
+
+const GROUPS: &[Group] = &[
+    Group {
+        if_all: &["-+", "await"],
+        if_none: &[],
+        names: true,
+        covers: &["!", "!!", "?", "+", "-", "-+", "await", "wait"],
+        says: &["a step such as `!goal` or `await`"],
+    },
+    Group {
+        if_all: &["emit", "hold", "sample"],
+        if_none: &[],
+        names: true,
+        covers: &["emit", "hold", "sample", "if"],
+        says: &["a step such as `emit` or `hold`"],
+    },
+    Group {
+        if_all: &["seed", "because", "await"],
+        if_none: &[],
+        names: true,
+        covers: &["seed", "method", "because", "predicts", "await", "wait"],
+        says: &["a step such as `await` or `wait`"],
+    },
+    Group {
+        if_all: &["gravity", "joint"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &[
+            "step", "sample", "gravity", "part", "body", "joint", "arm", "gripper", "current", "signal", "on",
+        ],
+        says: &["a member of the world such as `body` or `signal`"],
+    },
+    Group {
+        if_all: &["explore", "horizon"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &[
+            "choose", "explore", "tests", "horizon", "patience", "reach", "stimuli", "await", "length", "pause",
+        ],
+        says: &["a line such as `choose` or `tests`"],
+    },
+    Group {
+        if_all: &["ORIGIN", "clock"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &["ORIGIN", "clock", "var", "init", "urgent", "committed", "location"],
+        says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
+    },
+    Group {
+        if_all: &["after", "never", "IDENT", "("],
+        if_none: &["-"],
+        names: true,
+        covers: &["ERROR", "(", "after", "never", "globally"],
+        says: &["a pattern such as `after` or `globally`"],
+    },
+    Group { if_all: &["INT", "-", "not"], if_none: &[], names: true, covers: EXPRESSION, says: &["an expression"] },
+    Group { if_all: &["INT", "-", "("], if_none: &[], names: true, covers: EXPRESSION, says: &["a value"] },
+    Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "("], says: &[] },
+];
+
+fn describe(expected: &[String]) -> Vec<String> {
+    let mut left: Vec<&str> = expected.iter().map(|e| e.trim_matches('"')).collect();
+    let mut said = Vec::new();
+    for group in GROUPS {
+        let fits = group.if_all.iter().all(|t| left.contains(t)) && !group.if_none.iter().any(|t| left.contains(t));
+        if fits {
+            said.extend(group.says.iter().map(|s| (*s).to_owned()));
+            left.retain(|t| !group.covers.contains(t) && !(group.names && is_name(t)));
+        }
+    }
+    if left.contains(&"IDENT") {
+        said.push("a name".to_owned());
+        left.retain(|t| !is_name(t));
+    }
+    if left.iter().filter(|t| OPERATORS.contains(t)).count() >= 2 {
+        said.push("an operator".to_owned());
+        left.retain(|t| !OPERATORS.contains(t));
+    }
+    said.extend(left.iter().filter_map(|t| terminal(t)));
+    said
+}
+
+fn is_name(terminal: &str) -> bool {
+    terminal == "IDENT" || keyword(terminal) == Some(Class::Soft)
+}
+
+fn keyword(word: &str) -> Option<Class> {
+    KEYWORDS.iter().find(|k| k.word == word).map(|k| k.class)
+}
+
+fn terminal(name: &str) -> Option<String> {
+    Some(match name {
+        "ORIGIN" => "a name".to_owned(),
+        "INT" => "a number".to_owned(),
+        "STRING" => "a text in quotes".to_owned(),
+        "END" => "the end of this".to_owned(),
+        "ERROR" | "FLOAT" | "QUANTITY" => return None,
+        start if start.starts_with("START_") => return None,
+        other => format!("`{other}`"),
+    })
+}
+
+// ── What to type ──
+
+/// The parenthesis that should have been closed where the fault is.
+fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
+    if !fault.has(")") {
+        return None;
+    }
+    let mut depth = 0_usize;
+    for token in tokens[..fault.at.min(tokens.len())].iter().rev() {
+        match token.kind {
+            Kind::RParen => depth += 1,
+            Kind::LParen if depth == 0 => return Some(*token),
+            Kind::LParen => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+fn help(cx: &Context<'_>, fault: &Fault, before: Option<Lexeme>, token: Lexeme) -> Option<String> {
+    let word = cx.text_of(token);
+    if token.kind == Kind::Ident {
+        let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
+        if let Some(near) = nearest(word, keywords) {
+            return Some(format!("did you mean `{near}`?"));
+        }
+    }
+    if matches!(token.kind.class(), Some(Class::Head | Class::Hard)) && fault.has("IDENT") && !fault.has("INT") {
+        return Some(format!("`{word}` is a keyword and cannot be a name; `{word}_` can"));
+    }
+    let before = before.map(|t| t.kind);
+    let text = match token.kind {
+        Kind::Assign if fault.has("==") => "to compare, write `==`",
+        Kind::Eq if fault.has("=") => "to set a value, write `=`",
+        Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge if fault.has("&&") => {
+            "comparisons cannot be chained: write `a < b && b < c`"
+        }
+        Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
+        Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
+        Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
+        Kind::If if before == Some(Kind::Else) => "write `else { if … }`",
+        Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
+        Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",
+        Kind::DotDot if matches!(before, Some(Kind::Int | Kind::Quantity)) && !fault.has("IDENT") => {
+            "a range does not fit here"
+        }
+        Kind::Arrow if fault.has("IDENT") => "an edge is written `a -> b`, and both are names",
+        _ => return None,
+    };
+    Some(text.to_owned())
+}
+
+/// The word that differs from `word` by a slip of the fingers, if there is one.
+pub(crate) fn nearest<'w>(word: &str, words: impl Iterator<Item = &'w str>) -> Option<&'w str> {
+    let allowed = |other: &str| match other.len() {
+        0..=2 => 0,
+        3 | 4 => 1,
+        _ => 2,
+    };
+    words
+        .map(|other| (distance(word, other), other))
+        .filter(|(d, other)| (1..=allowed(other)).contains(d))
+        .min()
+        .map(|(_, other)| other)
+}
+
+/// How many letters have to be put in, taken out, replaced or swapped with the next (optimal string alignment).
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    if a.len().abs_diff(b.len()) > 2 {
+        return usize::MAX;
+    }
+    let mut before = vec![0; b.len() + 1];
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i; b.len() + 1];
+        for j in 1..=b.len() {
+            let cost = usize::from(a[i - 1] != b[j - 1]);
+            row[j] = (last[j] + 1).min(row[j - 1] + 1).min(last[j - 1] + cost);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                row[j] = row[j].min(before[j - 2] + 1);
+            }
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}

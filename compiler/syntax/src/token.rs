@@ -1,0 +1,344 @@
+//! The tokens of the language and the registry of its keywords.
+
+use logos::Logos;
+
+/// What a keyword reserves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Starts a declaration; never a name.
+    Head,
+    /// Holds the text together; never a name.
+    Hard,
+    /// A keyword in its own place, a name everywhere else.
+    Soft,
+}
+
+/// One row of the registry.
+#[derive(Clone, Copy, Debug)]
+pub struct Keyword {
+    pub word: &'static str,
+    pub class: Class,
+    /// The construct that it belongs to, as the specification's table shows it.
+    pub place: &'static str,
+    pub(crate) kind: Kind,
+}
+
+macro_rules! tokens {
+    ($($kind:ident $word:tt $class:ident $place:literal),* $(,)?) => {
+        /// The kind of a token.
+        #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
+        #[logos(skip r"[ \t\r]+")]
+        pub(crate) enum Kind {
+            $(#[token($word)] $kind,)*
+
+            #[token("_", priority = 9)] Any,
+            #[regex("[A-Za-z_][A-Za-z0-9_]*", priority = 2)] Ident,
+            #[regex("[0-9]+")] Int,
+            #[regex(r"[0-9]+\.[0-9]+([eE][+-]?[0-9]+)?")] Float,
+            #[regex(r#""([^"\\\n]|\\[^\n])*""#)] Str,
+
+            #[token("(")] LParen,
+            #[token(")")] RParen,
+            #[token("{")] LBrace,
+            #[token("}")] RBrace,
+            #[token(",")] Comma,
+            #[token(";")] Semi,
+            #[token(":")] Colon,
+            #[token(".")] Dot,
+            #[token("..")] DotDot,
+            #[token("@")] At_,
+            #[token("?")] Question,
+            #[token("|")] Pipe,
+            #[token("->")] Arrow,
+            #[token("=")] Assign,
+            #[token("+=")] PlusAssign,
+            #[token("-=")] MinusAssign,
+            #[token("-+")] MinusPlus,
+            #[token("!")] Bang,
+            #[token("!!")] BangBang,
+            #[token("&&")] AndAnd,
+            #[token("||")] OrOr,
+            #[token("==")] Eq,
+            #[token("!=")] Ne,
+            #[token("<")] Lt,
+            #[token("<=")] Le,
+            #[token(">")] Gt,
+            #[token(">=")] Ge,
+            #[token("+")] Plus,
+            #[token("-")] Minus,
+            #[token("*")] Star,
+            #[token("/")] Slash,
+            #[token("%")] Percent,
+
+            // Seen by the lexer only.
+            #[token("\n")] Newline,
+            #[regex(r"//[^\n]*", allow_greedy = true)] Comment,
+            #[regex(r#""([^"\\\n]|\\[^\n])*\\?"#)] OpenStr,
+
+            // Made by the lexer.
+            /// A number and its unit.
+            Quantity,
+            /// A name before `->`.
+            From,
+            /// Text that could not be read; the diagnostic has been made.
+            Error,
+
+            // Made by the driver: what is to be read, and its end.
+            StartStimulusStep,
+            StartAgentMember,
+            StartStep,
+            StartAutomatonMember,
+            StartCrossMember,
+            StartSuiteMember,
+            StartTestMember,
+            StartWorldMember,
+            StartSystemMember,
+            End,
+        }
+
+        /// All keywords, by where they belong.
+        pub const KEYWORDS: &[Keyword] = &[
+            $(Keyword { word: $word, class: Class::$class, place: $place, kind: Kind::$kind }),*
+        ];
+
+        impl Kind {
+            /// What a keyword reserves; `None` for every other token.
+            pub(crate) fn class(self) -> Option<Class> {
+                match self {
+                    $(Self::$kind => Some(Class::$class),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+tokens! {
+    Scenario "scenario" Head "the first line of a scenario",
+    Use "use" Head "declaration",
+    Actor "actor" Head "declaration",
+    Const "const" Head "declaration",
+    Event "event" Head "declaration",
+    Stimulus "stimulus" Head "declaration",
+    Agent "agent" Head "declaration",
+    Var "var" Head "declaration, automaton",
+    Automaton "automaton" Head "declaration",
+    Network "network" Head "declaration",
+    Require "require" Head "declaration",
+    Assume "assume" Head "declaration",
+    Cover "cover" Head "declaration",
+    Cross "cross" Head "declaration",
+    Suite "suite" Head "declaration",
+    Part "part" Head "declaration, world",
+    World "world" Head "declaration",
+    System "system" Head "declaration, actor",
+    Test "test" Head "declaration",
+
+    True "true" Hard "expression",
+    False "false" Hard "expression",
+    Not "not" Hard "expression",
+    And "and" Hard "expression",
+    Or "or" Hard "expression, list of events",
+    If "if" Hard "expression, stimulus",
+    Else "else" Hard "expression, stimulus",
+    FromWord "from" Hard "event",
+    To "to" Hard "event, signal",
+    By "by" Hard "stimulus, suite, world",
+    In "in" Hard "stimulus, world",
+    Plays "plays" Hard "agent, automaton",
+    When "when" Hard "plan, edge, cross, world",
+    On "on" Hard "plan, edge, world",
+    Do "do" Hard "edge",
+    Emit "emit" Hard "stimulus, world",
+    Within "within" Hard "plan, requirement, test",
+    Await "await" Hard "plan, suite, test",
+
+    Sample "sample" Soft "stimulus, world",
+    Hold "hold" Soft "stimulus",
+    Belief "belief" Soft "agent",
+    Goal "goal" Soft "agent",
+    Plan "plan" Soft "agent",
+    Wait "wait" Soft "plan, test",
+    Clock "clock" Soft "automaton",
+    Init "init" Soft "automaton",
+    Committed "committed" Soft "automaton",
+    Urgent "urgent" Soft "automaton",
+    Location "location" Soft "automaton, suite",
+    Invariant "invariant" Soft "automaton",
+    Select "select" Soft "edge",
+    After "after" Soft "requirement",
+    Causes "causes" Soft "requirement",
+    Forbids "forbids" Soft "requirement",
+    Until "until" Soft "requirement",
+    Never "never" Soft "requirement",
+    While "while" Soft "requirement",
+    Globally "globally" Soft "requirement",
+    At "at" Soft "assumption, world",
+    Most "most" Soft "assumption",
+    Count "count" Soft "coverage",
+    Bins "bins" Soft "coverage",
+    Bin "bin" Soft "cross, suite",
+    Ignore "ignore" Soft "cross",
+    Agents "agents" Soft "suite",
+    Search "search" Soft "suite",
+    Random "random" Soft "suite",
+    Of "of" Soft "suite",
+    Choose "choose" Soft "suite",
+    One "one" Soft "suite",
+    AnyWord "any" Soft "suite",
+    Per "per" Soft "suite",
+    Explore "explore" Soft "suite",
+    Tests "tests" Soft "suite",
+    Horizon "horizon" Soft "suite",
+    Patience "patience" Soft "suite",
+    Reach "reach" Soft "suite, world",
+    Each "each" Soft "suite",
+    Edge "edge" Soft "suite",
+    Stimuli "stimuli" Soft "suite",
+    Length "length" Soft "suite",
+    Pause "pause" Soft "suite",
+    Seed "seed" Soft "test",
+    Method "method" Soft "test",
+    Because "because" Soft "test",
+    Predicts "predicts" Soft "test",
+    With "with" Soft "test",
+    Step "step" Soft "world",
+    Gravity "gravity" Soft "world",
+    Body "body" Soft "world",
+    Joint "joint" Soft "world",
+    Arm "arm" Soft "world",
+    Gripper "gripper" Soft "world",
+    Current "current" Soft "world",
+    Signal "signal" Soft "world",
+    Close "close" Soft "world",
+    Open "open" Soft "world",
+    Rotated "rotated" Soft "world",
+    Mass "mass" Soft "world",
+    Ghost "ghost" Soft "world",
+    Graspable "graspable" Soft "world",
+    Axis "axis" Soft "world",
+    Limits "limits" Soft "world",
+    Tip "tip" Soft "world",
+    Tool "tool" Soft "world",
+    Speed "speed" Soft "world",
+    Delay "delay" Soft "world",
+    Run "run" Soft "system",
+    Coverage "coverage" Soft "system",
+    Limit "limit" Soft "system",
+    Budget "budget" Soft "system",
+}
+
+impl Kind {
+    /// Starts a declaration.
+    pub(crate) fn is_head(self) -> bool {
+        self.class() == Some(Class::Head)
+    }
+
+    /// May be a name somewhere: an identifier or a soft keyword.
+    pub(crate) fn is_name(self) -> bool {
+        self == Self::Ident || self.class() == Some(Class::Soft)
+    }
+
+    /// An identifier or any keyword.
+    pub(crate) fn is_word(self) -> bool {
+        self == Self::Ident || self.class().is_some()
+    }
+
+    /// May be the first token of an operand.
+    pub(crate) fn starts_operand(self) -> bool {
+        self.is_name()
+            || matches!(
+                self,
+                Self::Int
+                    | Self::Float
+                    | Self::Quantity
+                    | Self::LParen
+                    | Self::Any
+                    | Self::True
+                    | Self::False
+                    | Self::Error
+            )
+    }
+
+    /// May be the last token of an operand, or of a member.
+    pub(crate) fn ends_operand(self) -> bool {
+        self.is_name()
+            || matches!(
+                self,
+                Self::Int
+                    | Self::Float
+                    | Self::Quantity
+                    | Self::Str
+                    | Self::RParen
+                    | Self::RBrace
+                    | Self::Any
+                    | Self::True
+                    | Self::False
+                    | Self::Error
+            )
+    }
+
+    /// An operator of expressions; each adds a level to the tree.
+    pub(crate) fn is_operator(self) -> bool {
+        matches!(
+            self,
+            Self::Plus
+                | Self::Minus
+                | Self::Star
+                | Self::Slash
+                | Self::Percent
+                | Self::Bang
+                | Self::BangBang
+                | Self::Not
+                | Self::And
+                | Self::Or
+                | Self::AndAnd
+                | Self::OrOr
+                | Self::Eq
+                | Self::Ne
+                | Self::Lt
+                | Self::Le
+                | Self::Gt
+                | Self::Ge
+                | Self::If
+        )
+    }
+
+    /// What follows belongs to what is before, also on a new line.
+    pub(crate) fn continues(self) -> bool {
+        (self.is_operator() && !matches!(self, Self::Bang | Self::BangBang | Self::If))
+            || matches!(
+                self,
+                Self::Comma
+                    | Self::Colon
+                    | Self::Dot
+                    | Self::DotDot
+                    | Self::LParen
+                    | Self::Pipe
+                    | Self::Arrow
+                    | Self::Assign
+                    | Self::PlusAssign
+                    | Self::MinusAssign
+                    | Self::At_
+            )
+    }
+}
+
+/// One token where it was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Lexeme {
+    pub kind: Kind,
+    /// The first of its line.
+    pub first: bool,
+    pub start: u32,
+    pub end: u32,
+    /// Where the unit of a quantity starts.
+    pub unit: u32,
+}
+
+impl Lexeme {
+    /// A token without text, made by the driver.
+    pub(crate) fn synthetic(kind: Kind, at: u32) -> Self {
+        Self { kind, first: false, start: at, end: at, unit: at }
+    }
+}

@@ -1,0 +1,244 @@
+//! Tests of counting, sorting, merging, naming and assuming.
+
+use hrdsl_ir::{
+    ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Value,
+    coverage::{self as ir, Bin, Condition, Cross, CrossBin, Point, PointId},
+    monitor::Assumption,
+    world::SignalId,
+};
+use hrdsl_trace::{Observer, Step, Trace, What};
+use proptest::prelude::*;
+
+use crate::{Collector, Coverage, Merge, Mismatch, assume::Assumptions, hits_from_numbers, name};
+
+const ASK: u16 = 0;
+const DECIDED: u16 = 1;
+
+fn pattern(event: u16, args: &[ArgPattern]) -> EventPattern {
+    EventPattern { event: EventId(event), args: args.to_vec() }
+}
+
+fn bin(name: &str, lo: i64, hi: Option<i64>) -> Bin {
+    Bin { name: name.to_owned(), lo, hi }
+}
+
+fn point(name: &str, count: Vec<EventPattern>, bins: Vec<Bin>) -> Point {
+    Point { name: name.to_owned(), count, bins, origin: Span::default() }
+}
+
+fn cross_bin(name: &str, when: Condition) -> CrossBin {
+    CrossBin { name: name.to_owned(), when, origin: Span::default() }
+}
+
+fn is(point: u16, bin: u16) -> Condition {
+    Condition::In { point: PointId(point), bin }
+}
+
+/// Points `legs` and `ready`, and their cross.
+fn declared() -> ir::Coverage {
+    let legs = vec![bin("none", 0, Some(0)), bin("some", 1, None), bin("four", 4, None)];
+    let ready = vec![bin("no", 0, Some(0)), bin("some", 1, None)];
+    let yes = ArgPattern::Is(Value::Bool(true));
+    ir::Coverage {
+        points: vec![
+            point("legs", vec![pattern(ASK, &[])], legs),
+            point("ready", vec![pattern(DECIDED, &[yes]), pattern(DECIDED, &[ArgPattern::Any])], ready),
+        ],
+        crosses: vec![Cross {
+            name: "human_robot".to_owned(),
+            points: vec![PointId(0), PointId(1)],
+            bins: vec![
+                cross_bin("4 legs, ready at least once", Condition::And(vec![is(0, 2), is(1, 1)])),
+                cross_bin("idle", Condition::Not(Box::new(Condition::Or(vec![is(0, 1), is(1, 1)])))),
+                cross_bin("some", is(0, 1)),
+            ],
+            ignore: vec![Condition::And(vec![is(0, 0), is(1, 1)])],
+            origin: Span::default(),
+        }],
+    }
+}
+
+fn program(coverage: ir::Coverage, assumptions: Vec<Assumption>) -> Program {
+    let event = |name: &str| Event {
+        name: name.to_owned(),
+        params: Vec::new(),
+        from: ActorId(0),
+        to: Vec::new(),
+        stimulus: None,
+        origin: Span::default(),
+    };
+    Program { events: vec![event("ask"), event("decided")], coverage, assumptions, ..Program::default() }
+}
+
+fn ask(time: Nanos) -> Step {
+    Step { time, what: What::Event { event: EventId(ASK), args: Vec::new() } }
+}
+
+fn decided(time: Nanos, yes: bool) -> Step {
+    Step { time, what: What::Event { event: EventId(DECIDED), args: vec![Value::Bool(yes)] } }
+}
+
+fn collect(steps: Vec<Step>) -> Coverage {
+    let mut collector = Collector::new(&program(declared(), Vec::new()));
+    Trace { steps, end: 100 }.replay(&mut collector);
+    collector.finish()
+}
+
+#[test]
+fn events_are_counted_once_per_point() {
+    let unknown = Step { time: 2, what: What::Event { event: EventId(9), args: Vec::new() } };
+    let sample = Step { time: 2, what: What::Sample { signal: SignalId(0), value: Value::Bool(true) } };
+    let covered = collect(vec![ask(0), decided(1, true), decided(1, false), unknown, sample]);
+    assert_eq!(covered.numbers, [1, 2]);
+    assert_eq!(covered.points, [vec![1], vec![1]]);
+    assert_eq!(covered.crosses, [vec![2]]);
+}
+
+#[test]
+fn a_test_can_fall_into_several_bins() {
+    let covered = collect(vec![ask(0), ask(1), ask(2), ask(3), decided(4, true)]);
+    assert_eq!(covered.points, [vec![1, 2], vec![1]]);
+    let names = covered.cross_names(&declared());
+    assert_eq!(names, ["human_robot.\"4 legs, ready at least once\"", "human_robot.some"]);
+}
+
+#[test]
+fn what_is_ignored_hits_no_cross_bin() {
+    assert_eq!(collect(vec![decided(0, true)]).crosses, [Vec::<u16>::new()]);
+    assert_eq!(collect(Vec::new()).cross_names(&declared()), ["human_robot.idle"]);
+}
+
+#[test]
+fn a_merge_counts_tests_and_names_the_first() {
+    let declared = declared();
+    let mut merge = Merge::new(&declared);
+    merge.add("t2", &hits_from_numbers(&declared, &[1, 0])).unwrap();
+    merge.add("t1", &hits_from_numbers(&declared, &[4, 2])).unwrap();
+    let rows = merge.rows(&declared);
+    let row = |name: &str| {
+        let found = rows.iter().find(|r| r.name == name).unwrap();
+        (found.cross, found.count.tests, found.count.first.as_deref())
+    };
+    assert_eq!(row("legs.none"), (false, 0, None));
+    assert_eq!(row("legs.some"), (false, 2, Some("t1")));
+    assert_eq!(row("human_robot.some"), (true, 2, Some("t1")));
+    assert_eq!(row("human_robot.idle"), (true, 0, None));
+    assert_eq!((merge.tests, merge.crosses_hit(), rows.len()), (2, (2, 3), 8));
+}
+
+#[test]
+fn foreign_coverage_is_refused_whole() {
+    let declared = declared();
+    let mut merge = Merge::new(&declared);
+    let mut foreign = hits_from_numbers(&declared, &[4, 2]);
+    foreign.crosses[0].push(3);
+    assert_eq!(merge.add("t", &foreign), Err(Mismatch));
+    assert_eq!(merge.join(&Merge::default()), Err(Mismatch));
+    assert_eq!(merge, Merge::new(&declared));
+}
+
+#[test]
+fn names_of_bins_are_stable() {
+    assert_eq!(name::bin("legs", "four"), "legs.four");
+    assert_eq!(name::bin("legs", "4"), "legs.\"4\"");
+    assert_eq!(name::bin("c", "a \"b\"\n\\"), r#"c."a \"b\"\n\\""#);
+    for bad in ["legs", "legs.4", "legs.\"4", "legs.\"a\"b\"", r#"legs."\x""#, r#"legs."\""#, "legs."] {
+        assert_eq!(name::split(bad), None, "{bad}");
+    }
+}
+
+fn at_most(n: u32, within: Option<Nanos>) -> Assumption {
+    Assumption {
+        text: String::new(),
+        events: vec![pattern(ASK, &[])],
+        at_most: n,
+        within,
+        origin: Span::default(),
+    }
+}
+
+#[test]
+fn a_window_includes_its_very_end() {
+    let mut assumptions = Assumptions::new(&program(declared(), vec![at_most(2, Some(10))]));
+    assert_eq!(assumptions.admit(0, EventId(ASK), &[]), Ok(()));
+    assert_eq!(assumptions.admit(4, EventId(ASK), &[]), Ok(()));
+    assert_eq!(assumptions.admit(10, EventId(ASK), &[]), Err(0));
+    assert_eq!(assumptions.would_violate(10, EventId(DECIDED), &[Value::Bool(true)]), None);
+    assert_eq!(assumptions.admit(11, EventId(ASK), &[]), Ok(()));
+    assert_eq!(assumptions.would_violate(14, EventId(ASK), &[]), Some(0));
+    assert_eq!(assumptions.would_violate(15, EventId(ASK), &[]), None);
+    // Asking is not doing.
+    assert_eq!(assumptions.would_violate(15, EventId(ASK), &[]), None);
+}
+
+#[test]
+fn the_first_assumption_violated_is_named() {
+    let all = [at_most(3, None), at_most(1, Some(5)), at_most(0, Some(0))];
+    let mut assumptions = Assumptions::new(&program(declared(), all[..2].to_vec()));
+    for time in [0, 6, 12] {
+        assert_eq!(assumptions.admit(time, EventId(ASK), &[]), Ok(()));
+    }
+    assert_eq!(assumptions.admit(13, EventId(ASK), &[]), Err(0));
+    let mut never = Assumptions::new(&program(declared(), all[2..].to_vec()));
+    assert_eq!(never.admit(0, EventId(ASK), &[]), Err(0));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn merging_knows_no_order(
+        numbers in prop::collection::vec([0i64..6, 0i64..3], 0..12),
+        cut in 0usize..12,
+        seed in any::<prop::sample::Index>(),
+    ) {
+        let declared = declared();
+        let tests: Vec<(String, Coverage)> =
+            numbers.iter().enumerate().map(|(i, n)| (format!("t{i:03}"), hits_from_numbers(&declared, n))).collect();
+        let merged = |tests: &[(String, Coverage)]| {
+            let mut merge = Merge::new(&declared);
+            tests.iter().for_each(|(name, coverage)| merge.add(name, coverage).unwrap());
+            merge
+        };
+        let mut turned = tests.clone();
+        if !turned.is_empty() {
+            turned.rotate_left(seed.index(tests.len()));
+        }
+        turned.reverse();
+        let whole = merged(&tests);
+        prop_assert_eq!(&whole, &merged(&turned));
+        let (a, b) = turned.split_at(cut.min(turned.len()));
+        let mut parts = merged(b);
+        parts.join(&merged(a)).unwrap();
+        prop_assert_eq!(&whole, &parts);
+        let text = serde_json::to_string(&whole).unwrap();
+        prop_assert_eq!(serde_json::from_str::<Merge>(&text).unwrap(), whole);
+    }
+
+    #[test]
+    fn a_bins_name_can_be_read_back(owner in "[a-z_][a-z_.0-9]{0,8}[a-z]", bin in "[ -~\n\"\\\\äλ]{0,12}") {
+        let name = name::bin(&owner, &bin);
+        prop_assert!(!name.contains('\n'));
+        prop_assert_eq!(name::split(&name), Some((owner.as_str(), bin)));
+    }
+
+    /// Against all windows of the whole list.
+    #[test]
+    fn assumptions_hold_in_every_window(
+        gaps in prop::collection::vec(0i64..6, 0..20),
+        n in 0u32..4,
+        within in prop::option::of(0i64..15),
+    ) {
+        let mut time = 0;
+        let times: Vec<Nanos> = gaps.iter().map(|gap| { time += gap; time }).collect();
+        let inside = |start: Nanos| {
+            times.iter().filter(|t| **t >= start && within.is_none_or(|d| **t - start <= d)).count()
+        };
+        let kept = times.iter().all(|t| inside(*t) <= n as usize);
+        let events: Vec<_> = times.iter().map(|t| (*t, EventId(ASK), Vec::new())).collect();
+        prop_assert_eq!(Assumptions::allows(&program(declared(), vec![at_most(n, within)]), &events), kept);
+        let mut collector = Collector::new(&program(declared(), Vec::new()));
+        events.iter().enumerate().for_each(|(i, e)| collector.step(i, &ask(e.0)));
+        prop_assert_eq!(collector.finish().numbers[0] as usize, times.len());
+    }
+}

@@ -1,0 +1,247 @@
+//! One monitor automaton in execution.
+
+use hrdsl_ir::{
+    EventId, Expr, Nanos, Value,
+    monitor::{Edge, Effect, Monitor, On},
+};
+
+use crate::{Latest, Outcome, Verdict, Violation};
+
+/// When something happened, and by which step of the trace; a deadline has none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub time: Nanos,
+    pub step: Option<usize>,
+}
+
+/// A monitor with its state, clock and counters.
+#[derive(Clone, Debug)]
+pub(crate) struct Machine {
+    monitor: Monitor,
+    /// For each state the indices of its edges, in order.
+    leaving: Vec<Vec<usize>>,
+    /// No edge triggers, but some watch samples: the first complete sample is the trigger.
+    watches: bool,
+    state: usize,
+    entered: Nanos,
+    /// When the clock was last set to zero.
+    zero: Nanos,
+    /// When the state's deadline is reached; `None`: it has none, or its edge was already tried.
+    due: Option<Nanos>,
+    /// The time of the latest deadline, and how many fired at that very time.
+    burst: (Nanos, usize),
+    /// The trigger that has been neither discharged nor left by a failure.
+    obligation: Option<Moment>,
+    triggered: u32,
+    discharged: u32,
+    failures: u32,
+    first_failure: Option<Violation>,
+    worst_margin: Option<(f64, Nanos)>,
+}
+
+/// What an edge may be waiting for.
+#[derive(Clone, Copy)]
+enum Cause<'a> {
+    Event(EventId, &'a [Value]),
+    Sample,
+    Deadline,
+}
+
+impl Cause<'_> {
+    fn starts(self, on: &On) -> bool {
+        match (self, on) {
+            (Cause::Event(event, args), On::Event(patterns)) => {
+                patterns.iter().any(|p| p.matches(event, args))
+            }
+            (Cause::Sample, On::Sample) | (Cause::Deadline, On::Deadline) => true,
+            (
+                Cause::Event(..) | Cause::Sample | Cause::Deadline,
+                On::Event(_) | On::Sample | On::Deadline,
+            ) => false,
+        }
+    }
+}
+
+impl Machine {
+    pub fn new(monitor: Monitor) -> Self {
+        let mut leaving = vec![Vec::new(); monitor.states.len()];
+        for (index, edge) in monitor.edges.iter().enumerate() {
+            if let Some(edges) = leaving.get_mut(usize::from(edge.from.0)) {
+                edges.push(index);
+            }
+        }
+        let triggers = monitor.edges.iter().any(|e| e.effects.contains(&Effect::Trigger));
+        let mut machine = Self {
+            leaving,
+            watches: !triggers && monitor.edges.iter().any(|e| e.on == On::Sample),
+            state: usize::from(monitor.initial.0),
+            entered: 0,
+            zero: 0,
+            due: None,
+            burst: (Nanos::MIN, 0),
+            obligation: None,
+            triggered: 0,
+            discharged: 0,
+            failures: 0,
+            first_failure: None,
+            worst_margin: None,
+            monitor,
+        };
+        machine.arm(0);
+        machine
+    }
+
+    /// When the next deadline is reached, if nothing happens before.
+    pub fn due(&self) -> Option<Nanos> {
+        self.due
+    }
+
+    /// Fires, in order, the deadlines that are reached strictly before `time`.
+    pub fn fire_before(&mut self, time: Nanos, signals: &Latest) {
+        while let Some(due) = self.due.filter(|due| *due < time) {
+            self.due = None;
+            self.burst = if self.burst.0 == due { (due, self.burst.1 + 1) } else { (due, 1) };
+            // Deadlines that follow each other in no time, round and round, would stop time.
+            if self.burst.1 <= self.monitor.states.len() {
+                self.react(Cause::Deadline, Moment { time: due, step: None }, signals);
+            }
+        }
+    }
+
+    pub fn event(&mut self, at: Moment, event: EventId, args: &[Value], signals: &Latest) {
+        let measured = |m: &Monitor| {
+            m.margin.as_ref().is_some_and(|margin| margin.at.iter().any(|p| p.matches(event, args)))
+        };
+        if measured(&self.monitor) {
+            self.measure(at.time, signals);
+        }
+        self.react(Cause::Event(event, args), at, signals);
+    }
+
+    /// One of the monitor's signals has a new sample.
+    pub fn sample(&mut self, at: Moment, signals: &Latest) {
+        if self.monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty()) {
+            self.measure(at.time, signals);
+        }
+        let complete = || self.monitor.signals.iter().all(|s| signals.get(*s).is_some());
+        if self.watches && self.triggered == 0 && complete() {
+            self.triggered = 1;
+            self.obligation = Some(at);
+        }
+        self.react(Cause::Sample, at, signals);
+    }
+
+    /// Takes the first edge that the cause starts and whose guard holds.
+    fn react(&mut self, cause: Cause<'_>, at: Moment, signals: &Latest) {
+        let enabled = |edge: &Edge| {
+            cause.starts(&edge.on)
+                && edge.guard.as_ref().is_none_or(|g| self.value(g, signals) == Some(Value::Bool(true)))
+        };
+        let edges = self.leaving.get(self.state).map_or(&[][..], Vec::as_slice);
+        if let Some(&edge) = edges.iter().find(|&&edge| enabled(&self.monitor.edges[edge])) {
+            self.take(edge, at, signals);
+        }
+    }
+
+    fn take(&mut self, edge: usize, at: Moment, signals: &Latest) {
+        let to = usize::from(self.monitor.edges[edge].to.0);
+        let moves = to != self.state;
+        let has = |effect| self.monitor.edges[edge].effects.contains(&effect);
+        let (resets, fails) = (has(Effect::ResetClock), has(Effect::Fail));
+        for index in 0..self.monitor.edges[edge].effects.len() {
+            match self.monitor.edges[edge].effects[index] {
+                Effect::ResetClock => self.zero = at.time,
+                Effect::Trigger => {
+                    self.triggered = self.triggered.saturating_add(1);
+                    // A further trigger of an obligation whose time goes on joins it: the first stays the witness.
+                    let joins = !moves && !resets && !fails && self.obligation.is_some();
+                    if !joins {
+                        self.obligation = Some(at);
+                    }
+                }
+                Effect::Discharge => {
+                    self.discharged = self.discharged.saturating_add(1);
+                    self.obligation = None;
+                }
+                Effect::Fail => self.fail(at, signals),
+            }
+        }
+        if moves {
+            self.state = to;
+            self.entered = at.time;
+            if fails {
+                self.obligation = None;
+            }
+        }
+        if moves || resets {
+            self.arm(at.time);
+        }
+    }
+
+    /// Sets when the state's deadline is due: at once if the clock is already past it.
+    fn arm(&mut self, now: Nanos) {
+        let deadline = self.monitor.states.get(self.state).and_then(|s| s.deadline);
+        self.due = deadline.map(|d| self.zero.saturating_add(d).max(now));
+    }
+
+    fn fail(&mut self, at: Moment, signals: &Latest) {
+        self.failures = self.failures.saturating_add(1);
+        if self.first_failure.is_some() {
+            return;
+        }
+        let trigger = self.obligation.unwrap_or(at);
+        let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r)));
+        let mut witness: Vec<usize> = Vec::new();
+        for step in trigger.step.into_iter().chain(at.step).chain(read.clone().map(|(_, r)| r.step)) {
+            if !witness.contains(&step) {
+                witness.push(step);
+            }
+        }
+        let values = read.map(|(signal, r)| (signal, r.value)).collect();
+        self.first_failure =
+            Some(Violation { time: at.time, step: at.step, trigger_time: trigger.time, witness, values });
+    }
+
+    fn measure(&mut self, time: Nanos, signals: &Latest) {
+        let Some(margin) = &self.monitor.margin else { return };
+        let measured = self.value(&margin.value, signals).and_then(Value::as_f64);
+        if let Some(value) = measured.filter(|v| v.is_finite())
+            && self.worst_margin.is_none_or(|(worst, _)| value < worst)
+        {
+            self.worst_margin = Some((value, time));
+        }
+    }
+
+    /// The expression's value; none if it reads a signal without a sample, or has no value for another reason.
+    fn value(&self, expr: &Expr, signals: &Latest) -> Option<Value> {
+        let var = |i: u16| {
+            let signal = self.monitor.signals.get(usize::from(i))?;
+            signals.get(*signal).map(|reading| reading.value)
+        };
+        expr.eval(&var).ok()
+    }
+
+    pub fn verdict(self, index: usize) -> Verdict {
+        let pending = self.monitor.states.get(self.state).is_some_and(|s| s.pending);
+        let outcome = if self.failures > 0 {
+            Outcome::Fail
+        } else if pending {
+            Outcome::Open
+        } else if self.triggered == 0 {
+            Outcome::NotChecked
+        } else {
+            Outcome::Pass
+        };
+        let since = self.obligation.map_or(self.entered, |trigger| trigger.time);
+        Verdict {
+            monitor: index,
+            outcome,
+            triggered: self.triggered,
+            discharged: self.discharged,
+            failures: self.failures,
+            first_failure: self.first_failure,
+            worst_margin: self.worst_margin,
+            open_since: pending.then_some(since),
+        }
+    }
+}

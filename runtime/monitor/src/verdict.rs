@@ -1,0 +1,63 @@
+//! Verdicts: what a monitor has to say about a trace.
+
+use std::fmt;
+
+use hrdsl_ir::{Nanos, Value, world::SignalId};
+use serde::{Deserialize, Serialize};
+
+/// The judgement on one requirement in one trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It was triggered, and held.
+    Pass,
+    /// It was violated at least once.
+    Fail,
+    /// It was never triggered: the trace says nothing about it.
+    NotChecked,
+    /// It was not violated, but the trace ended while an obligation was pending.
+    Open,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Outcome::Pass => "pass",
+            Outcome::Fail => "fail",
+            Outcome::NotChecked => "not checked",
+            Outcome::Open => "open",
+        })
+    }
+}
+
+/// One monitor's outcome with the figures and steps that support it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Index into [`Program::monitors`](hrdsl_ir::Program::monitors).
+    pub monitor: usize,
+    pub outcome: Outcome,
+    /// How often each effect was had.
+    pub triggered: u32,
+    pub discharged: u32,
+    pub failures: u32,
+    pub first_failure: Option<Violation>,
+    /// The least margin, in the unit of the monitor's margin, and when it was first seen.
+    pub worst_margin: Option<(f64, Nanos)>,
+    /// The obligation that was pending at the end was made at this time. A failed requirement can have one, too.
+    pub open_since: Option<Nanos>,
+}
+
+/// The first violation of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Violation {
+    pub time: Nanos,
+    /// The step that violates; `None`: a deadline did.
+    pub step: Option<usize>,
+    /// When the violated obligation was made; `time` if there was none.
+    pub trigger_time: Nanos,
+    /// Indices of the trace's steps: the trigger, the violating step, then the latest sample of each signal of the
+    /// monitor; each index once.
+    pub witness: Vec<usize>,
+    /// The values of the monitor's signals at that time, so far as they had any.
+    pub values: Vec<(SignalId, Value)>,
+}

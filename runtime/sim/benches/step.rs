@@ -1,0 +1,83 @@
+//! What a physics step costs: with the arm moving, with nothing moving, at rest; and what the sensors and planner cost.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{ARM, LEGS, OFFER, REST, STEP, move_to, named, number, run, settle, table, truth};
+use divan::Bencher;
+use hrdsl_ir::world::{BodyRef, SignalId, Term};
+use hrdsl_sim::{Command, Sim};
+
+fn main() {
+    divan::main();
+}
+
+/// Ten physics steps of an arm on its way.
+#[divan::bench]
+fn ten_steps_moving(bencher: Bencher) {
+    bencher
+        .with_inputs(|| {
+            let mut sim = Sim::new(&table(), &[]).expect("the world");
+            sim.command(move_to(OFFER)).expect("in reach");
+            sim.advance(2_000_000_000);
+            sim
+        })
+        .bench_local_refs(|sim| sim.advance(sim.now() + 10 * STEP));
+}
+
+/// Ten physics steps just before the world is found to be at rest.
+#[divan::bench]
+fn ten_steps_standing(bencher: Bencher) {
+    bencher
+        .with_inputs(|| {
+            let mut sim = Sim::new(&table(), &[]).expect("the world");
+            settle(&mut sim);
+            sim.command(Command::Open { gripper: common::GRIP }).expect("a gripper");
+            sim
+        })
+        .bench_local_refs(|sim| sim.advance(sim.now() + 10 * STEP));
+}
+
+/// A minute at rest.
+#[divan::bench]
+fn a_minute_at_rest(bencher: Bencher) {
+    let mut sim = Sim::new(&table(), &[]).expect("the world");
+    settle(&mut sim);
+    bencher.bench_local(|| sim.advance(sim.now() + 60_000_000_000));
+}
+
+/// A whole hand-over: fetch, lift, offer, back.
+#[divan::bench(sample_count = 10)]
+fn hand_over(bencher: Bencher) {
+    bencher.with_inputs(|| Sim::new(&table(), &[]).expect("the world")).bench_local_refs(|sim| {
+        common::offer(sim);
+        run(sim, Command::Open { gripper: common::GRIP });
+        run(sim, move_to(REST));
+    });
+}
+
+#[divan::bench]
+fn plan_a_motion(bencher: Bencher) {
+    let mut sim = Sim::new(&table(), &[]).expect("the world");
+    settle(&mut sim);
+    bencher.bench_local(|| sim.command(move_to(LEGS[3])));
+}
+
+#[divan::bench]
+fn build_the_world(bencher: Bencher) {
+    let world = table();
+    bencher.bench_local(|| Sim::new(&world, &[]));
+}
+
+#[divan::bench(args = ["distance", "visible", "joint speed"])]
+fn read_a_signal(bencher: Bencher, what: &str) {
+    let world = table();
+    let (leg, head) = (BodyRef::Body(named(&world, "leg1")), BodyRef::Body(named(&world, "person.head")));
+    let signal = match what {
+        "distance" => number(what, Term::Distance(head, leg)),
+        "visible" => truth(what, Term::Visible(head, leg)),
+        _ => number(what, Term::JointSpeed(ARM)),
+    };
+    let sim = Sim::new(&world, &[signal]).expect("the world");
+    bencher.bench_local(|| sim.read(SignalId(0)));
+}

@@ -1,0 +1,254 @@
+//! The arm's controller: plans a posture, generates the ramp that its motors follow, and tells when it has arrived.
+
+use hrdsl_ir::Nanos;
+use hrdsl_ir::value::{nanos, seconds};
+use hrdsl_ir::world::{Arm, BodyId, JointId, Vec3, World};
+
+use crate::command::CommandId;
+use crate::error::{CommandError, SimError};
+use crate::kinematics::{Chain, Link};
+use crate::math::{V3, v3};
+use crate::profile::{Profile, brake_time, braking};
+use crate::stage::{Stage, bad, index};
+
+/// How near the tool must come to its place, m.
+const ARRIVED: f64 = 0.005;
+/// How near each joint must come to its angle where angles were asked for, rad.
+const ARRIVED_JOINT: f64 = 0.01;
+/// Below this an arm counts as standing, rad/s.
+const SETTLED: f64 = 0.02;
+/// How long after its ramp an arm may take to arrive.
+const PATIENCE: Nanos = 1_000_000_000;
+
+pub(crate) struct ArmControl {
+    pub name: String,
+    joints: Vec<JointId>,
+    tip: BodyId,
+    tool: V3,
+    base: BodyId,
+    max_speed: f64,
+    chain: Chain,
+    /// The motors' aim while no motion is under way.
+    rest: Vec<f64>,
+    motion: Option<Motion>,
+}
+
+struct Motion {
+    id: CommandId,
+    goal: Goal,
+    start: Nanos,
+    /// Where the arm was and how fast it went when the motion was asked for.
+    from: Vec<f64>,
+    speed: Vec<f64>,
+    /// From when on it goes to its goal: at once, or after it has come to a stop.
+    go: Nanos,
+    stop: Vec<f64>,
+    to: Vec<f64>,
+    profile: Profile,
+}
+
+enum Goal {
+    Place(V3),
+    Joints,
+}
+
+impl Motion {
+    /// Angles and speeds aimed at.
+    fn at(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
+        if time < self.go {
+            let (way, rate) = braking(seconds(time - self.start));
+            let angle = self.from.iter().zip(&self.speed).map(|(q, v)| q + v * way);
+            return (angle.collect(), self.speed.iter().map(|v| v * rate).collect());
+        }
+        let t = seconds(time - self.go);
+        let (part, rate) = (self.profile.at(t), self.profile.speed(t));
+        let angle = self.stop.iter().zip(&self.to).map(|(a, b)| a + part * (b - a));
+        let speed = self.stop.iter().zip(&self.to).map(|(a, b)| rate * (b - a));
+        (angle.collect(), speed.collect())
+    }
+
+    fn end(&self) -> Nanos {
+        self.go + nanos(self.profile.length())
+    }
+}
+
+impl ArmControl {
+    pub fn new(arm: &Arm, world: &World, stage: &Stage) -> Result<ArmControl, SimError> {
+        let what = || format!("arm `{}`", arm.name);
+        if index(arm.tip) >= world.bodies.len() {
+            return Err(bad(what(), "body", index(arm.tip)));
+        }
+        if !(arm.max_speed.is_finite() && arm.max_speed > 0.0) {
+            return Err(SimError::BadNumber { what: format!("the speed of arm `{}`", arm.name) });
+        }
+        let mut links = Vec::new();
+        let mut end: Option<BodyId> = None;
+        for id in &arm.joints {
+            let at = usize::from(id.0);
+            let joint = world.joints.get(at).ok_or_else(|| bad(what(), "joint", at))?;
+            if end.is_some_and(|e| stage.root(e) != stage.root(joint.parent)) {
+                return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
+            }
+            end = Some(joint.child);
+            let axis = v3(joint.axis).normalize();
+            links.push(Link { anchor: v3(joint.anchor), axis, lo: joint.lo, hi: joint.hi });
+        }
+        if end.is_none_or(|e| stage.root(e) != stage.root(arm.tip)) {
+            return Err(SimError::TipNotOnArm { arm: arm.name.clone() });
+        }
+        let tool = v3(arm.tool);
+        let chain = Chain { links, tool: stage.start(arm.tip).point(tool) };
+        Ok(ArmControl {
+            name: arm.name.clone(),
+            joints: arm.joints.clone(),
+            tip: arm.tip,
+            tool,
+            base: world.joints[usize::from(arm.joints[0].0)].parent,
+            max_speed: arm.max_speed,
+            rest: vec![0.0; chain.links.len()],
+            chain,
+            motion: None,
+        })
+    }
+
+    /// Plans a motion of the tool to a place.
+    pub fn plan(&self, now: Nanos, target: Vec3) -> Result<Vec<f64>, CommandError> {
+        let found = self.chain.plan(&self.stop(now), v3(target));
+        if Chain::arrives(&found) {
+            Ok(found.joints)
+        } else {
+            Err(CommandError::Unreachable { distance: found.error })
+        }
+    }
+
+    /// The place, as it would be if the arm's base were where it was at the start.
+    pub fn relative(&self, stage: &Stage, target: Vec3) -> Vec3 {
+        let now = stage.pose(self.base);
+        let start = stage.start(self.base);
+        if stage.motion(self.base) == hrdsl_ir::world::Motion::Fixed {
+            return target;
+        }
+        crate::math::arr(start.point(now.inverse().point(v3(target))))
+    }
+
+    pub fn check(&self, positions: &[f64], world: &World) -> Result<(), CommandError> {
+        let expected = self.joints.len();
+        if positions.len() != expected {
+            return Err(CommandError::WrongJointCount { expected, given: positions.len() });
+        }
+        for ((link, id), q) in self.chain.links.iter().zip(&self.joints).zip(positions) {
+            if !(link.lo..=link.hi).contains(q) {
+                let joint = world.joints[usize::from(id.0)].name.clone();
+                return Err(CommandError::OutOfLimits { joint });
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins a motion; what the arm was doing is given up, and its command is returned.
+    pub fn go(
+        &mut self,
+        now: Nanos,
+        id: CommandId,
+        to: Vec<f64>,
+        place: Option<Vec3>,
+        limit: Option<f64>,
+    ) -> Option<CommandId> {
+        let limit = limit.map_or(self.max_speed, |l| l.min(self.max_speed));
+        let (from, speed) = self.aim(now);
+        let moving = speed.iter().any(|v| *v != 0.0);
+        let go = if moving { now + nanos(brake_time()) } else { now };
+        let stop = self.stop(now);
+        let way = stop.iter().zip(&to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        let profile = Profile::new(way, limit);
+        let goal = place.map_or(Goal::Joints, |p| Goal::Place(v3(p)));
+        let next = Motion { id, goal, start: now, from, speed, go, stop, to, profile };
+        self.motion.replace(next).map(|old| old.id)
+    }
+
+    /// Where the arm would stand if it were stopped now.
+    fn stop(&self, now: Nanos) -> Vec<f64> {
+        let (from, speed) = self.aim(now);
+        let (way, _) = braking(brake_time());
+        from.iter().zip(&speed).map(|(q, v)| q + v * way).collect()
+    }
+
+    fn aim(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
+        match &self.motion {
+            Some(m) => m.at(time),
+            None => (self.rest.clone(), vec![0.0; self.rest.len()]),
+        }
+    }
+
+    /// Sets the motors for the step from `now` to `next`.
+    ///
+    /// The speed is the mean over the step, and the angle that of its middle: the solver divides the step, and would be
+    /// pulled ahead or back by the angle at either end.
+    pub fn drive(&self, now: Nanos, next: Nanos, stage: &mut Stage) {
+        if self.motion.is_none() {
+            for (id, q) in self.joints.iter().zip(&self.rest) {
+                stage.drive(usize::from(id.0), *q, 0.0);
+            }
+            return;
+        }
+        let (a, _) = self.aim(now);
+        let (b, _) = self.aim(next);
+        let h = seconds(next - now);
+        for ((id, a), b) in self.joints.iter().zip(&a).zip(&b) {
+            stage.drive(usize::from(id.0), (a + b) / 2.0, (b - a) / h);
+        }
+    }
+
+    /// Ends the motion if it has arrived, or does not in time.
+    pub fn check_arrival(
+        &mut self,
+        now: Nanos,
+        stage: &Stage,
+    ) -> Option<(CommandId, Result<(), CommandError>)> {
+        let motion = self.motion.as_ref()?;
+        if now < motion.end() {
+            return None;
+        }
+        let settled = self.speed(stage) < SETTLED;
+        let (there, distance) = match motion.goal {
+            Goal::Place(place) => {
+                let distance = (self.tool_at(stage) - place).norm();
+                (distance <= ARRIVED, distance)
+            }
+            Goal::Joints => {
+                let angles = self.positions(stage);
+                let off = angles.iter().zip(&motion.to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+                (off <= ARRIVED_JOINT, (self.tool_at(stage) - self.chain.tool_at(&motion.to)).norm())
+            }
+        };
+        let result = if there && settled {
+            Ok(())
+        } else if now >= motion.end() + PATIENCE {
+            Err(CommandError::Missed { distance })
+        } else {
+            return None;
+        };
+        let id = motion.id;
+        self.rest.clone_from(&motion.to);
+        self.motion = None;
+        Some((id, result))
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.motion.is_some()
+    }
+
+    /// Measured, rad.
+    pub fn positions(&self, stage: &Stage) -> Vec<f64> {
+        self.joints.iter().map(|id| stage.joint_angle(usize::from(id.0))).collect()
+    }
+
+    /// The largest measured speed of a joint, rad/s.
+    pub fn speed(&self, stage: &Stage) -> f64 {
+        self.joints.iter().fold(0.0, |m, id| m.max(stage.joint_speed(usize::from(id.0)).abs()))
+    }
+
+    pub fn tool_at(&self, stage: &Stage) -> V3 {
+        stage.pose(self.tip).point(self.tool)
+    }
+}

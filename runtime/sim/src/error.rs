@@ -1,0 +1,50 @@
+//! What can go wrong: in the world's data, in an action, in a command.
+
+use hrdsl_ir::expr::EvalError;
+
+/// The world's data, or an environment actor's action, cannot be carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimError {
+    #[error("{what} refers to {kind} {index}, which does not exist")]
+    BadReference { what: String, kind: &'static str, index: usize },
+    #[error("{what} must be a positive finite number")]
+    BadNumber { what: String },
+    #[error("the arm `{arm}` is not a chain: joint `{joint}` does not start where the one before it ends")]
+    NotAChain { arm: String, joint: String },
+    #[error("the tip of the arm `{arm}` does not move with its last joint")]
+    TipNotOnArm { arm: String },
+    #[error("the joint `{joint}` does not carry a dynamic body of its own")]
+    BadChild { joint: String },
+    #[error("the gripper `{gripper}` cannot hold `{body}`, which is not a free dynamic body")]
+    NotHoldable { gripper: String, body: String },
+    #[error("the body `{body}` is not kinematic, so that it cannot be moved by an action")]
+    NotKinematic { body: String },
+    #[error("{what} has no value: {error}")]
+    Eval { what: String, error: EvalError },
+}
+
+/// A command of the system actor was refused or did not succeed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CommandError {
+    #[error("there is no such arm")]
+    NoSuchArm,
+    #[error("there is no such gripper")]
+    NoSuchGripper,
+    /// Metres from the nearest place that the planner found.
+    #[error("the place is out of reach, by {distance:.3} m")]
+    Unreachable { distance: f64 },
+    #[error("the arm has {expected} joints, but {given} positions were given")]
+    WrongJointCount { expected: usize, given: usize },
+    #[error("the position given for joint `{joint}` is beyond its limits")]
+    OutOfLimits { joint: String },
+    #[error("a speed must be a positive finite number")]
+    BadSpeed,
+    #[error("a place or position must be a finite number")]
+    NotFinite,
+    /// Something is in the way: metres from the place when the controller gave up.
+    #[error("the arm did not arrive: it stopped {distance:.3} m from the place")]
+    Missed { distance: f64 },
+    /// A later command to the same arm or gripper took its place.
+    #[error("the command was replaced by a later one")]
+    Replaced,
+}

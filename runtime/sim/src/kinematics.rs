@@ -1,0 +1,303 @@
+//! The planner: from a place for the tool point to a posture of the arm, by damped least squares.
+//!
+//! Every iteration solves (J Jᵀ + λ² I) y = e for the remaining way e and steps by Jᵀ y (Nakamura and Hanafusa 1986,
+//! Wampler 1986). Two weaker wishes guide what the place leaves open: the direction that was up in the tip's frame at the
+//! start stays up, so that what is held is carried upright; and, in the null space, the posture stays near the present one
+//! and, weaker, near the arm's starting posture, so that postures do not drift from one motion to the next.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::math::{Frame, Quat, V3, about};
+
+/// A joint as the planner sees it, in the world at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Link {
+    pub anchor: V3,
+    pub axis: V3,
+    pub lo: f64,
+    pub hi: f64,
+}
+
+/// The geometry of an arm; all joints are zero at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Chain {
+    pub links: Vec<Link>,
+    /// The tool point in the world at the start.
+    pub tool: V3,
+}
+
+/// A posture that brings the tool to a place, or the nearest one found.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Posture {
+    pub joints: Vec<f64>,
+    /// Metres from the place.
+    pub error: f64,
+}
+
+/// Where the tool is in a posture, and what each joint's motion does to it.
+struct Forward {
+    tool: V3,
+    up: V3,
+    /// Axis and anchor of each joint.
+    joints: Vec<(V3, V3)>,
+}
+
+/// Good enough: far below what the physics can keep.
+const CONVERGED: f64 = 1e-4;
+/// What a unit of tilt weighs, in metres.
+const TILT: f64 = 0.15;
+/// How far from a joint's limits postures are sought, rad.
+const MARGIN: f64 = 0.02;
+const RESTARTS: u32 = 12;
+
+impl Chain {
+    fn forward(&self, q: &[f64]) -> Forward {
+        let mut frame = Frame::new(V3::zeros(), Quat::identity());
+        let mut joints = Vec::with_capacity(q.len());
+        for (link, angle) in self.links.iter().zip(q) {
+            let anchor = frame.point(link.anchor);
+            joints.push((frame.turn * link.axis, anchor));
+            let turn = frame.turn * about(link.axis, *angle);
+            frame = Frame::new(anchor - turn * link.anchor, turn);
+        }
+        Forward { tool: frame.point(self.tool), up: frame.turn * V3::z(), joints }
+    }
+
+    /// The tool point, in the world if the base is where it was at the start.
+    #[cfg_attr(not(test), allow(dead_code))]
+    pub fn tool_at(&self, q: &[f64]) -> V3 {
+        self.forward(q).tool
+    }
+
+    /// The posture nearest to `from` that was found to bring the tool to `target`.
+    ///
+    /// Tried in order: from the present posture; then, if that does not arrive, from the middle of the limits and a fixed
+    /// sequence of postures, of which the one with the shortest way is taken.
+    pub fn plan(&self, from: &[f64], target: V3) -> Posture {
+        let first = self.descend(from, from, target);
+        if first.error <= CONVERGED {
+            return first;
+        }
+        let way = |p: &Posture| p.joints.iter().zip(from).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        let mut best = first;
+        for n in 0..=RESTARTS {
+            let found = self.descend(&self.seed(n), from, target);
+            let arrives = found.error <= CONVERGED;
+            let better = if best.error <= CONVERGED {
+                arrives && way(&found) < way(&best)
+            } else {
+                found.error < best.error
+            };
+            if better {
+                best = found;
+            }
+        }
+        best
+    }
+
+    /// Whether a posture of [`plan`](Self::plan) arrives.
+    pub fn arrives(posture: &Posture) -> bool {
+        posture.error <= CONVERGED
+    }
+
+    /// The middle of the limits, then points of Halton's sequence.
+    fn seed(&self, n: u32) -> Vec<f64> {
+        const PRIMES: [u32; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+        self.links
+            .iter()
+            .enumerate()
+            .map(|(i, l)| {
+                let part = if n == 0 { 0.5 } else { halton(n, PRIMES[i % PRIMES.len()]) };
+                l.lo + part * (l.hi - l.lo)
+            })
+            .collect()
+    }
+
+    fn descend(&self, seed: &[f64], near: &[f64], target: V3) -> Posture {
+        let wish: Vec<f64> = near.iter().map(|q| q / 1.2).collect();
+        let mut q = self.within(seed);
+        for _ in 0..160 {
+            self.iterate(&mut q, Some(&wish), target);
+        }
+        for _ in 0..60 {
+            if (target - self.forward(&q).tool).norm() < CONVERGED / 10.0 {
+                break;
+            }
+            self.iterate(&mut q, None, target);
+        }
+        let error = (target - self.forward(&q).tool).norm();
+        Posture { joints: q, error }
+    }
+
+    fn limits(&self, i: usize) -> (f64, f64) {
+        let l = &self.links[i];
+        let margin = MARGIN.min((l.hi - l.lo) / 4.0);
+        (l.lo + margin, l.hi - margin)
+    }
+
+    fn within(&self, q: &[f64]) -> Vec<f64> {
+        q.iter()
+            .enumerate()
+            .map(|(i, x)| {
+                let (lo, hi) = self.limits(i);
+                x.clamp(lo, hi)
+            })
+            .collect()
+    }
+
+    /// One step towards the target; with a wish also upright, and in the null space towards it.
+    fn iterate(&self, q: &mut [f64], wish: Option<&[f64]>, target: V3) {
+        let now = self.forward(q);
+        let (mut jacobian, error) = task(&now, target, wish.is_some());
+        // A joint that the step would push beyond its limit takes no part in the step.
+        for _ in 0..3 {
+            let step = damped(&jacobian, &error, wish.map(|w| pull(w, q)));
+            let blocked: Vec<usize> = (0..q.len())
+                .filter(|&i| {
+                    let (lo, hi) = self.limits(i);
+                    let there = q[i] + step[i];
+                    jacobian.column(i).norm_squared() > 0.0
+                        && ((there < lo && q[i] <= lo + 1e-9) || (there > hi && q[i] >= hi - 1e-9))
+                })
+                .collect();
+            if blocked.is_empty() {
+                for (i, x) in q.iter_mut().enumerate() {
+                    let (lo, hi) = self.limits(i);
+                    *x = (*x + step[i]).clamp(lo, hi);
+                }
+                return;
+            }
+            for i in blocked {
+                jacobian.column_mut(i).fill(0.0);
+            }
+        }
+    }
+}
+
+/// The Jacobian and the remaining way: of the place, and if asked of the tilt.
+fn task(now: &Forward, target: V3, upright: bool) -> (DMatrix<f64>, DVector<f64>) {
+    let rows = if upright { 5 } else { 3 };
+    let mut jacobian = DMatrix::zeros(rows, now.joints.len());
+    let mut way = target - now.tool;
+    let far = way.norm();
+    if far > 0.1 {
+        way *= 0.1 / far;
+    }
+    let mut error = DVector::zeros(rows);
+    error.rows_mut(0, 3).copy_from(&way);
+    for (i, (axis, anchor)) in now.joints.iter().enumerate() {
+        let v = axis.cross(&(now.tool - anchor));
+        jacobian.view_mut((0, i), (3, 1)).copy_from(&v);
+        if upright {
+            let t = axis.cross(&now.up) * TILT;
+            jacobian[(3, i)] = t.x;
+            jacobian[(4, i)] = t.y;
+        }
+    }
+    if upright {
+        error[3] = -now.up.x * TILT;
+        error[4] = -now.up.y * TILT;
+    }
+    (jacobian, error)
+}
+
+fn pull(wish: &[f64], q: &[f64]) -> DVector<f64> {
+    DVector::from_iterator(q.len(), wish.iter().zip(q).map(|(w, x)| 0.2 * (w - x)))
+}
+
+/// Jᵀ (J Jᵀ + λ²)⁻¹ e, plus the part of `pull` that does not move the tool; no joint steps by more than 0.2 rad.
+fn damped(j: &DMatrix<f64>, error: &DVector<f64>, pull: Option<DVector<f64>>) -> DVector<f64> {
+    let mut square = j * j.transpose();
+    let damping = 1e-5 + 0.05 * error.norm_squared();
+    for i in 0..square.nrows() {
+        square[(i, i)] += damping;
+    }
+    // Positive definite by the damping, so that the decomposition always exists.
+    let Some(solver) = square.cholesky() else { return DVector::zeros(j.ncols()) };
+    let mut step = j.transpose() * solver.solve(error);
+    if let Some(mut pull) = pull {
+        for i in 0..pull.len() {
+            if j.column(i).norm_squared() == 0.0 {
+                pull[i] = 0.0;
+            }
+        }
+        step += &pull - j.transpose() * solver.solve(&(j * &pull));
+    }
+    let largest = step.amax();
+    if largest > 0.2 {
+        step *= 0.2 / largest;
+    }
+    step
+}
+
+/// The radical inverse of `n` in a base: 0..1, evenly spread.
+fn halton(mut n: u32, base: u32) -> f64 {
+    let (mut result, mut part) = (0.0, 1.0);
+    while n > 0 {
+        part /= f64::from(base);
+        result += part * f64::from(n % base);
+        n /= base;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Shoulder yaw, shoulder pitch, elbow pitch; two links of 0.4 m, stretched along x.
+    fn three() -> Chain {
+        let link = |x: f64, axis| Link { anchor: V3::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
+        Chain {
+            links: vec![link(0.0, V3::z()), link(0.0, V3::y()), link(0.4, V3::y())],
+            tool: V3::new(0.8, 0.0, 1.0),
+        }
+    }
+
+    #[test]
+    fn the_jacobian_is_the_derivative() {
+        let chain = three();
+        let q = [0.3, -0.5, 0.9];
+        let (j, _) = task(&chain.forward(&q), V3::zeros(), true);
+        for i in 0..3 {
+            let h = 1e-6;
+            let mut more = q;
+            more[i] += h;
+            let (a, b) = (chain.forward(&q), chain.forward(&more));
+            let v = (b.tool - a.tool) / h;
+            let t = (b.up - a.up) / h * TILT;
+            for row in 0..3 {
+                assert!((j[(row, i)] - v[row]).abs() < 1e-5);
+            }
+            assert!((j[(3, i)] - t.x).abs() < 1e-5 && (j[(4, i)] - t.y).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_reach_gives_the_nearest() {
+        let found = three().plan(&[0.0, 0.3, 0.3], V3::new(2.0, 0.0, 1.0));
+        assert!(!Chain::arrives(&found));
+        assert!((found.error - 1.2).abs() < 0.01, "{}", found.error);
+    }
+
+    #[test]
+    fn halton_in_base_two() {
+        assert_eq!([1, 2, 3, 4].map(|n| halton(n, 2)), [0.5, 0.25, 0.75, 0.125]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn reaches_what_forward_kinematics_reaches(a in -2.0f64..2.0, b in -1.2f64..1.2, c in 0.3f64..2.2) {
+            let chain = three();
+            let target = chain.tool_at(&[a, b, c]);
+            let found = chain.plan(&[0.0, 0.1, 0.5], target);
+            prop_assert!(Chain::arrives(&found), "{found:?}");
+            prop_assert!((chain.tool_at(&found.joints) - target).norm() < 2e-4);
+            for (q, l) in found.joints.iter().zip(&chain.links) {
+                prop_assert!((l.lo..=l.hi).contains(q));
+            }
+        }
+    }
+}

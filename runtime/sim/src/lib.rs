@@ -1,0 +1,377 @@
+//! The physics world: bodies, arms, hands and sensors from data, stepped in simulated time.
+//!
+//! # Steps
+//! 1. [`Sim::new`] builds the world of a scenario.
+//! 2. Environment actors change it by [`Sim::act`], the system actor by [`Sim::command`].
+//! 3. [`Sim::advance`] brings it to a time: in physics steps while anything moves, at once while everything rests.
+//! 4. [`Sim::read`] gives a signal's value, [`Sim::finished`] the commands that have ended.
+//!
+//! # What is idealised
+//! - Arms compensate their own weight and that of what they carry; each link has a motor's rotor inertia.
+//! - A hand that closes fixes what it takes by a rigid joint instead of by friction, where it is.
+//! - An arm touches neither itself nor people; palms do not touch what hands can hold. The planner knows no obstacles.
+//! - People are kinematic: nothing pushes them.
+//! - A body farther than 20 m from the origin is lost, and stops there.
+//!
+//! # Determinism
+//! The same calls give the same bits, on every platform with IEEE 754 arithmetic. The physics runs on a grid of steps
+//! that begins when the world leaves its rest, so that it does not matter in which pieces time is advanced; what is asked
+//! for between two steps takes effect from then on. The engine computes in single precision.
+
+mod arm;
+mod command;
+mod error;
+mod hand;
+mod kinematics;
+mod math;
+mod mover;
+mod profile;
+mod sense;
+mod stage;
+
+use hrdsl_ir::world::{ArmId, BodyId, GripperId, Motion, Point, Signal, SignalId, Vec3, World, WorldAction};
+use hrdsl_ir::{Expr, Nanos, Value};
+
+use arm::ArmControl;
+pub use command::{Command, CommandId};
+pub use error::{CommandError, SimError};
+use hand::Hands;
+use math::{Frame, V3, arr};
+use mover::Way;
+use sense::View;
+use stage::{Stage, bad, index};
+
+/// How long nothing may have moved before the world counts as at rest.
+const REST_AFTER: Nanos = 300_000_000;
+
+/// A running world.
+pub struct Sim {
+    world: World,
+    signals: Vec<Signal>,
+    stage: Stage,
+    arms: Vec<ArmControl>,
+    hands: Hands,
+    /// By body.
+    ways: Vec<Option<Way>>,
+    now: Nanos,
+    /// When the physics was last brought up to date, and when it will be next; none at rest.
+    last: Nanos,
+    next: Option<Nanos>,
+    /// For how long nothing has moved.
+    quiet: Nanos,
+    commands: u64,
+    finished: Vec<(CommandId, Result<(), CommandError>)>,
+}
+
+type Vars<'a> = &'a dyn Fn(u16) -> Option<Value>;
+
+impl Sim {
+    /// Builds the world, at time 0.
+    ///
+    /// # Errors
+    /// If the data refer to what does not exist, an arm's joints do not form a chain, or a measure is not positive.
+    pub fn new(world: &World, signals: &[Signal]) -> Result<Sim, SimError> {
+        if world.step <= 0 {
+            return Err(SimError::BadNumber { what: "the physics step".into() });
+        }
+        for gripper in &world.grippers {
+            if index(gripper.palm) >= world.bodies.len() {
+                return Err(bad(format!("gripper `{}`", gripper.name), "body", index(gripper.palm)));
+            }
+        }
+        sense::check(world, signals)?;
+        let stage = Stage::new(world)?;
+        let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &stage));
+        let arms = arms.collect::<Result<Vec<_>, _>>()?;
+        let hands = Hands::new(world, &stage)?;
+        Ok(Sim {
+            ways: vec![None; world.bodies.len()],
+            world: world.clone(),
+            signals: signals.to_vec(),
+            stage,
+            arms,
+            hands,
+            now: 0,
+            last: 0,
+            next: Some(world.step),
+            quiet: 0,
+            commands: 0,
+            finished: Vec::new(),
+        })
+    }
+
+    /// The simulated time.
+    #[must_use]
+    pub fn now(&self) -> Nanos {
+        self.now
+    }
+
+    /// When the world next changes by itself: at the next physics step, or never while everything rests.
+    #[must_use]
+    pub fn next_wake(&self) -> Option<Nanos> {
+        self.next
+    }
+
+    /// Brings the world to a time; does nothing if that is past.
+    pub fn advance(&mut self, to: Nanos) {
+        while let Some(next) = self.next.filter(|n| *n <= to) {
+            self.step(next);
+        }
+        self.now = self.now.max(to);
+    }
+
+    fn step(&mut self, next: Nanos) {
+        for arm in &self.arms {
+            arm.drive(self.last, next, &mut self.stage);
+        }
+        for (i, slot) in self.ways.iter_mut().enumerate() {
+            if let Some(way) = slot {
+                self.stage.lead(stage::body_id(i), &way.at(next));
+                if way.is_over(next) {
+                    *slot = None;
+                }
+            }
+        }
+        self.stage.step();
+        self.last = next;
+        self.now = self.now.max(next);
+        for arm in &mut self.arms {
+            self.finished.extend(arm.check_arrival(next, &self.stage));
+        }
+        self.hands.update(next, &mut self.stage, &mut self.finished);
+        self.rest_or_go_on(next);
+    }
+
+    fn rest_or_go_on(&mut self, at: Nanos) {
+        let busy = self.arms.iter().any(ArmControl::is_busy)
+            || self.hands.is_busy()
+            || self.ways.iter().any(Option::is_some);
+        self.quiet = if busy || !self.stage.is_quiet() { 0 } else { self.quiet + self.world.step };
+        if self.quiet >= REST_AFTER {
+            self.stage.freeze();
+            self.next = None;
+        } else {
+            self.next = Some(at + self.world.step);
+        }
+    }
+
+    fn wake(&mut self) {
+        self.quiet = 0;
+        if self.next.is_none() {
+            self.last = self.now;
+            self.next = Some(self.now + self.world.step);
+        }
+    }
+
+    fn view(&self) -> View<'_> {
+        View { stage: &self.stage, hands: &self.hands, arms: &self.arms, currents: &self.world.currents }
+    }
+
+    /// The value of a signal at the last physics step.
+    ///
+    /// Where its expression has no value (a division by zero, a signal that does not exist) it is `false`, the least
+    /// integer of its range, or not a number.
+    #[must_use]
+    pub fn read(&self, signal: SignalId) -> Value {
+        match self.signals.get(usize::from(signal.0)) {
+            Some(signal) => self.view().signal(signal),
+            None => Value::Float(f64::NAN),
+        }
+    }
+
+    // ── Environment actors ──
+
+    /// Begins an action of an environment actor; `var` gives the variables of its stimulus.
+    ///
+    /// # Errors
+    /// If an expression has no finite value, or the body is not kinematic, or what is named does not exist.
+    pub fn act(&mut self, action: &WorldAction, var: Vars<'_>) -> Result<(), SimError> {
+        match action {
+            WorldAction::Move { body, to, over } => {
+                let from = self.kinematic(*body)?;
+                let to = self.place(to, var)?;
+                let over = number(over, var, "the time of a move")?;
+                self.send(*body, from, Frame::new(to, from.turn), over);
+            }
+            WorldAction::Look { body, at, offset, distance, angle } => {
+                let from = self.kinematic(*body)?;
+                sense::check_body(*at, &self.world, || "a look".into())?;
+                let target = self.stage.pose(self.view().body(*at)).at;
+                let offset = number(offset, var, "the offset of a look")?;
+                let distance = number(distance, var, "the distance of a look")?.max(0.0);
+                let angle = number(angle, var, "the angle of a look")?.abs();
+                let facing = self.stage.start(*body).x_axis();
+                let to = mover::look(&from, facing, target, offset, distance, angle);
+                self.send(*body, from, to, mover::LOOK_TIME);
+            }
+            WorldAction::Grasp { gripper } => {
+                let hand = self.hand(*gripper).ok_or_else(|| no_gripper(*gripper))?;
+                let replaced = self.hands.close(hand, self.now, None, true);
+                self.replaced(replaced);
+            }
+            WorldAction::LetGo { gripper } => {
+                let hand = self.hand(*gripper).ok_or_else(|| no_gripper(*gripper))?;
+                let replaced = self.hands.open(hand, self.now, None);
+                self.replaced(replaced);
+            }
+        }
+        self.wake();
+        Ok(())
+    }
+
+    /// Where a kinematic body is at this moment, on its way.
+    fn kinematic(&self, body: BodyId) -> Result<Frame, SimError> {
+        let Some(data) = self.world.bodies.get(index(body)) else {
+            return Err(bad("an action".into(), "body", index(body)));
+        };
+        if data.motion != Motion::Kinematic {
+            return Err(SimError::NotKinematic { body: data.name.clone() });
+        }
+        Ok(match &self.ways[index(body)] {
+            Some(way) => way.at(self.now),
+            None => self.stage.pose(body),
+        })
+    }
+
+    fn send(&mut self, body: BodyId, from: Frame, to: Frame, over: f64) {
+        self.ways[index(body)] = Some(Way::new(from, to, self.now, over));
+    }
+
+    fn place(&self, point: &Point, var: Vars<'_>) -> Result<V3, SimError> {
+        let mut offset = V3::zeros();
+        for (i, expr) in point.offset.iter().enumerate() {
+            offset[i] = number(expr, var, "a place")?;
+        }
+        let Some(of) = point.of else { return Ok(offset) };
+        sense::check_body(of, &self.world, || "a place".into())?;
+        Ok(self.stage.pose(self.view().body(of)).at + offset)
+    }
+
+    // ── The system actor ──
+
+    /// Begins a command of the system actor; one to the same arm or gripper that is still under way is replaced.
+    ///
+    /// # Errors
+    /// If it cannot be begun: out of reach, beyond the limits, not a number, no such arm or gripper.
+    pub fn command(&mut self, command: Command) -> Result<CommandId, CommandError> {
+        let id = CommandId(self.commands);
+        let replaced = match command {
+            Command::MoveTo { arm, target, max_speed } => {
+                let at = self.arm(arm, max_speed)?;
+                if target.iter().any(|x| !x.is_finite()) {
+                    return Err(CommandError::NotFinite);
+                }
+                let local = self.arms[at].relative(&self.stage, target);
+                let posture = self.arms[at].plan(self.now, local)?;
+                self.arms[at].go(self.now, id, posture, Some(target), max_speed)
+            }
+            Command::MoveJoints { arm, positions, max_speed } => {
+                let at = self.arm(arm, max_speed)?;
+                if positions.iter().any(|x| !x.is_finite()) {
+                    return Err(CommandError::NotFinite);
+                }
+                self.arms[at].check(&positions, &self.world)?;
+                self.arms[at].go(self.now, id, positions, None, max_speed)
+            }
+            Command::Open { gripper } => {
+                let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
+                self.hands.open(hand, self.now, Some(id))
+            }
+            Command::Close { gripper } => {
+                let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
+                self.hands.close(hand, self.now, Some(id), false)
+            }
+        };
+        self.commands += 1;
+        self.replaced(replaced);
+        self.wake();
+        Ok(id)
+    }
+
+    fn arm(&self, arm: ArmId, max_speed: Option<f64>) -> Result<usize, CommandError> {
+        let at = usize::from(arm.0);
+        if at >= self.arms.len() {
+            return Err(CommandError::NoSuchArm);
+        }
+        if max_speed.is_some_and(|v| !(v.is_finite() && v > 0.0)) {
+            return Err(CommandError::BadSpeed);
+        }
+        Ok(at)
+    }
+
+    fn hand(&self, gripper: GripperId) -> Option<usize> {
+        Some(usize::from(gripper.0)).filter(|at| *at < self.hands.count())
+    }
+
+    fn replaced(&mut self, id: Option<CommandId>) {
+        self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
+    }
+
+    /// The commands that have ended since the last call, in the order in which they did (arms before hands).
+    pub fn finished(&mut self) -> Vec<(CommandId, Result<(), CommandError>)> {
+        std::mem::take(&mut self.finished)
+    }
+
+    // ── For reports ──
+
+    /// `robot.arm`
+    #[must_use]
+    pub fn arm_named(&self, name: &str) -> Option<ArmId> {
+        id(self.arms.iter().position(|a| a.name == name)).map(ArmId)
+    }
+
+    /// `robot.grip`
+    #[must_use]
+    pub fn gripper_named(&self, name: &str) -> Option<GripperId> {
+        id(self.hands.named(name)).map(GripperId)
+    }
+
+    /// `robot.palm`
+    #[must_use]
+    pub fn body_named(&self, name: &str) -> Option<BodyId> {
+        id(self.world.bodies.iter().position(|b| b.name == name)).map(BodyId)
+    }
+
+    /// The measured angles of an arm's joints, rad; empty if there is no such arm.
+    #[must_use]
+    pub fn joint_positions(&self, arm: ArmId) -> Vec<f64> {
+        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.stage))
+    }
+
+    /// Where an arm's tool point is, m.
+    #[must_use]
+    pub fn tool(&self, arm: ArmId) -> Option<Vec3> {
+        Some(arr(self.arms.get(usize::from(arm.0))?.tool_at(&self.stage)))
+    }
+
+    /// What a gripper holds.
+    #[must_use]
+    pub fn holding(&self, gripper: GripperId) -> Option<BodyId> {
+        self.hands.held_by(self.hand(gripper)?)
+    }
+
+    /// A body's centre (m) and rotation, a unit quaternion x, y, z, w.
+    #[must_use]
+    pub fn pose(&self, body: BodyId) -> Option<(Vec3, [f64; 4])> {
+        self.world.bodies.get(index(body))?;
+        let frame = self.stage.pose(body);
+        let q = frame.turn;
+        Some((arr(frame.at), [q.i, q.j, q.k, q.w]))
+    }
+}
+
+fn id(at: Option<usize>) -> Option<u16> {
+    at.and_then(|at| u16::try_from(at).ok())
+}
+
+fn no_gripper(gripper: GripperId) -> SimError {
+    bad("an action".into(), "gripper", usize::from(gripper.0))
+}
+
+fn number(expr: &Expr, var: Vars<'_>, what: &str) -> Result<f64, SimError> {
+    let value = expr.eval(var).map_err(|error| SimError::Eval { what: what.into(), error })?;
+    match value.as_f64() {
+        Some(x) if x.is_finite() => Ok(x),
+        Some(_) | None => Err(SimError::BadNumber { what: what.into() }),
+    }
+}

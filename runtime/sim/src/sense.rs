@@ -1,0 +1,122 @@
+//! Sensors: the value of every primitive term, now.
+
+use hrdsl_ir::world::{Axis, BodyId, BodyRef, Current, Signal, Term, World};
+use hrdsl_ir::{Type, Value};
+
+use crate::arm::ArmControl;
+use crate::error::SimError;
+use crate::hand::Hands;
+use crate::mover::sight_angle;
+use crate::stage::{Stage, bad, index};
+
+/// What sensors can see of the world.
+pub(crate) struct View<'a> {
+    pub stage: &'a Stage,
+    pub hands: &'a Hands,
+    pub arms: &'a [ArmControl],
+    pub currents: &'a [Current],
+}
+
+impl View<'_> {
+    /// The body that a name stands for now.
+    pub fn body(&self, body: BodyRef) -> BodyId {
+        match body {
+            BodyRef::Body(id) => id,
+            BodyRef::Current(id) => self.current(&self.currents[usize::from(id.0)]),
+        }
+    }
+
+    fn current(&self, current: &Current) -> BodyId {
+        let of = &current.of;
+        let held = self.hands.held_by(usize::from(current.by.0)).filter(|b| of.contains(b));
+        let untaken = || of.iter().copied().find(|b| !self.hands.was_taken(*b));
+        // INVARIANT: a current has bodies; checked when the world was made.
+        held.or_else(untaken).unwrap_or(of[of.len() - 1])
+    }
+
+    pub fn signal(&self, signal: &Signal) -> Value {
+        let term = |i: u16| signal.terms.get(usize::from(i)).map(|t| self.term(t));
+        signal.value.eval(&term).unwrap_or(match signal.ty {
+            Type::Bool => Value::Bool(false),
+            Type::Int { lo, .. } => Value::Int(lo),
+            Type::Float(_) => Value::Float(f64::NAN),
+        })
+    }
+
+    fn term(&self, term: &Term) -> Value {
+        match *term {
+            Term::Distance(a, b) => Value::Float(self.stage.distance(self.body(a), self.body(b))),
+            Term::Range(a, b) => {
+                let (a, b) = (self.stage.pose(self.body(a)), self.stage.pose(self.body(b)));
+                Value::Float((b.at - a.at).norm())
+            }
+            Term::Angle(a, b) => {
+                let (a, b) = (self.stage.pose(self.body(a)), self.stage.pose(self.body(b)));
+                Value::Float(sight_angle(&a, b.at))
+            }
+            Term::Visible(a, b) => Value::Bool(self.stage.visible(self.body(a), self.body(b))),
+            Term::Coordinate(b, axis) => {
+                let at = self.stage.pose(self.body(b)).at;
+                Value::Float(match axis {
+                    Axis::X => at.x,
+                    Axis::Y => at.y,
+                    Axis::Z => at.z,
+                })
+            }
+            Term::Holds(g, b) => Value::Bool(self.hands.held_by(usize::from(g.0)) == Some(self.body(b))),
+            Term::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
+            Term::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.stage)),
+            Term::Speed(b) => Value::Float(self.stage.speed(self.body(b))),
+        }
+    }
+}
+
+/// Checks that everything a signal or a current names exists.
+pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimError> {
+    for current in &world.currents {
+        let what = || format!("current `{}`", current.name);
+        if current.of.is_empty() {
+            return Err(bad(what(), "body", 0));
+        }
+        exists(usize::from(current.by.0), world.grippers.len(), "gripper", what)?;
+        for body in &current.of {
+            exists(index(*body), world.bodies.len(), "body", what)?;
+        }
+    }
+    for signal in signals {
+        let what = || format!("signal `{}`", signal.name);
+        for term in &signal.terms {
+            check_term(term, world, what)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_term(term: &Term, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
+    let gripper = |i: u16| exists(usize::from(i), world.grippers.len(), "gripper", &what);
+    match *term {
+        Term::Distance(a, b) | Term::Range(a, b) | Term::Angle(a, b) | Term::Visible(a, b) => {
+            check_body(a, world, &what)?;
+            check_body(b, world, &what)
+        }
+        Term::Coordinate(b, _) | Term::Speed(b) => check_body(b, world, &what),
+        Term::Holds(g, b) => {
+            gripper(g.0)?;
+            check_body(b, world, &what)
+        }
+        Term::HoldsAny(g) => gripper(g.0),
+        Term::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),
+    }
+}
+
+/// Checks that a body that is referred to exists.
+pub(crate) fn check_body(b: BodyRef, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
+    match b {
+        BodyRef::Body(id) => exists(index(id), world.bodies.len(), "body", what),
+        BodyRef::Current(id) => exists(usize::from(id.0), world.currents.len(), "current", what),
+    }
+}
+
+fn exists(at: usize, count: usize, kind: &'static str, what: impl Fn() -> String) -> Result<(), SimError> {
+    if at < count { Ok(()) } else { Err(bad(what(), kind, at)) }
+}

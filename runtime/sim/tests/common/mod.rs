@@ -1,0 +1,222 @@
+//! The table and its people as a world by hand, with the numbers of `std.robots.bert2` and `std.person`.
+#![allow(dead_code)]
+
+use hrdsl_ir::world::*;
+use hrdsl_ir::{Expr, Nanos, Span, Type, Unit, Value};
+use hrdsl_sim::{Command, CommandError, CommandId, Sim};
+
+pub const SECOND: Nanos = 1_000_000_000;
+pub const STEP: Nanos = 10_000_000;
+
+pub const REST: Vec3 = [0.46, -0.22, 0.76];
+pub const LEGS: [Vec3; 4] =
+    [[0.3, -0.3, 0.5555], [0.3, -0.38, 0.5555], [0.3, -0.46, 0.5555], [0.3, -0.54, 0.5555]];
+pub const OFFER: Vec3 = [0.48, 0.17, 0.705];
+pub const DISCARD: Vec3 = [0.15, 0.45, 0.65];
+
+pub const ARM: ArmId = ArmId(0);
+pub const GRIP: GripperId = GripperId(0);
+pub const GRASP: GripperId = GripperId(1);
+
+/// Degrees.
+fn deg(x: f64) -> f64 {
+    x.to_radians()
+}
+
+pub fn body(name: &str, motion: Motion, shape: Shape, position: Vec3, mass: f64) -> Body {
+    Body { name: name.into(), motion, shape, position, rotation: [0.0; 3], mass, ghost: false }
+}
+
+pub fn cuboid(x: f64, y: f64, z: f64) -> Shape {
+    Shape::Box { size: [x, y, z] }
+}
+
+struct Maker {
+    world: World,
+}
+
+impl Maker {
+    fn body(&mut self, name: &str, motion: Motion, shape: Shape, at: Vec3, mass: f64) -> BodyId {
+        self.world.bodies.push(body(name, motion, shape, at, mass));
+        BodyId(self.world.bodies.len() as u16 - 1)
+    }
+
+    fn ghost(&mut self, name: &str, radius: f64, at: Vec3, mass: f64) -> BodyId {
+        let id = self.body(name, Motion::Dynamic, Shape::Sphere { radius }, at, mass);
+        self.world.bodies[id.0 as usize].ghost = true;
+        id
+    }
+
+    fn joint(&mut self, name: &str, parent: BodyId, child: BodyId, at: Vec3, axis: Vec3, limits: (f64, f64)) {
+        let (lo, hi) = (deg(limits.0), deg(limits.1));
+        self.world.joints.push(Joint { name: name.into(), parent, child, anchor: at, axis, lo, hi });
+    }
+
+    fn bert2(&mut self) {
+        use Motion::{Dynamic, Fixed};
+        let capsule = |radius, length| Shape::Capsule { radius, length };
+        let torso = self.body("robot.torso", Fixed, cuboid(0.20, 0.35, 0.60), [0.0, 0.0, 0.30], 1.0);
+        let waist = Shape::Cylinder { radius: 0.08, length: 0.10 };
+        let waist = self.body("robot.waist", Dynamic, waist, [0.0, 0.0, 0.65], 4.0);
+        let chest = self.body("robot.chest", Dynamic, cuboid(0.18, 0.30, 0.40), [0.0, 0.0, 0.92], 8.0);
+        let shoulder = self.ghost("robot.shoulder", 0.06, [0.0, -0.22, 1.08], 1.5);
+        let cap = self.ghost("robot.shoulder_cap", 0.06, [0.0, -0.22, 1.06], 1.5);
+        let upper = self.body("robot.upper_arm", Dynamic, capsule(0.04, 0.20), [0.0, -0.22, 0.90], 1.8);
+        let elbow = self.body("robot.elbow", Dynamic, capsule(0.035, 0.09), [0.075, -0.22, 0.76], 1.0);
+        let forearm = self.body("robot.forearm", Dynamic, capsule(0.03, 0.11), [0.225, -0.22, 0.76], 0.8);
+        for b in [elbow, forearm] {
+            self.world.bodies[b.0 as usize].rotation = [0.0, deg(90.0), 0.0];
+        }
+        let wrist = self.ghost("robot.wrist", 0.03, [0.30, -0.22, 0.76], 0.4);
+        let palm = self.body("robot.palm", Dynamic, cuboid(0.04, 0.08, 0.08), [0.38, -0.22, 0.76], 0.4);
+        for (name, y) in [("robot.finger_left", -0.185), ("robot.finger_right", -0.255)] {
+            let finger = self.body(name, Dynamic, cuboid(0.08, 0.01, 0.03), [0.44, y, 0.76], 0.05);
+            self.world.bodies[finger.0 as usize].ghost = true;
+            self.joint(name, palm, finger, [0.40, y, 0.76], [0.0, 0.0, 1.0], (0.0, 0.0));
+        }
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        let (no_x, no_y) = ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]);
+        self.joint("robot.hip_rotor", torso, waist, [0.0, 0.0, 0.60], z, (-60.0, 60.0));
+        self.joint("robot.hip_flexor", waist, chest, [0.0, 0.0, 0.70], y, (-10.0, 35.0));
+        self.joint("robot.shoulder_flexor", chest, shoulder, [0.0, -0.22, 1.08], no_y, (-60.0, 110.0));
+        self.joint("robot.shoulder_abduction", shoulder, cap, [0.0, -0.22, 1.08], no_x, (-35.0, 80.0));
+        self.joint("robot.humeral_rotation", cap, upper, [0.0, -0.22, 1.00], z, (-80.0, 80.0));
+        self.joint("robot.elbow_flexor", upper, elbow, [0.0, -0.22, 0.76], no_y, (-85.0, 50.0));
+        self.joint("robot.wrist_pronation", elbow, forearm, [0.15, -0.22, 0.76], x, (-85.0, 85.0));
+        self.joint("robot.wrist_abduction", forearm, wrist, [0.30, -0.22, 0.76], z, (-40.0, 40.0));
+        self.joint("robot.wrist_flexor", wrist, palm, [0.30, -0.22, 0.76], y, (-70.0, 70.0));
+        self.world.arms.push(Arm {
+            name: "robot.arm".into(),
+            joints: (2..11).map(JointId).collect(),
+            tip: palm,
+            tool: [0.08, 0.0, 0.0],
+            max_speed: 0.2,
+        });
+        self.gripper("robot.grip", palm, [0.08, 0.0, 0.0], 0.04, 500_000_000);
+    }
+
+    fn person(&mut self) {
+        use Motion::Kinematic;
+        let head =
+            self.body("person.head", Kinematic, Shape::Sphere { radius: 0.10 }, [1.25, 0.17, 1.35], 1.0);
+        self.world.bodies[head.0 as usize].rotation = [0.0, 0.0, deg(180.0)];
+        let hand = self.body("person.hand", Kinematic, Shape::Sphere { radius: 0.04 }, [1.0, 0.2, 0.9], 1.0);
+        self.gripper("person.grasp", hand, [0.0; 3], 0.10, 100_000_000);
+    }
+
+    fn gripper(&mut self, name: &str, palm: BodyId, tool: Vec3, reach: f64, delay: Nanos) {
+        let name = name.into();
+        self.world.grippers.push(Gripper { name, palm, tool, reach, delay, holds: Vec::new() });
+    }
+}
+
+/// Robot, person, a stand with four legs on it, a box for what is discarded.
+pub fn table() -> World {
+    let world = World {
+        step: STEP,
+        sample: 50_000_000,
+        gravity: [0.0, 0.0, -9.81],
+        bodies: Vec::new(),
+        joints: Vec::new(),
+        arms: Vec::new(),
+        grippers: Vec::new(),
+        currents: Vec::new(),
+        rules: Vec::new(),
+        origin: Span::default(),
+    };
+    let mut m = Maker { world };
+    m.body("floor", Motion::Fixed, cuboid(6.0, 6.0, 0.10), [0.0, 0.0, -0.05], 1.0);
+    m.body("stand", Motion::Fixed, cuboid(0.20, 0.40, 0.4305), [0.3, -0.42, 0.21525], 1.0);
+    m.bert2();
+    m.person();
+    let legs: Vec<BodyId> = LEGS
+        .iter()
+        .enumerate()
+        .map(|(i, at)| m.body(&format!("leg{}", i + 1), Motion::Dynamic, cuboid(0.04, 0.04, 0.25), *at, 0.5))
+        .collect();
+    for gripper in &mut m.world.grippers {
+        gripper.holds.clone_from(&legs);
+    }
+    m.world.currents.push(Current { name: "leg".into(), of: legs, by: GRIP });
+    m.world
+}
+
+pub fn named(world: &World, name: &str) -> BodyId {
+    BodyId(world.bodies.iter().position(|b| b.name == name).unwrap() as u16)
+}
+
+pub fn signal(name: &str, ty: Type, terms: Vec<Term>, value: Expr) -> Signal {
+    Signal { name: name.into(), ty, to: Vec::new(), terms, value, recorded: true, origin: Span::default() }
+}
+
+pub fn number(name: &str, term: Term) -> Signal {
+    signal(name, Type::Float(Unit::Metre), vec![term], Expr::Var(0))
+}
+
+pub fn truth(name: &str, term: Term) -> Signal {
+    signal(name, Type::Bool, vec![term], Expr::Var(0))
+}
+
+pub fn float(sim: &Sim, i: u16) -> f64 {
+    sim.read(SignalId(i)).as_f64().unwrap()
+}
+
+pub fn boolean(sim: &Sim, i: u16) -> bool {
+    sim.read(SignalId(i)).as_bool().unwrap()
+}
+
+pub fn none(_: u16) -> Option<Value> {
+    None
+}
+
+pub fn at(of: Option<BodyRef>, place: Vec3) -> Point {
+    Point { of, offset: place.map(Expr::float) }
+}
+
+pub fn move_to(target: Vec3) -> Command {
+    Command::MoveTo { arm: ARM, target, max_speed: None }
+}
+
+/// Runs until the command ends; gives the seconds it took.
+pub fn wait(sim: &mut Sim, id: CommandId, mut each: impl FnMut(&Sim)) -> (f64, Result<(), CommandError>) {
+    let start = sim.now();
+    loop {
+        let Some(next) = sim.next_wake() else { panic!("the world rests, but a command is under way") };
+        sim.advance(next);
+        each(sim);
+        if let Some((_, result)) = sim.finished().into_iter().find(|(done, _)| *done == id) {
+            return ((sim.now() - start) as f64 / 1e9, result);
+        }
+        assert!(sim.now() - start < 60 * SECOND, "takes too long");
+    }
+}
+
+pub fn run(sim: &mut Sim, command: Command) -> f64 {
+    let what = format!("{command:?}");
+    let id = sim.command(command).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let (time, result) = wait(sim, id, |_| {});
+    result.unwrap_or_else(|e| panic!("{what}: {e}, tool at {:?}", sim.tool(ARM)));
+    time
+}
+
+/// Runs until nothing moves.
+pub fn settle(sim: &mut Sim) {
+    let start = sim.now();
+    while let Some(next) = sim.next_wake() {
+        assert!(next - start < 600 * SECOND, "never comes to rest");
+        sim.advance(next);
+    }
+}
+
+pub fn distance(a: Vec3, b: Vec3) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Fetches the first leg and holds it out.
+pub fn offer(sim: &mut Sim) {
+    let [x, y, z] = LEGS[0];
+    run(sim, move_to(LEGS[0]));
+    run(sim, Command::Close { gripper: GRIP });
+    run(sim, move_to([x, y, z + 0.15]));
+    run(sim, move_to(OFFER));
+}

@@ -1,0 +1,192 @@
+//! A table leg on its way: picked up, carried, handed over, let go, lost, thrown away.
+
+mod common;
+use common::*;
+use hrdsl_ir::world::*;
+use hrdsl_ir::{Expr, Type};
+use hrdsl_sim::{Command, CommandError, Sim, SimError};
+
+const LEG: BodyRef = BodyRef::Current(CurrentId(0));
+
+fn leg(world: &World, n: usize) -> BodyId {
+    named(world, &format!("leg{n}"))
+}
+
+fn place(sim: &Sim, body: BodyId) -> Vec3 {
+    sim.pose(body).unwrap().0
+}
+
+fn reach_for(world: &World, of: BodyRef, offset: Vec3) -> WorldAction {
+    let body = named(world, "person.hand");
+    WorldAction::Move { body, to: at(Some(of), offset), over: Expr::float(1.0) }
+}
+
+#[test]
+fn a_leg_is_fetched_and_held_out_and_nothing_else_moves() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[]).unwrap();
+    offer(&mut sim);
+    settle(&mut sim);
+    assert_eq!(sim.holding(GRIP), Some(leg(&world, 1)));
+    let error = distance(place(&sim, leg(&world, 1)), OFFER);
+    assert!(error < 0.01, "{error}");
+    let (_, q) = sim.pose(leg(&world, 1)).unwrap();
+    let tilt = (q[0].powi(2) + q[1].powi(2)).sqrt() * 2.0;
+    assert!(tilt < 0.15, "carried upright: {tilt} rad");
+    for n in 2..=4 {
+        let moved = distance(place(&sim, leg(&world, n)), LEGS[n - 1]);
+        assert!(moved < 0.003, "leg {n} moved {moved}");
+    }
+}
+
+#[test]
+fn four_legs_go_over_to_the_person() {
+    let world = table();
+    let signals = [truth("robot", Term::Holds(GRIP, LEG)), truth("person", Term::Holds(GRASP, LEG))];
+    let mut sim = Sim::new(&world, &signals).unwrap();
+    for n in 1..=4 {
+        let [x, y, z] = LEGS[n - 1];
+        run(&mut sim, move_to([x, y, z]));
+        run(&mut sim, Command::Close { gripper: GRIP });
+        assert_eq!(sim.holding(GRIP), Some(leg(&world, n)), "the nearest");
+        run(&mut sim, move_to([x, y, z + 0.15]));
+        run(&mut sim, move_to(OFFER));
+        sim.act(&reach_for(&world, LEG, [0.05, -0.1, -0.05]), &none).unwrap();
+        sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
+        settle(&mut sim);
+        assert!(boolean(&sim, 0) && boolean(&sim, 1), "both hold leg {n}");
+        let before = place(&sim, leg(&world, n));
+        run(&mut sim, Command::Open { gripper: GRIP });
+        settle(&mut sim);
+        assert_eq!((sim.holding(GRIP), sim.holding(GRASP)), (None, Some(leg(&world, n))));
+        assert!(distance(before, place(&sim, leg(&world, n))) < 0.01, "it stays in the person's hand");
+        let away = at(None, [1.0, 0.2, 0.9]);
+        let hand = named(&world, "person.hand");
+        sim.act(&WorldAction::Move { body: hand, to: away, over: Expr::float(1.0) }, &none).unwrap();
+        settle(&mut sim);
+        assert!(distance(place(&sim, leg(&world, n)), [1.0, 0.2, 0.9]) < 0.15, "and goes with it");
+        sim.act(&WorldAction::LetGo { gripper: GRASP }, &none).unwrap();
+        settle(&mut sim);
+        assert!(place(&sim, leg(&world, n))[2] < 0.3, "until it is let go of");
+    }
+}
+
+#[test]
+fn a_leg_is_thrown_away() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[]).unwrap();
+    offer(&mut sim);
+    run(&mut sim, move_to(DISCARD));
+    run(&mut sim, Command::Open { gripper: GRIP });
+    settle(&mut sim);
+    assert_eq!(sim.holding(GRIP), None);
+    let [x, y, z] = place(&sim, leg(&world, 1));
+    assert!((x - DISCARD[0]).abs() < 0.3 && (y - DISCARD[1]).abs() < 0.3 && z < 0.2, "{x} {y} {z}");
+    run(&mut sim, move_to(REST));
+}
+
+#[test]
+fn the_two_may_hold_at_once_without_a_fight() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[number("speed", Term::JointSpeed(ARM))]).unwrap();
+    offer(&mut sim);
+    sim.act(&reach_for(&world, LEG, [0.05, -0.1, -0.05]), &none).unwrap();
+    sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
+    sim.advance(sim.now() + 2 * SECOND);
+    assert_eq!(sim.holding(GRASP), Some(leg(&world, 1)));
+    let before = place(&sim, leg(&world, 1));
+    // The hand goes on; the robot keeps the leg, and the hand loses it.
+    sim.act(&reach_for(&world, LEG, [0.3, -0.3, 0.2]), &none).unwrap();
+    let mut fastest: f64 = 0.0;
+    for _ in 0..200 {
+        sim.advance(sim.now() + STEP);
+        fastest = fastest.max(float(&sim, 0));
+    }
+    assert!(fastest < 0.02, "the arm stands: {fastest}");
+    assert_eq!((sim.holding(GRIP), sim.holding(GRASP)), (Some(leg(&world, 1)), None));
+    assert!(distance(before, place(&sim, leg(&world, 1))) < 1e-3);
+}
+
+#[test]
+fn a_grasp_waits_for_what_comes() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[]).unwrap();
+    sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
+    settle(&mut sim);
+    assert_eq!(sim.holding(GRASP), None);
+    sim.act(&reach_for(&world, BodyRef::Body(leg(&world, 1)), [0.0, 0.08, 0.0]), &none).unwrap();
+    settle(&mut sim);
+    assert_eq!(sim.holding(GRASP), Some(leg(&world, 1)));
+}
+
+#[test]
+fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[truth("any", Term::HoldsAny(GRIP))]).unwrap();
+    let time = run(&mut sim, Command::Close { gripper: GRIP });
+    assert!((0.5..0.55).contains(&time), "{time}");
+    assert!(!boolean(&sim, 0));
+    run(&mut sim, move_to(LEGS[0]));
+    assert_eq!(sim.holding(GRIP), None);
+}
+
+#[test]
+fn the_current_leg_is_the_held_or_the_next_or_the_last() {
+    let world = table();
+    let x = Term::Coordinate(LEG, Axis::Y);
+    let mut sim = Sim::new(&world, &[number("y", x)]).unwrap();
+    let y = |sim: &Sim| float(sim, 0);
+    assert!((y(&sim) - LEGS[0][1]).abs() < 1e-3);
+    offer(&mut sim);
+    assert!((y(&sim) - OFFER[1]).abs() < 0.01, "the held one");
+    run(&mut sim, Command::Open { gripper: GRIP });
+    assert!((y(&sim) - LEGS[1][1]).abs() < 1e-3, "the next");
+}
+
+#[test]
+fn opening_while_closing_replaces_it() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[]).unwrap();
+    let close = sim.command(Command::Close { gripper: GRIP }).unwrap();
+    sim.advance(SECOND / 4);
+    let open = sim.command(Command::Open { gripper: GRIP }).unwrap();
+    sim.advance(SECOND);
+    assert_eq!(sim.finished(), vec![(close, Err(CommandError::Replaced)), (open, Ok(()))]);
+}
+
+#[test]
+fn actions_that_cannot_be_are_refused() {
+    let world = table();
+    let mut sim = Sim::new(&world, &[]).unwrap();
+    let leg1 = leg(&world, 1);
+    let action = WorldAction::Move { body: leg1, to: at(None, REST), over: Expr::float(1.0) };
+    assert_eq!(sim.act(&action, &none), Err(SimError::NotKinematic { body: "leg1".into() }));
+    let hand = named(&world, "person.hand");
+    let action = WorldAction::Move { body: hand, to: at(None, REST), over: Expr::Var(0) };
+    assert!(matches!(sim.act(&action, &none), Err(SimError::Eval { .. })));
+    let action = WorldAction::Grasp { gripper: GripperId(9) };
+    assert!(matches!(sim.act(&action, &none), Err(SimError::BadReference { .. })));
+}
+
+#[test]
+fn a_world_that_makes_no_sense_is_refused() {
+    let refuse = |change: &dyn Fn(&mut World)| {
+        let mut world = table();
+        change(&mut world);
+        Sim::new(&world, &[]).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert!(refuse(&|w| w.step = 0).contains("physics step"));
+    assert!(refuse(&|w| w.bodies[3].mass = -1.0).contains("mass of body `robot.waist"));
+    assert!(refuse(&|w| w.bodies[0].shape = Shape::Sphere { radius: f64::NAN }).contains("measure of body"));
+    assert!(refuse(&|w| w.joints[2].child = BodyId(99)).contains("body 99"));
+    assert!(refuse(&|w| w.arms[0].joints.swap(0, 1)).contains("not a chain"));
+    assert!(refuse(&|w| w.arms[0].joints.clear()).contains("tip of the arm"));
+    assert!(refuse(&|w| w.arms[0].tip = BodyId(0)).contains("tip of the arm"));
+    assert!(refuse(&|w| w.joints[2].child = BodyId(2)).contains("dynamic body"));
+    assert!(refuse(&|w| w.grippers[0].palm = BodyId(77)).contains("body 77"));
+    assert!(refuse(&|w| w.grippers[0].holds.push(BodyId(1))).contains("cannot hold `stand`"));
+    assert!(refuse(&|w| w.currents[0].of.clear()).contains("current"));
+    let signal = signal("far", Type::Bool, vec![Term::HoldsAny(GripperId(4))], Expr::Var(0));
+    let error = Sim::new(&table(), &[signal]).err().unwrap();
+    assert_eq!(error.to_string(), "signal `far` refers to gripper 4, which does not exist");
+}

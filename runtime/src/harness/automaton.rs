@@ -1,0 +1,59 @@
+//! The player that is a timed automaton: the model of the code, run as fast as its guards allow.
+
+use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, ta::AutomatonId};
+use hrdsl_ta::Player as Machine;
+
+use super::{Context, Fault, Message, Player};
+
+pub struct AutomatonPlayer<'p> {
+    program: &'p Program,
+    name: &'p str,
+    actors: [ActorId; 1],
+    machine: Machine<'p>,
+}
+
+impl<'p> AutomatonPlayer<'p> {
+    #[must_use]
+    pub fn new(program: &'p Program, automaton: AutomatonId) -> Self {
+        let declared = &program.automata[automaton.0 as usize];
+        let machine = Machine::new(program, automaton);
+        Self { program, name: &declared.name, actors: [declared.actor], machine }
+    }
+
+    fn go_on(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+        let mut sent = Vec::new();
+        self.machine
+            .run(cx.now, &mut sent)
+            .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;
+        for (event, args) in sent {
+            debug_assert_eq!(self.program.event(event).from, self.actors[0]);
+            cx.out.push(Message::Event { event, args });
+        }
+        Ok(())
+    }
+}
+
+impl Player for AutomatonPlayer<'_> {
+    fn actors(&self) -> &[ActorId] {
+        &self.actors
+    }
+
+    fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+        self.go_on(cx)
+    }
+
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+        self.machine
+            .receive(event, args, cx.now)
+            .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;
+        self.go_on(cx)
+    }
+
+    fn next_wake(&self) -> Option<Nanos> {
+        self.machine.next_wake()
+    }
+
+    fn is_finished(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,132 @@
+//! Doing a stimulus: its samples are drawn, then its steps run in order, holding for the time they say.
+
+use std::collections::VecDeque;
+
+use hrdsl_ir::{
+    EventId, Nanos, Program, Type, Value,
+    event::{Stimulus, StimulusStep},
+    expr::Expr,
+    value::nanos,
+    world::WorldAction,
+};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::{Context, Fault, Message};
+
+/// A stimulus under way.
+pub struct Performance {
+    steps: VecDeque<Primitive>,
+    vars: Vec<Value>,
+    /// It holds until then.
+    pub until: Nanos,
+}
+
+enum Primitive {
+    Emit(EventId, Vec<Value>),
+    Hold(Nanos),
+    Act(WorldAction),
+}
+
+/// Draws the second tier's values of a stimulus, in order, uniformly from their ranges.
+///
+/// # Errors
+/// A range that has no value for these arguments.
+pub fn draw_samples(
+    program: &Program,
+    event: EventId,
+    args: &[Value],
+    rng: &mut ChaCha8Rng,
+) -> Result<Vec<Value>, Fault> {
+    let Some(stimulus) = &program.event(event).stimulus else { return Ok(Vec::new()) };
+    let mut vars = args.to_vec();
+    for sample in &stimulus.samples {
+        let (lo, hi) = (eval(program, event, &sample.lo, &vars)?, eval(program, event, &sample.hi, &vars)?);
+        vars.push(draw(sample.ty, lo, hi, rng));
+    }
+    Ok(vars.split_off(args.len()))
+}
+
+fn draw(ty: Type, lo: Value, hi: Value, rng: &mut ChaCha8Rng) -> Value {
+    match (ty, lo, hi) {
+        (Type::Int { .. }, Value::Int(lo), Value::Int(hi)) if lo < hi => Value::Int(rng.random_range(lo..=hi)),
+        (Type::Float(_) | Type::Int { .. } | Type::Bool, lo, hi) => match (lo.as_f64(), hi.as_f64()) {
+            // Micrometres, microradians: what a generated test's text says is exactly what runs.
+            (Some(lo), Some(hi)) if lo < hi => Value::Float(on_grid(rng.random_range(lo..hi)).clamp(lo, hi)),
+            (Some(_) | None, _) => lo,
+        },
+    }
+}
+
+fn on_grid(x: f64) -> f64 {
+    (x * 1e6).round() / 1e6
+}
+
+fn eval(program: &Program, event: EventId, expr: &Expr, vars: &[Value]) -> Result<Value, Fault> {
+    expr.eval(&|i| vars.get(i as usize).copied())
+        .map_err(|e| Fault::Model(format!("stimulus `{}`: {e}", program.event(event).name)))
+}
+
+impl Performance {
+    /// Begins a stimulus: it is recorded as an event, then its first steps run.
+    ///
+    /// # Errors
+    /// An expression of the stimulus without a value.
+    pub fn begin(
+        program: &Program,
+        event: EventId,
+        args: &[Value],
+        samples: &[Value],
+        cx: &mut Context<'_>,
+    ) -> Result<Self, Fault> {
+        cx.out.push(Message::Event { event, args: args.to_vec() });
+        let mut this = Self { steps: VecDeque::new(), vars: [args, samples].concat(), until: cx.now };
+        if let Some(Stimulus { steps, .. }) = &program.event(event).stimulus {
+            this.plan(program, event, steps)?;
+        }
+        this.go_on(cx);
+        Ok(this)
+    }
+
+    fn plan(&mut self, program: &Program, event: EventId, steps: &[StimulusStep]) -> Result<(), Fault> {
+        for step in steps {
+            match step {
+                StimulusStep::Emit { event: emitted, args } => {
+                    let args = args.iter().map(|a| eval(program, event, a, &self.vars));
+                    let args = args.collect::<Result<_, _>>()?;
+                    self.steps.push_back(Primitive::Emit(*emitted, args));
+                }
+                StimulusStep::Hold { seconds } => {
+                    let time = eval(program, event, seconds, &self.vars)?.as_f64().unwrap_or(0.0);
+                    self.steps.push_back(Primitive::Hold(nanos(time.max(0.0))));
+                }
+                StimulusStep::Act(action) => self.steps.push_back(Primitive::Act(action.clone())),
+                StimulusStep::If { condition, then, otherwise } => {
+                    let holds = eval(program, event, condition, &self.vars)?.as_bool() == Some(true);
+                    self.plan(program, event, if holds { then } else { otherwise })?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs steps until one holds beyond now. `is_done` tells whether any are left.
+    pub fn go_on(&mut self, cx: &mut Context<'_>) {
+        while self.until <= cx.now {
+            match self.steps.pop_front() {
+                None => return,
+                Some(Primitive::Emit(event, args)) => cx.out.push(Message::Event { event, args }),
+                Some(Primitive::Hold(time)) => self.until = cx.now + time,
+                Some(Primitive::Act(action)) => {
+                    cx.out.push(Message::Act { action, vars: self.vars.clone() });
+                }
+            }
+        }
+    }
+
+    /// No step is left and nothing holds.
+    #[must_use]
+    pub fn is_done(&self, now: Nanos) -> bool {
+        self.steps.is_empty() && self.until <= now
+    }
+}

@@ -1,0 +1,298 @@
+//! What all reports say about a campaign in the same way: verdicts, standings, gaps.
+
+use std::collections::BTreeMap;
+
+use super::text;
+use crate::results::{BinResult, Failure, Ratios, Requirement, Results, Tally, TestResult, VerdictResult};
+
+/// The outcome of a requirement in a test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Pass,
+    Fail,
+    NotChecked,
+    Open,
+    Error,
+}
+
+impl Outcome {
+    pub const ALL: [Outcome; 5] =
+        [Outcome::Pass, Outcome::Fail, Outcome::NotChecked, Outcome::Open, Outcome::Error];
+
+    /// The outcome as [`VerdictResult`] writes it; a word that is none of them says that nothing was checked.
+    pub fn of(verdict: &VerdictResult) -> Self {
+        match verdict.outcome {
+            "pass" => Outcome::Pass,
+            "fail" => Outcome::Fail,
+            "open" => Outcome::Open,
+            "error" => Outcome::Error,
+            _ => Outcome::NotChecked,
+        }
+    }
+
+    /// A mark that needs no colour.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Outcome::Pass => "✓",
+            Outcome::Fail => "✗",
+            Outcome::NotChecked => "○",
+            Outcome::Open => "…",
+            Outcome::Error => "!",
+        }
+    }
+
+    /// The heading of its column.
+    pub fn short(self) -> &'static str {
+        match self {
+            Outcome::Pass => "P",
+            Outcome::Fail => "F",
+            Outcome::NotChecked => "NC",
+            Outcome::Open => "open",
+            Outcome::Error => "err",
+        }
+    }
+
+    /// One letter, for style classes and filters.
+    pub fn letter(self) -> char {
+        match self {
+            Outcome::Pass => 'p',
+            Outcome::Fail => 'f',
+            Outcome::NotChecked => 'n',
+            Outcome::Open => 'o',
+            Outcome::Error => 'e',
+        }
+    }
+
+    /// As a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Pass => "passed",
+            Outcome::Fail => "violated",
+            Outcome::NotChecked => "not checked",
+            Outcome::Open => "open",
+            Outcome::Error => "error",
+        }
+    }
+
+    /// Its number in a tally.
+    pub fn count(self, tally: &Tally) -> u32 {
+        match self {
+            Outcome::Pass => tally.pass,
+            Outcome::Fail => tally.fail,
+            Outcome::NotChecked => tally.not_checked,
+            Outcome::Open => tally.open,
+            Outcome::Error => tally.error,
+        }
+    }
+}
+
+/// All suites together.
+pub fn total(requirement: &Requirement) -> Tally {
+    requirement.tally.iter().fold(Tally::default(), |sum, t| Tally {
+        pass: sum.pass + t.pass,
+        fail: sum.fail + t.fail,
+        not_checked: sum.not_checked + t.not_checked,
+        open: sum.open + t.open,
+        error: sum.error + t.error,
+    })
+}
+
+/// Where a requirement stands after all tests: the worst thing that is known about it.
+pub fn standing(requirement: &Requirement) -> Outcome {
+    let tally = total(requirement);
+    if tally.fail > 0 {
+        Outcome::Fail
+    } else if tally.pass > 0 {
+        Outcome::Pass
+    } else if tally.open > 0 {
+        Outcome::Open
+    } else if tally.error > 0 {
+        Outcome::Error
+    } else {
+        Outcome::NotChecked
+    }
+}
+
+/// What is known about a bin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bin {
+    Hit,
+    /// No test hit it, and nothing says that none could.
+    Missed,
+    /// The model cannot reach it, and no test did.
+    Unreachable,
+    /// The model cannot reach it, yet a test did: the model is wrong.
+    Refuted,
+}
+
+impl Bin {
+    pub fn of(bin: &BinResult) -> Self {
+        let is_hit = bin.hits.iter().any(|n| *n > 0);
+        match (is_hit, bin.unreachable.is_some()) {
+            (true, false) => Bin::Hit,
+            (false, false) => Bin::Missed,
+            (false, true) => Bin::Unreachable,
+            (true, true) => Bin::Refuted,
+        }
+    }
+
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Bin::Hit => "✓",
+            Bin::Missed => "○",
+            Bin::Unreachable => "⊘",
+            Bin::Refuted => "!",
+        }
+    }
+}
+
+/// Whether the model of a suite predicted anything: without that, a prediction of 0 means nothing.
+pub fn predicts(results: &Results, suite: usize) -> bool {
+    results.bins.iter().any(|b| b.predicted.get(suite).is_some_and(|n| *n > 0))
+}
+
+/// How many of the bins each suite hit.
+pub fn bins_hit(results: &Results, suite: usize) -> usize {
+    results.bins.iter().filter(|b| b.hits.get(suite).is_some_and(|n| *n > 0)).count()
+}
+
+/// Lines and branches of all files.
+pub fn code(results: &Results) -> Ratios {
+    results.code.iter().fold(Ratios::default(), |sum, f| Ratios {
+        lines: sum.lines + f.ratios.lines,
+        lines_total: sum.lines_total + f.ratios.lines_total,
+        branches: sum.branches + f.ratios.branches,
+        branches_total: sum.branches_total + f.ratios.branches_total,
+    })
+}
+
+/// Whether a test violates a requirement.
+pub fn violates(test: &TestResult, requirement: &str) -> bool {
+    test.verdicts.iter().any(|v| v.requirement == requirement && v.outcome == "fail")
+}
+
+/// The failure of a requirement in a test.
+pub fn failure<'a>(test: &'a TestResult, requirement: &str) -> Option<(&'a VerdictResult, &'a Failure)> {
+    let verdict = test.verdicts.iter().find(|v| v.requirement == requirement && v.outcome == "fail")?;
+    verdict.failure.as_ref().map(|failure| (verdict, failure))
+}
+
+/// The tests that violate a requirement, in order, each with its place in [`Results::tests`].
+pub fn failing<'a>(results: &'a Results, requirement: &Requirement) -> Vec<(usize, &'a TestResult)> {
+    results.tests.iter().enumerate().filter(|(_, t)| violates(t, &requirement.name)).collect()
+}
+
+/// Which obligation a violation is of, in a sentence; nothing if it needs none.
+pub fn how(failure: &Failure) -> String {
+    let since = text::moment(failure.triggered_at);
+    let passed = text::moment(failure.time - failure.triggered_at);
+    match (failure.deadline, failure.triggered_at < failure.time) {
+        (true, _) => format!("What was due since {since} was not done within {passed}."),
+        (false, true) => format!("Breaks what held since {since}."),
+        (false, false) => String::new(),
+    }
+}
+
+/// A violation in a few words: the step that violates, or what was not done.
+pub fn in_short(failure: &Failure) -> String {
+    let step = failure.witness.last().map(|s| text::line(&s.text)).unwrap_or_default();
+    let passed = text::moment(failure.time - failure.triggered_at);
+    match (failure.deadline, failure.witness.as_slice()) {
+        (true, []) => format!("nothing within {passed}"),
+        (true, _) => format!("nothing within {passed} of {step}"),
+        (false, [first, .., _]) => format!("{step}, {passed} after {}", text::line(&first.text)),
+        (false, _) => step,
+    }
+}
+
+/// A test's name within its scenario.
+pub fn short<'a>(results: &Results, name: &'a str) -> &'a str {
+    let within = name.strip_prefix(results.scenario.as_str()).and_then(|n| n.strip_prefix('.'));
+    within.unwrap_or(name)
+}
+
+/// The first place of each test's name.
+pub fn places(results: &Results) -> BTreeMap<&str, usize> {
+    results.tests.iter().enumerate().rev().map(|(i, t)| (t.name.as_str(), i)).collect()
+}
+
+/// What the campaign leaves unsaid, in sentences: unchecked requirements, missed bins, open goals, missed code, errors.
+pub fn gaps(results: &Results) -> Vec<String> {
+    let mut gaps = Vec::new();
+    errors(results, &mut gaps);
+    unchecked(results, &mut gaps);
+    missed_bins(results, &mut gaps);
+    for suite in &results.suites {
+        let open = suite.goals.iter().filter(|g| g.status == crate::testgen::GoalStatus::Open).count();
+        if open > 0 {
+            gaps.push(format!(
+                "{} of {} stayed open: the search ended before it had an answer.",
+                text::count(open, "goal"),
+                suite.name
+            ));
+        }
+    }
+    let code = code(results);
+    if code.lines < code.lines_total {
+        gaps.push(format!(
+            "{} of {} lines and {} of {} branches of the code were executed by no test.",
+            code.lines_total - code.lines,
+            code.lines_total,
+            code.branches_total - code.branches,
+            code.branches_total
+        ));
+    }
+    gaps
+}
+
+fn errors(results: &Results, gaps: &mut Vec<String>) {
+    let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
+    if broken > 0 {
+        gaps.push(format!(
+            "{} broke off in error: what they would have shown is not known.",
+            text::count(broken, "test")
+        ));
+    }
+}
+
+fn unchecked(results: &Results, gaps: &mut Vec<String>) {
+    let checked = |t: &Tally| t.pass + t.fail > 0;
+    let never: Vec<String> = results
+        .requirements
+        .iter()
+        .filter(|r| !r.tally.iter().any(checked))
+        .map(|r| r.name.clone())
+        .collect();
+    if !never.is_empty() {
+        gaps.push(format!("{} got no verdict from any test.", text::enumeration(&never)));
+    }
+    for (i, suite) in results.suites.iter().enumerate() {
+        let here = |r: &&Requirement| !r.tally.get(i).is_some_and(checked) && !never.contains(&r.name);
+        let names: Vec<String> = results.requirements.iter().filter(here).map(|r| r.name.clone()).collect();
+        if !names.is_empty() {
+            gaps.push(format!("{} got no verdict from {}.", text::enumeration(&names), suite.name));
+        }
+    }
+}
+
+fn missed_bins(results: &Results, gaps: &mut Vec<String>) {
+    let named = |state: Bin| -> Vec<String> {
+        results.bins.iter().filter(|b| Bin::of(b) == state).map(|b| format!("“{}”", b.bin)).collect()
+    };
+    let missed = named(Bin::Missed);
+    if !missed.is_empty() {
+        gaps.push(format!(
+            "{} of {} bins were hit by no test: {}.",
+            missed.len(),
+            results.bins.len(),
+            text::enumeration(&missed)
+        ));
+    }
+    let refuted = named(Bin::Refuted);
+    if !refuted.is_empty() {
+        gaps.push(format!(
+            "The model cannot reach {}, yet tests did: the model does not match what was tested.",
+            text::enumeration(&refuted)
+        ));
+    }
+}

@@ -1,0 +1,446 @@
+//! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
+
+use hrdsl_ir::Span;
+use hrdsl_sut::FileCoverage;
+
+use crate::{
+    results::{
+        BinResult, CodeFile, Failure, Margin, Ratios, Requirement, Results, SuiteInfo, Tally, TestResult,
+        VerdictResult, WitnessStep,
+    },
+    testgen::{GoalReport, GoalStatus},
+};
+
+const SUITES: [(&str, &str); 3] =
+    [("bdi_tests", "agents"), ("ta_tests", "search"), ("random_tests", "random")];
+
+const REQUIREMENTS: [(&str, &str, &str, &str); 6] = [
+    (
+        "R1",
+        "functional",
+        "a leg is released or discarded in time once the robot has decided",
+        "after decided(_): (released or discarded) within DEADLINE",
+    ),
+    (
+        "R2",
+        "functional",
+        "a person who is ready gets the leg",
+        "sensed(true, true, true) causes released within DEADLINE",
+    ),
+    (
+        "R3",
+        "functional",
+        "a person who is not ready does not get the leg",
+        "(sensed(false, _, _) or sensed(_, false, _) or sensed(_, _, false)) forbids released until leg_request",
+    ),
+    (
+        "R4",
+        "functional",
+        "whoever asks is answered: the leg is released or discarded",
+        "leg_request causes released or discarded",
+    ),
+    (
+        "R5",
+        "safety",
+        "the gripper does not close on a hand",
+        "never gripper_closing while distance(person.hand, robot.palm) < 5 cm",
+    ),
+    ("R6", "safety", "the arm is slow", "globally joint_speed(robot.arm) < 0.25 rad/s"),
+];
+
+const BINS: [&str; 14] = [
+    "4 legs, one released",
+    "4 legs, one refused",
+    "4 legs, bored",
+    "3 legs, one released",
+    "3 legs, one refused",
+    "3 legs, bored",
+    "2 legs, one released",
+    "2 legs, one refused",
+    "2 legs, bored and timed out",
+    "1 leg, released",
+    "1 leg, refused",
+    "1 leg, bored",
+    "asked, and never decided",
+    "never asked",
+];
+
+const SOURCE: &str = r#""""Hands the legs of a table to a person."""
+import hrdsl
+
+LEGS = 4
+SENSING_WINDOW = 10.0  # seconds
+
+
+class Handover:
+    """One leg: fetch, offer, sense, decide."""
+
+    def __init__(self, robot):
+        self.robot = robot
+        self.legs = 0
+
+    def fetch(self):
+        for attempt in range(2):
+            self.robot.arm.move_to(hrdsl.place("above_leg"), speed=0.2)
+            if self.robot.grip.close():
+                return True
+        self.robot.log("could not <grasp> the leg & gave up")
+        return False
+
+    def sense(self):
+        readings = self.robot.sense(within=SENSING_WINDOW)
+        if readings is None:
+            self.robot.emit("timed_out")
+            return None
+        return all(readings)
+
+    def run(self):
+        while self.legs < LEGS:
+            self.robot.wait_for("leg_request")
+            if not self.fetch():
+                raise RuntimeError("no leg in the gripper")
+            self.robot.emit("handover_offered")
+            ready = self.sense()
+            if ready:
+                self.robot.grip.open()
+                self.robot.emit("released")
+            else:
+                self.discard()
+            self.legs += 1
+
+    def discard(self):
+        self.robot.arm.move_to(hrdsl.place("aside"), speed=0.2)
+        self.robot.grip.open()
+        self.robot.emit("discarded")
+"#;
+
+const STATEMENTS: [u32; 36] = [
+    2, 4, 5, 8, 11, 12, 13, 15, 16, 17, 18, 19, 20, 21, 23, 24, 25, 26, 27, 28, 30, 31, 32, 33, 34, 35, 36,
+    37, 38, 39, 41, 42, 44, 45, 46, 47,
+];
+const BRANCHES: [(u32, i32); 12] = [
+    (16, 17),
+    (16, 20),
+    (18, 16),
+    (18, 19),
+    (25, 26),
+    (25, 28),
+    (31, -30),
+    (31, 32),
+    (33, 34),
+    (33, 35),
+    (37, 38),
+    (37, 41),
+];
+
+/// A campaign with this many tests in each suite.
+pub fn campaign(per_suite: usize) -> Results {
+    let tests: Vec<TestResult> =
+        (0..SUITES.len()).flat_map(|s| (0..per_suite).map(move |i| test(s, i))).collect();
+    let of = |s: usize| tests.iter().filter(move |t| t.suite == SUITES[s].0);
+    Results {
+        scenario: "handover".into(),
+        version: "0.1.0".into(),
+        seed: 1,
+        requirements: (0..REQUIREMENTS.len()).map(|r| requirement(r, &tests)).collect(),
+        suites: (0..SUITES.len()).map(|s| suite(s, &of(s).collect::<Vec<_>>())).collect(),
+        bins: BINS.iter().map(|b| bin(b, &tests)).collect(),
+        code: vec![code(&tests)],
+        tests,
+    }
+}
+
+/// An even mixture of bits, so that the figures look drawn.
+fn mix(suite: usize, test: usize, salt: u64) -> u64 {
+    let mut x = (suite as u64 * 7919 + test as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        ^ salt.wrapping_mul(0xd1b5);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+fn test(s: usize, i: usize) -> TestResult {
+    let (suite, method) = SUITES[s];
+    let number = i + 1;
+    let error = (i % 11 == 6 && s != 1).then(|| {
+        "the program ended with exit status 1 at 141.30 s\nTraceback (most recent call last):\n  File \"robot.py\", line 34, in \
+         run\n    raise RuntimeError(\"no leg in the gripper\")\nRuntimeError: no leg in the gripper"
+            .to_owned()
+    });
+    let seen = ((mix(s, i, 1) % 5) as usize, mix(s, i, 2));
+    let bins = if s == 2 { vec![bin_name(12 + i % 2)] } else { vec![bin_name(i % 11), bin_name(seen.0 * 2)] };
+    let predicted = if s == 2 { vec![] } else { vec![bin_name(i % 11), bin_name((i + 4) % 12)] };
+    let files = vec![coverage(s, i)];
+    TestResult {
+        name: format!("handover.{suite}.t{number:03}"),
+        suite: suite.into(),
+        method: method.into(),
+        seed: number as u64,
+        ended: if error.is_some() { "error" } else { ["quiet", "limit"][i % 2] },
+        duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
+        verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
+        error,
+        bins,
+        predicted,
+        because: because(s, i),
+        code: ratios(&files),
+        steps: steps(s, i),
+        files,
+    }
+}
+
+fn bin_name(b: usize) -> String {
+    format!("human_robot.\"{}\"", BINS[b])
+}
+
+fn because(s: usize, i: usize) -> Vec<String> {
+    match s {
+        0 => vec![format!(
+            "wants({}), shows(1, true, {}, true), bored_at(0), eager_at(2)",
+            1 + i % 4,
+            i.is_multiple_of(2)
+        )],
+        1 => vec![
+            format!("witness of bin {}", bin_name(i % 11)),
+            "witness of edge Robot: sensing -> decide".to_owned(),
+        ],
+        _ => vec![format!("{} steps drawn at random", 5 + i % 16)],
+    }
+}
+
+fn steps(s: usize, i: usize) -> Vec<String> {
+    let leg = |n: usize| {
+        let draw = |salt: u64, from: f64, to: f64| {
+            from + (to - from) * (mix(s, i * 9 + n, salt) % 1000) as f64 / 1000.0
+        };
+        vec![
+            "ask_leg".to_owned(),
+            "await handover_offered within 60 s".to_owned(),
+            format!(
+                "look(true) with offset = {:.3} m, distance = {:.3} m, angle = {:.3} deg",
+                draw(5, 0.1, 0.2),
+                draw(6, 0.5, 0.6),
+                draw(7, 15.0, 40.0)
+            ),
+            "reach(true) with dx = 0.05 m, dy = -0.1 m, dz = -0.05 m".to_owned(),
+            "grip(true)".to_owned(),
+            "say_ready".to_owned(),
+            "await released | discarded within 120 s".to_owned(),
+            "put_down".to_owned(),
+        ]
+    };
+    (0..=i % 4).flat_map(leg).collect()
+}
+
+fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
+    let dice = mix(s, i, 10 + r as u64) % 100;
+    let outcome = match r {
+        5 => "pass",
+        0 if dice < 20 + 15 * s as u64 % 25 => "fail",
+        1 if dice < 9 && s != 2 => "fail",
+        2 if s == 0 && i % 12 == 3 => "fail",
+        4 if dice < 8 * (1 + s as u64) => "fail",
+        1 if s == 2 => "not_checked",
+        3 if dice > 92 => "open",
+        _ if is_broken => "error",
+        _ if dice > 60 => "not_checked",
+        _ => "pass",
+    };
+    let failure = (outcome == "fail").then(|| failure(r, 20.0 + (mix(s, i, 30) % 9000) as f64 / 100.0));
+    let worst_margin = match r {
+        4 if outcome == "fail" => Some((-0.0321, "m")),
+        4 if outcome == "pass" => Some((0.184, "m")),
+        5 => Some((0.031 + (mix(s, i, 40) % 90) as f64 / 10_000.0, "rad/s")),
+        _ => None,
+    };
+    VerdictResult {
+        requirement: REQUIREMENTS[r].0.into(),
+        outcome,
+        triggered: if outcome == "not_checked" { 0 } else { 1 + (dice % 4) as u32 },
+        failures: u32::from(outcome == "fail"),
+        failure,
+        worst_margin,
+    }
+}
+
+fn failure(r: usize, time: f64) -> Failure {
+    let step = |step: usize, time: f64, text: &str| WitnessStep { step, time, text: text.to_owned() };
+    match r {
+        4 => Failure {
+            time,
+            triggered_at: time,
+            deadline: false,
+            witness: vec![step(188, time, "gripper_closing, distance(person.hand, robot.palm) = 0.018 m")],
+        },
+        2 => Failure {
+            time,
+            triggered_at: time - 3.5,
+            deadline: false,
+            witness: vec![step(301, time - 3.5, "sensed(true, false, true)"), step(316, time, "released")],
+        },
+        _ => Failure {
+            time,
+            triggered_at: time - 10.0,
+            deadline: true,
+            witness: vec![step(
+                204,
+                time - 10.0,
+                if r == 0 { "decided(true)" } else { "sensed(true, true, true)" },
+            )],
+        },
+    }
+}
+
+/// What a test executes: the longer it runs, the more; only agents and search get to the rare lines.
+fn coverage(s: usize, i: usize) -> FileCoverage {
+    let executed = |line: &u32| match line {
+        20 | 21 => false,
+        34 => i % 11 == 6 && s != 1,
+        26 | 27 => s != 1 && mix(s, i, 50).is_multiple_of(3),
+        38 | 39 => s != 2 && !mix(s, i, 51).is_multiple_of(4),
+        41 | 45..=47 => !mix(s, i, 52).is_multiple_of(3),
+        24 | 25 | 28 | 35..=37 | 42 => s != 2 || !mix(s, i, 53).is_multiple_of(3),
+        _ => true,
+    };
+    let lines: Vec<u32> = STATEMENTS.iter().copied().filter(executed).collect();
+    let taken = |(from, to): &(u32, i32)| {
+        lines.contains(from) && (*to < 0 || lines.contains(&u32::try_from(*to).unwrap_or(0))) && *from != 18
+            || (*from, *to) == (18, 19)
+    };
+    FileCoverage {
+        file: "robot.py".into(),
+        statements: STATEMENTS.to_vec(),
+        branches: BRANCHES.to_vec(),
+        executed_branches: BRANCHES.iter().copied().filter(taken).collect(),
+        executed: lines,
+    }
+}
+
+fn ratios(files: &[FileCoverage]) -> Ratios {
+    let sum = |of: fn(&FileCoverage) -> usize| files.iter().map(of).sum::<usize>() as u32;
+    Ratios {
+        lines: sum(|f| f.executed.len()),
+        lines_total: sum(|f| f.statements.len()),
+        branches: sum(|f| f.executed_branches.len()),
+        branches_total: sum(|f| f.branches.len()),
+    }
+}
+
+/// What several tests execute together.
+fn together(tests: &[&TestResult]) -> FileCoverage {
+    let mut all = coverage(0, 0);
+    let files = || tests.iter().flat_map(|t| &t.files);
+    all.executed.clone_from(&STATEMENTS.to_vec());
+    all.executed.retain(|line| files().any(|f| f.executed.contains(line)));
+    all.executed_branches.clone_from(&BRANCHES.to_vec());
+    all.executed_branches.retain(|branch| files().any(|f| f.executed_branches.contains(branch)));
+    all
+}
+
+fn requirement(r: usize, tests: &[TestResult]) -> Requirement {
+    let (name, kind, title, text) = REQUIREMENTS[r];
+    let mut tally = vec![Tally::default(); SUITES.len()];
+    let mut failing = Vec::new();
+    let mut worst_margin: Option<Margin> = None;
+    for test in tests {
+        let suite = SUITES.iter().position(|(name, _)| *name == test.suite).unwrap_or(0);
+        match test.verdicts[r].outcome {
+            "pass" => tally[suite].pass += 1,
+            "fail" => tally[suite].fail += 1,
+            "open" => tally[suite].open += 1,
+            "error" => tally[suite].error += 1,
+            _ => tally[suite].not_checked += 1,
+        }
+        if test.verdicts[r].outcome == "fail" {
+            failing.push(test.name.clone());
+        }
+        if let Some((value, unit)) = test.verdicts[r].worst_margin
+            && worst_margin.as_ref().is_none_or(|m| value < m.value)
+        {
+            worst_margin = Some(Margin { value, unit, test: test.name.clone() });
+        }
+    }
+    Requirement {
+        name: name.into(),
+        kind: kind.into(),
+        title: title.into(),
+        text: text.into(),
+        tally,
+        failing,
+        worst_margin,
+        origin: Span::default(),
+    }
+}
+
+fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
+    let (name, method) = SUITES[s];
+    let line_percent = |n: usize| ratios(&[together(&tests[..n])]).line_percent();
+    let goal =
+        |goal: String, status: GoalStatus, reason: &str| GoalReport { goal, status, reason: reason.into() };
+    let mut goals = Vec::new();
+    if method == "search" {
+        goals.extend(BINS[..13].iter().zip(0..13).map(|(b, i)| {
+            let name = format!("bin human_robot.\"{b}\"");
+            if i == 11 {
+                goal(
+                    name,
+                    GoalStatus::Unreachable,
+                    "proved: none of the 48210 symbolic states that the model can reach meets it",
+                )
+            } else {
+                goal(name, GoalStatus::Reached, "in 23 steps")
+            }
+        }));
+        goals.push(goal(
+            "edge Robot: sensing -> timeout3".into(),
+            GoalStatus::Open,
+            "the budget of states was used up",
+        ));
+        goals.push(goal("location Person.gone".into(), GoalStatus::Reached, "in 5 steps"));
+    }
+    SuiteInfo {
+        name: name.into(),
+        method: method.into(),
+        abstract_tests: Some([131, 91, 160][s].min(tests.len())),
+        tests: tests.len() as u32,
+        errors: tests.iter().filter(|t| t.error.is_some()).count() as u32,
+        goals,
+        notes: if s == 0 { vec!["pairwise: 131 belief sets of 20480 possible".into()] } else { vec![] },
+        code: ratios(&[together(tests)]),
+        code_accumulated: (1..=tests.len()).map(line_percent).collect(),
+        code_per_test: tests.iter().map(|t| t.code.line_percent()).collect(),
+    }
+}
+
+fn bin(bin: &str, tests: &[TestResult]) -> BinResult {
+    let name = format!("human_robot.\"{bin}\"");
+    let number = |has: &dyn Fn(&TestResult) -> bool| -> Vec<u32> {
+        let of =
+            |(suite, _): &(&str, &str)| tests.iter().filter(|t| t.suite == *suite && has(t)).count() as u32;
+        SUITES.iter().map(of).collect()
+    };
+    let hits = number(&|t| t.bins.contains(&name));
+    let unreachable =
+        (bin == "1 leg, bored").then(|| "none of the 48210 symbolic states of the model meets it".into());
+    BinResult {
+        predicted: number(&|t| t.predicted.contains(&name) && unreachable.is_none()),
+        first: tests.iter().find(|t| t.bins.contains(&name)).map(|t| t.name.clone()),
+        cross: "human_robot".into(),
+        bin: bin.into(),
+        hits,
+        unreachable,
+        name,
+    }
+}
+
+fn code(tests: &[TestResult]) -> CodeFile {
+    let all = together(&tests.iter().collect::<Vec<_>>());
+    let executed_by = |line: &u32| tests.iter().filter(|t| t.files[0].executed.contains(line)).count() as u32;
+    CodeFile {
+        file: "robot.py".into(),
+        ratios: ratios(std::slice::from_ref(&all)),
+        lines: STATEMENTS.iter().map(|l| (*l, executed_by(l))).collect(),
+        missed_branches: BRANCHES.iter().copied().filter(|b| !all.executed_branches.contains(b)).collect(),
+        source: SOURCE.into(),
+    }
+}

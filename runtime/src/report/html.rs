@@ -1,0 +1,437 @@
+//! One HTML page: no network, no fonts, readable without scripts, on paper and in the dark.
+//!
+//! This module decides what is said; `html/page.html` only lays it out. Every string goes through [`text::clean`] and is
+//! escaped as it is written, in one place ([`environment`]), so that nothing can be forgotten.
+
+mod code;
+mod tests_list;
+mod violations;
+
+use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
+use serde::Serialize;
+
+use super::{
+    facts::{self, Bin, Outcome},
+    text,
+};
+use crate::{
+    results::{BinResult, Ratios, Requirement, Results, SuiteInfo, Tally},
+    testgen::{GoalReport, GoalStatus},
+};
+
+/// The results as one page.
+#[must_use]
+pub fn html(results: &Results) -> String {
+    let page = Page::of(results);
+    let environment = match environment() {
+        Ok(environment) => environment,
+        Err(e) => return broken(&e),
+    };
+    let page = environment.get_template("page.html").and_then(|t| t.render(&page));
+    page.unwrap_or_else(|e| broken(&e))
+}
+
+fn environment() -> Result<Environment<'static>, minijinja::Error> {
+    let mut environment = Environment::new();
+    environment.set_trim_blocks(true);
+    environment.set_lstrip_blocks(true);
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    environment.set_formatter(clean_and_escape);
+    environment.add_template("page.html", include_str!("html/page.html"))?;
+    environment.add_template("parts.html", include_str!("html/parts.html"))?;
+    environment.add_global("style", Value::from_safe_string(include_str!("html/page.css").to_owned()));
+    environment.add_global("script", Value::from_safe_string(include_str!("html/page.js").to_owned()));
+    Ok(environment)
+}
+
+fn clean_and_escape(
+    out: &mut Output<'_>,
+    state: &State<'_, '_>,
+    value: &Value,
+) -> Result<(), minijinja::Error> {
+    match value.as_str() {
+        Some(text) if !value.is_safe() => escape_formatter(out, state, &Value::from(text::clean(text))),
+        Some(_) | None => escape_formatter(out, state, value),
+    }
+}
+
+/// The template is part of the program, so this page is only for its authors.
+fn broken(error: &minijinja::Error) -> String {
+    let message = text::clean(&format!("{error:#}")).replace('&', "&amp;").replace('<', "&lt;");
+    format!(
+        "<!doctype html><meta charset=\"utf-8\"><title>hrdsl</title><p>The report cannot be laid out: {message}</p>\n"
+    )
+}
+
+/// What the page says.
+#[derive(Serialize)]
+struct Page {
+    scenario: String,
+    version: String,
+    seed: u64,
+    conclusion: Vec<Part>,
+    facts: Vec<Fact>,
+    gaps: Vec<String>,
+    suites: Vec<Suite>,
+    has_code: bool,
+    columns: Vec<Column>,
+    requirements: Vec<Row>,
+    violations: Vec<violations::Violated>,
+    bins: Vec<BinGroup>,
+    bins_hit: Vec<usize>,
+    bins_total: usize,
+    goals: Vec<Goals>,
+    code: Option<code::Code>,
+    list: tests_list::List,
+}
+
+/// A piece of a sentence with a style class.
+#[derive(Serialize)]
+struct Part {
+    class: &'static str,
+    text: String,
+}
+
+/// A number of the heading.
+#[derive(Serialize)]
+struct Fact {
+    class: &'static str,
+    value: String,
+    of: String,
+    label: &'static str,
+}
+
+#[derive(Serialize)]
+struct Suite {
+    name: String,
+    method: String,
+    abstract_tests: String,
+    tests: u32,
+    failing: usize,
+    errors: u32,
+    simulated: String,
+    bins: usize,
+    lines: Ratio,
+    branches: Ratio,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Ratio {
+    percent: String,
+    part: u32,
+    whole: u32,
+}
+
+/// A column of the requirement table.
+#[derive(Serialize)]
+struct Column {
+    class: char,
+    short: &'static str,
+    word: &'static str,
+}
+
+/// A row of the requirement table.
+#[derive(Serialize)]
+struct Row {
+    class: char,
+    symbol: &'static str,
+    name: String,
+    kind: String,
+    title: String,
+    text: String,
+    standing: String,
+    /// Its section among the violations, from 1.
+    section: usize,
+    /// For each suite the number for each column.
+    tally: Vec<Vec<u32>>,
+    margin: Option<WorstMargin>,
+}
+
+#[derive(Serialize)]
+struct WorstMargin {
+    value: String,
+    is_negative: bool,
+    test: Link,
+}
+
+/// A test by name, with its place in the list.
+#[derive(Serialize)]
+struct Link {
+    name: String,
+    place: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct BinGroup {
+    cross: String,
+    bins: Vec<BinRow>,
+}
+
+#[derive(Serialize)]
+struct BinRow {
+    class: &'static str,
+    symbol: &'static str,
+    state: &'static str,
+    name: String,
+    /// For each suite.
+    cells: Vec<BinCell>,
+    total: u32,
+    first: Option<Link>,
+    reason: String,
+}
+
+#[derive(Serialize)]
+struct BinCell {
+    hits: u32,
+    /// `None`: the suite's model predicts nothing.
+    predicted: Option<u32>,
+    is_gap: bool,
+}
+
+/// The goals of a suite by search.
+#[derive(Serialize)]
+struct Goals {
+    suite: String,
+    reached: Vec<Goal>,
+    unreachable: Vec<Goal>,
+    open: Vec<Goal>,
+    total: usize,
+}
+
+#[derive(Serialize)]
+struct Goal {
+    goal: String,
+    reason: String,
+}
+
+impl Page {
+    fn of(results: &Results) -> Self {
+        let places = facts::places(results);
+        let link = |name: &str| Link {
+            name: facts::short(results, name).to_owned(),
+            place: places.get(name).map(|place| place + 1),
+        };
+        let column = |o: Outcome| Column { class: o.letter(), short: o.short(), word: o.word() };
+        let suites = 0..results.suites.len();
+        Page {
+            scenario: results.scenario.clone(),
+            version: results.version.clone(),
+            seed: results.seed,
+            conclusion: conclusion(results),
+            facts: heading(results),
+            gaps: facts::gaps(results),
+            suites: suites.clone().map(|i| suite(results, i)).collect(),
+            has_code: facts::code(results).lines_total > 0,
+            columns: Outcome::ALL.into_iter().map(column).collect(),
+            requirements: rows(results, &link),
+            violations: violations::all(results, &link),
+            bins: bin_groups(results, &link),
+            bins_hit: suites.map(|i| facts::bins_hit(results, i)).collect(),
+            bins_total: results.bins.len(),
+            goals: results.suites.iter().filter(|s| !s.goals.is_empty()).map(goals).collect(),
+            code: code::code(results),
+            list: tests_list::list(results),
+        }
+    }
+}
+
+/// What an assessor asks first: which requirements are violated, which held, and about which nothing is known.
+fn conclusion(results: &Results) -> Vec<Part> {
+    let named = |outcome: Outcome| -> Vec<String> {
+        let such = results.requirements.iter().filter(|r| facts::standing(r) == outcome);
+        such.map(|r| r.name.clone()).collect()
+    };
+    let mut parts = Vec::new();
+    let mut say = |class: &'static str, text: String| parts.push(Part { class, text });
+    let violated = named(Outcome::Fail);
+    let held = named(Outcome::Pass);
+    if violated.is_empty() {
+        say("p", "No test violated a requirement.".to_owned());
+    } else {
+        let verb = if violated.len() == 1 { "was" } else { "were" };
+        say("f", format!("{} {verb} violated.", text::enumeration(&violated)));
+    }
+    if !held.is_empty() {
+        say("p", format!("{} held in every test that checked it.", text::enumeration(&held)));
+    }
+    for outcome in [Outcome::Open, Outcome::Error, Outcome::NotChecked] {
+        let names = named(outcome);
+        let what = match outcome {
+            Outcome::Open => "stayed open in every test that triggered it",
+            Outcome::Error => "got no verdict, since tests broke off",
+            Outcome::NotChecked => "was not checked by any test",
+            Outcome::Pass | Outcome::Fail => continue,
+        };
+        if !names.is_empty() {
+            say("o", format!("{} {what}.", text::enumeration(&names)));
+        }
+    }
+    parts
+}
+
+fn heading(results: &Results) -> Vec<Fact> {
+    let failing = results.tests.iter().filter(|t| t.has_failed()).count();
+    let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
+    let violated = results.requirements.iter().filter(|r| facts::standing(r) == Outcome::Fail).count();
+    let hit = results.bins.iter().filter(|b| b.hits.iter().any(|n| *n > 0)).count();
+    let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
+    let code = facts::code(results);
+    let alarm = |number: usize, class: &'static str| if number > 0 { class } else { "" };
+    let fact = |class, value: String, of: String, label| Fact { class, value, of, label };
+    let mut facts = vec![
+        fact("", results.tests.len().to_string(), String::new(), "tests"),
+        fact(alarm(failing, "f"), failing.to_string(), String::new(), "tests with violations"),
+        fact(alarm(broken, "e"), broken.to_string(), String::new(), "tests in error"),
+        fact(
+            alarm(violated, "f"),
+            violated.to_string(),
+            format!("of {}", results.requirements.len()),
+            "requirements violated",
+        ),
+    ];
+    if !results.bins.is_empty() {
+        facts.push(fact("", hit.to_string(), format!("of {}", results.bins.len()), "bins hit"));
+    }
+    if code.lines_total > 0 {
+        facts.push(fact(
+            "",
+            format!("{:.1} %", code.line_percent()),
+            String::new(),
+            "of the code’s lines executed",
+        ));
+    }
+    facts.push(fact("", text::stretch(simulated), String::new(), "simulated"));
+    facts
+}
+
+fn lines_of(ratios: Ratios) -> Ratio {
+    Ratio { percent: format!("{:.1}", ratios.line_percent()), part: ratios.lines, whole: ratios.lines_total }
+}
+
+fn branches_of(ratios: Ratios) -> Ratio {
+    Ratio {
+        percent: format!("{:.1}", ratios.branch_percent()),
+        part: ratios.branches,
+        whole: ratios.branches_total,
+    }
+}
+
+fn suite(results: &Results, index: usize) -> Suite {
+    let info: &SuiteInfo = &results.suites[index];
+    let tests = || results.tests.iter().filter(|t| t.suite == info.name);
+    Suite {
+        name: info.name.clone(),
+        method: info.method.clone(),
+        abstract_tests: info.abstract_tests.map(|n| n.to_string()).unwrap_or_else(|| "–".to_owned()),
+        tests: info.tests,
+        failing: tests().filter(|t| t.has_failed()).count(),
+        errors: info.errors,
+        simulated: text::stretch(tests().map(|t| t.duration).sum()),
+        bins: facts::bins_hit(results, index),
+        lines: lines_of(info.code),
+        branches: branches_of(info.code),
+        notes: info.notes.clone(),
+    }
+}
+
+fn rows(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<Row> {
+    let mut section = 0;
+    let row = |requirement: &Requirement| {
+        let standing = facts::standing(requirement);
+        let is_violated = standing == Outcome::Fail;
+        section += usize::from(is_violated);
+        let total = facts::total(requirement);
+        let tally = (0..results.suites.len()).map(|s| {
+            let tally = requirement.tally.get(s).copied().unwrap_or_default();
+            Outcome::ALL.iter().map(|o| o.count(&tally)).collect()
+        });
+        Row {
+            class: standing.letter(),
+            symbol: standing.symbol(),
+            name: requirement.name.clone(),
+            kind: requirement.kind.clone(),
+            title: requirement.title.clone(),
+            text: requirement.text.clone(),
+            standing: in_words(standing, &total),
+            section: if is_violated { section } else { 0 },
+            tally: tally.collect(),
+            margin: requirement.worst_margin.as_ref().map(|m| WorstMargin {
+                value: text::margin(m.value, m.unit),
+                is_negative: m.value < 0.0,
+                test: link(&m.test),
+            }),
+        }
+    };
+    results.requirements.iter().map(row).collect()
+}
+
+fn in_words(standing: Outcome, total: &Tally) -> String {
+    let checked = match standing {
+        Outcome::Fail => {
+            format!("violated in {} of {} tests that checked it", total.fail, total.pass + total.fail)
+        }
+        Outcome::Pass => format!("held in all {} tests that checked it", total.pass),
+        Outcome::NotChecked | Outcome::Open | Outcome::Error => return standing.word().to_owned(),
+    };
+    if total.open > 0 { format!("{checked}, open in {}", total.open) } else { checked }
+}
+
+/// The bins by the cross product that they belong to, in order.
+fn bin_groups(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<BinGroup> {
+    let mut groups: Vec<BinGroup> = Vec::new();
+    for bin in &results.bins {
+        let row = bin_row(results, bin, link);
+        match groups.iter_mut().find(|g| g.cross == bin.cross) {
+            Some(group) => group.bins.push(row),
+            None => groups.push(BinGroup { cross: bin.cross.clone(), bins: vec![row] }),
+        }
+    }
+    groups
+}
+
+fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&str) -> Link) -> BinRow {
+    let state = Bin::of(bin);
+    let (class, words) = match state {
+        Bin::Hit => ("p", "hit"),
+        Bin::Missed => ("o", "not hit"),
+        Bin::Unreachable => ("n", "unreachable in the model"),
+        Bin::Refuted => ("f", "hit, although unreachable in the model"),
+    };
+    let cell = |s: usize| {
+        let hits = bin.hits.get(s).copied().unwrap_or(0);
+        let predicted = bin.predicted.get(s).copied().unwrap_or(0);
+        BinCell {
+            hits,
+            predicted: facts::predicts(results, s).then_some(predicted),
+            is_gap: hits == 0 && state != Bin::Unreachable,
+        }
+    };
+    BinRow {
+        class,
+        symbol: state.symbol(),
+        state: words,
+        name: bin.bin.clone(),
+        cells: (0..results.suites.len()).map(cell).collect(),
+        total: bin.hits.iter().sum(),
+        first: bin.first.as_deref().map(link),
+        reason: bin.unreachable.clone().unwrap_or_default(),
+    }
+}
+
+fn goals(suite: &SuiteInfo) -> Goals {
+    let with = |status: GoalStatus| -> Vec<Goal> {
+        let goal = |g: &GoalReport| Goal { goal: g.goal.clone(), reason: g.reason.clone() };
+        suite.goals.iter().filter(|g| g.status == status).map(goal).collect()
+    };
+    Goals {
+        suite: suite.name.clone(),
+        reached: with(GoalStatus::Reached),
+        unreachable: with(GoalStatus::Unreachable),
+        open: with(GoalStatus::Open),
+        total: suite.goals.len(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

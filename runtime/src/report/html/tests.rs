@@ -1,0 +1,149 @@
+use super::*;
+use crate::report::fixture;
+
+/// Whether every element that must be closed is, in the right order, and no attribute runs away.
+fn unbalanced(page: &str) -> Option<String> {
+    const VOID: [&str; 5] = ["meta", "link", "input", "br", "!doctype"];
+    let mut open: Vec<String> = Vec::new();
+    let mut rest = page;
+    while let Some(at) = rest.find('<') {
+        rest = &rest[at + 1..];
+        let Some(end) = rest.find('>') else { return Some("a tag without end".to_owned()) };
+        let tag = &rest[..end];
+        rest = &rest[end + 1..];
+        if tag.contains('<') || !tag.matches('"').count().is_multiple_of(2) {
+            return Some(format!("<{tag}>"));
+        }
+        let name = tag.split([' ', '/']).find(|n| !n.is_empty()).unwrap_or("").to_owned();
+        if let Some(closed) = tag.strip_prefix('/') {
+            if open.pop().as_deref() != Some(closed) {
+                return Some(format!("</{closed}>"));
+            }
+        } else if name == "script" || name == "style" {
+            let close = format!("</{name}>");
+            let Some(at) = rest.find(&close) else { return Some(name) };
+            rest = &rest[at + close.len()..];
+        } else if !tag.ends_with('/') && !VOID.contains(&name.as_str()) {
+            open.push(name);
+        }
+    }
+    open.pop()
+}
+
+#[test]
+fn the_check_of_tags_can_fail() {
+    assert_eq!(unbalanced("<p><b>x</b></p>"), None);
+    assert_eq!(unbalanced("<p><b>x</p></b>"), Some("</p>".to_owned()));
+    assert_eq!(unbalanced("<p>"), Some("p".to_owned()));
+    assert_eq!(unbalanced("<p a=\"<b>\">"), Some("<p a=\"<b>".to_owned()));
+}
+
+#[test]
+fn the_page_is_well_formed_and_complete() {
+    let results = fixture::campaign(12);
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    for text in [
+        "<title>handover: test report</title>",
+        "seed 1 · hrdsl 0.1.0",
+        "never gripper_closing while distance(person.hand, robot.palm) &lt; 5 cm",
+        "the deadline passed",
+        "unreachable in the model",
+        "none of the 48210 symbolic states of the model meets it",
+        "What this campaign does not show",
+        "the budget of states was used up",
+        "could not &lt;grasp&gt; the leg &amp; gave up",
+        "never goes on to line 20",
+        "RuntimeError: no leg in the gripper",
+        "pairwise: 131 belief sets of 20480 possible",
+        "with offset = ",
+        "witness of bin",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert_eq!(page.matches("<details data-s=").count(), 36);
+    assert_eq!(page.matches("<article id=\"v").count(), 4);
+    assert_eq!(page.matches("class=\"curve s").count(), 3);
+}
+
+#[test]
+fn every_link_has_its_target_and_every_table_its_headings() {
+    let page = html(&fixture::campaign(12));
+    for link in page.split("href=\"#").skip(1) {
+        let target = link.split('"').next().unwrap();
+        assert_eq!(page.matches(&format!(" id=\"{target}\"")).count(), 1, "{target}");
+    }
+    assert!(!page.contains("<th>") && page.matches("<th ").count() == page.matches("<th scope=").count());
+}
+
+#[test]
+fn the_page_needs_nothing_from_elsewhere() {
+    let page = html(&fixture::campaign(4));
+    for text in ["http:", "https:", "@import", "url(", " src=", "@font-face"] {
+        assert!(!page.contains(text), "{text}");
+    }
+    assert_eq!(page, html(&fixture::campaign(4)));
+}
+
+#[test]
+fn a_large_campaign_stays_small_enough() {
+    let page = html(&fixture::campaign(160));
+    assert!(page.len() < 3_000_000, "{} bytes", page.len());
+}
+
+#[test]
+fn hostile_text_stays_text() {
+    let bad = "\"'><script>alert(1)</script><img src=x onerror=alert(1)>\u{1b}[31m{{ seed }}\u{202e}\u{0}";
+    let mut results = fixture::campaign(2);
+    results.scenario = bad.to_owned();
+    results.requirements[0].title = bad.to_owned();
+    results.requirements[0].name = bad.to_owned();
+    results.suites[0].name = bad.to_owned();
+    results.suites[0].notes = vec![bad.to_owned()];
+    results.bins[0].bin = bad.to_owned();
+    results.code[0].source = bad.to_owned();
+    for test in &mut results.tests {
+        test.name = bad.to_owned();
+        test.suite = bad.to_owned();
+        test.error = Some(format!("</pre></details>{bad}"));
+        test.steps = vec![bad.to_owned()];
+        test.because = vec![bad.to_owned(), bad.to_owned()];
+        test.bins = vec![bad.to_owned()];
+        for verdict in &mut test.verdicts {
+            for step in verdict.failure.iter_mut().flat_map(|f| &mut f.witness) {
+                step.text = bad.to_owned();
+            }
+        }
+    }
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    assert_eq!(page.matches("<script").count(), 2);
+    assert!(!page.contains("<img") && page.contains("&lt;img src=x") && page.contains("{{ seed }}"));
+    assert!(!page.chars().any(|c| c == '\u{202e}' || (c.is_control() && c != '\n')));
+}
+
+#[test]
+fn an_empty_campaign_has_a_page() {
+    let mut results = fixture::campaign(1);
+    results.tests.clear();
+    results.bins.clear();
+    results.code.clear();
+    results.suites.clear();
+    results.requirements.clear();
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    assert!(page.contains("No test violated a requirement.") && page.contains("No test matches."));
+}
+
+#[test]
+fn many_requirements_are_named_instead_of_having_columns() {
+    let mut results = fixture::campaign(3);
+    for i in 0..20 {
+        let mut requirement = results.requirements[5].clone();
+        requirement.name = format!("X{i}");
+        results.requirements.push(requirement);
+    }
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    assert!(page.contains("style=\"--n:0\"") && page.contains("passed: "));
+}

@@ -1,0 +1,220 @@
+//! Every test with its verdicts, its origin and its steps.
+
+use serde::Serialize;
+
+use super::violations::{Witness, witness};
+use crate::{
+    report::{
+        facts::{self, Outcome},
+        text,
+    },
+    results::{Results, TestResult, VerdictResult},
+};
+
+/// More requirements than this have no column each.
+const COLUMNS: usize = 12;
+
+#[derive(Serialize)]
+pub struct List {
+    suites: Vec<String>,
+    requirements: Vec<String>,
+    has_columns: bool,
+    tests: Vec<Test>,
+}
+
+#[derive(Serialize)]
+struct Test {
+    place: usize,
+    class: char,
+    symbol: &'static str,
+    /// In words, for those who do not see the symbols.
+    says: String,
+    name: String,
+    full_name: String,
+    suite: usize,
+    suite_name: String,
+    method: String,
+    seed: u64,
+    ended: &'static str,
+    duration: String,
+    /// One letter for each requirement.
+    letters: String,
+    marks: Vec<Mark>,
+    error: String,
+    failures: Vec<FailedVerdict>,
+    others: Vec<Group>,
+    because: Vec<String>,
+    bins: Vec<TestBin>,
+    bins_hit: usize,
+    coverage: String,
+    steps: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Mark {
+    class: char,
+    symbol: &'static str,
+}
+
+#[derive(Serialize)]
+struct FailedVerdict {
+    requirement: String,
+    title: String,
+    witness: Option<Witness>,
+}
+
+/// The requirements with one outcome.
+#[derive(Serialize)]
+struct Group {
+    class: char,
+    symbol: &'static str,
+    word: &'static str,
+    verdicts: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct TestBin {
+    class: char,
+    symbol: &'static str,
+    name: String,
+    word: &'static str,
+}
+
+/// All tests.
+pub fn list(results: &Results) -> List {
+    List {
+        suites: results.suites.iter().map(|s| s.name.clone()).collect(),
+        requirements: results.requirements.iter().map(|r| r.name.clone()).collect(),
+        has_columns: results.requirements.len() <= COLUMNS,
+        tests: results.tests.iter().enumerate().map(|(i, t)| test(results, i, t)).collect(),
+    }
+}
+
+/// What a test did to a requirement; nothing, if it says nothing.
+fn outcome(test: &TestResult, requirement: &str) -> Outcome {
+    test.verdicts.iter().find(|v| v.requirement == requirement).map_or(Outcome::NotChecked, Outcome::of)
+}
+
+fn test(results: &Results, index: usize, test: &TestResult) -> Test {
+    let suite = results.suites.iter().position(|s| s.name == test.suite);
+    let outcomes: Vec<Outcome> = results.requirements.iter().map(|r| outcome(test, &r.name)).collect();
+    let overall = overall(test, &outcomes);
+    Test {
+        place: index + 1,
+        class: overall.letter(),
+        symbol: overall.symbol(),
+        says: says(results, test, &outcomes),
+        name: facts::short(results, &test.name).to_owned(),
+        full_name: test.name.clone(),
+        suite: suite.unwrap_or(results.suites.len()),
+        suite_name: test.suite.clone(),
+        method: test.method.clone(),
+        seed: test.seed,
+        ended: match test.ended {
+            "quiet" => "when nothing more could happen",
+            "limit" => "at the time limit",
+            "error" => "in error",
+            other => other,
+        },
+        duration: text::stretch(test.duration),
+        letters: outcomes.iter().map(|o| o.letter()).collect(),
+        marks: outcomes.iter().map(|o| Mark { class: o.letter(), symbol: o.symbol() }).collect(),
+        error: test.error.as_deref().map(|e| text::ends(&text::clean(e))).unwrap_or_default(),
+        failures: test
+            .verdicts
+            .iter()
+            .filter(|v| Outcome::of(v) == Outcome::Fail)
+            .map(|v| failed(results, v))
+            .collect(),
+        others: groups(test),
+        because: test.because.clone(),
+        bins: bins(test),
+        bins_hit: test.bins.len(),
+        coverage: if test.code.lines_total > 0 {
+            format!("{:.1} %", test.code.line_percent())
+        } else {
+            String::new()
+        },
+        steps: test.steps.clone(),
+    }
+}
+
+fn overall(test: &TestResult, outcomes: &[Outcome]) -> Outcome {
+    if test.error.is_some() {
+        Outcome::Error
+    } else {
+        let worst = [Outcome::Fail, Outcome::Error, Outcome::Pass, Outcome::Open];
+        worst.into_iter().find(|o| outcomes.contains(o)).unwrap_or(Outcome::NotChecked)
+    }
+}
+
+fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
+    let named = |outcome: Outcome| -> Vec<String> {
+        let such = results.requirements.iter().zip(outcomes).filter(|(_, o)| **o == outcome);
+        such.map(|(r, _)| r.name.clone()).collect()
+    };
+    let mut says = Vec::new();
+    if test.error.is_some() {
+        says.push("broke off".to_owned());
+    }
+    for outcome in [Outcome::Fail, Outcome::Pass, Outcome::Open] {
+        let names = named(outcome);
+        if !names.is_empty() {
+            says.push(format!("{}: {}", outcome.word(), names.join(" ")));
+        }
+    }
+    says.join("; ")
+}
+
+fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
+    let requirement = results.requirements.iter().find(|r| r.name == verdict.requirement);
+    FailedVerdict {
+        requirement: verdict.requirement.clone(),
+        title: requirement.map(|r| r.title.clone()).unwrap_or_default(),
+        witness: verdict.failure.as_ref().map(|failure| witness(verdict, failure)),
+    }
+}
+
+fn groups(test: &TestResult) -> Vec<Group> {
+    let group = |outcome: Outcome| {
+        let such = test.verdicts.iter().filter(|v| Outcome::of(v) == outcome);
+        let verdicts: Vec<String> = such.map(|v| in_words(v, outcome)).collect();
+        let group =
+            Group { class: outcome.letter(), symbol: outcome.symbol(), word: outcome.word(), verdicts };
+        (!group.verdicts.is_empty()).then_some(group)
+    };
+    [Outcome::Pass, Outcome::Open, Outcome::NotChecked, Outcome::Error]
+        .into_iter()
+        .filter_map(group)
+        .collect()
+}
+
+/// `R6 3×, margin +0.0312 rad/s`
+fn in_words(verdict: &VerdictResult, outcome: Outcome) -> String {
+    let mut text = verdict.requirement.clone();
+    if outcome == Outcome::Pass || outcome == Outcome::Open {
+        text += &format!(" {}×", verdict.triggered);
+    }
+    match verdict.worst_margin {
+        Some((value, unit)) => format!("{text} (margin {})", text::margin(value, unit)),
+        None => text,
+    }
+}
+
+/// First what was hit, then what was predicted in vain.
+fn bins(test: &TestResult) -> Vec<TestBin> {
+    let bin = |name: &String, outcome: Outcome, word| TestBin {
+        class: outcome.letter(),
+        symbol: outcome.symbol(),
+        name: name.clone(),
+        word,
+    };
+    let is_guided = !test.predicted.is_empty();
+    let hit = test.bins.iter().map(|name| match (test.predicted.contains(name), is_guided) {
+        (true, _) => bin(name, Outcome::Pass, "hit as predicted"),
+        (false, true) => bin(name, Outcome::Pass, "hit, not predicted"),
+        (false, false) => bin(name, Outcome::Pass, "hit"),
+    });
+    let missed = test.predicted.iter().filter(|name| !test.bins.contains(name));
+    hit.chain(missed.map(|name| bin(name, Outcome::NotChecked, "predicted, not hit"))).collect()
+}

@@ -1,0 +1,135 @@
+//! Violated requirements, each with a few tests that show it and their witnesses.
+
+use serde::Serialize;
+
+use super::Link;
+use crate::{
+    report::{facts, text},
+    results::{Failure, Requirement, Results, TestResult, VerdictResult},
+};
+
+/// Tests that are shown with their witness for each requirement.
+const SHOWN: usize = 3;
+/// Steps of a witness at its start and at its end; the middle is left out.
+const START: usize = 3;
+const END: usize = 9;
+
+#[derive(Serialize)]
+pub struct Violated {
+    name: String,
+    kind: String,
+    title: String,
+    text: String,
+    tests: usize,
+    /// `random_tests 31, …`
+    per_suite: Vec<(String, usize)>,
+    shown: Vec<Shown>,
+    others: Vec<Link>,
+}
+
+/// A test with its first violation.
+#[derive(Serialize)]
+pub struct Shown {
+    test: Link,
+    witness: Option<Witness>,
+}
+
+/// How a verdict came about.
+#[derive(Serialize)]
+pub struct Witness {
+    how: String,
+    time: String,
+    margin: String,
+    /// Further violations in the same test.
+    more: u32,
+    points: Vec<Point>,
+}
+
+/// A point of a witness's line of time.
+#[derive(Serialize)]
+pub struct Point {
+    /// `gap`: steps left out; `end`: the violation.
+    class: &'static str,
+    time: String,
+    text: String,
+    /// Its line in the recording of the test; 0 for none.
+    line: usize,
+}
+
+/// One for each violated requirement.
+pub fn all(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<Violated> {
+    let of = |requirement: &Requirement| {
+        let failing = facts::failing(results, requirement);
+        (!failing.is_empty()).then(|| violated(results, requirement, &failing, link))
+    };
+    results.requirements.iter().filter_map(of).collect()
+}
+
+fn violated(
+    results: &Results,
+    requirement: &Requirement,
+    failing: &[(usize, &TestResult)],
+    link: &dyn Fn(&str) -> Link,
+) -> Violated {
+    let chosen = choose(failing);
+    let shown = |(_, test): &(usize, &TestResult)| Shown {
+        test: link(&test.name),
+        witness: facts::failure(test, &requirement.name).map(|(verdict, failure)| witness(verdict, failure)),
+    };
+    let number = |suite: &str| failing.iter().filter(|(_, t)| t.suite == suite).count();
+    let others = failing.iter().filter(|(i, _)| chosen.iter().all(|(c, _)| c != i));
+    Violated {
+        name: requirement.name.clone(),
+        kind: requirement.kind.clone(),
+        title: requirement.title.clone(),
+        text: requirement.text.clone(),
+        tests: failing.len(),
+        per_suite: results
+            .suites
+            .iter()
+            .map(|s| (s.name.clone(), number(&s.name)))
+            .filter(|(_, n)| *n > 0)
+            .collect(),
+        others: others.map(|(_, t)| link(&t.name)).collect(),
+        shown: chosen.iter().map(shown).collect(),
+    }
+}
+
+/// The first failing test of each suite, then the next ones, in order: different methods often fail differently.
+fn choose<'a>(failing: &[(usize, &'a TestResult)]) -> Vec<(usize, &'a TestResult)> {
+    let is_first = |at: usize| failing[..at].iter().all(|(_, t)| t.suite != failing[at].1.suite);
+    let (mut chosen, rest): (Vec<usize>, Vec<usize>) = (0..failing.len()).partition(|at| is_first(*at));
+    chosen.extend(rest);
+    chosen.truncate(SHOWN);
+    chosen.sort_unstable();
+    chosen.into_iter().map(|at| failing[at]).collect()
+}
+
+/// The witness of a failure as a line of time that ends with the violation.
+pub fn witness(verdict: &VerdictResult, failure: &Failure) -> Witness {
+    let steps = &failure.witness;
+    let point = |i: usize| Point {
+        class: if i + 1 == steps.len() && !failure.deadline { "end" } else { "" },
+        time: text::moment(steps[i].time),
+        text: steps[i].text.clone(),
+        line: steps[i].step + 2,
+    };
+    let mut points: Vec<Point> = if steps.len() <= START + END + 1 {
+        (0..steps.len()).map(point).collect()
+    } else {
+        let left_out = text::count(steps.len() - START - END, "step");
+        let gap = Point { class: "gap", time: String::new(), text: format!("{left_out} left out"), line: 0 };
+        (0..START).map(point).chain([gap]).chain((steps.len() - END..steps.len()).map(point)).collect()
+    };
+    if failure.deadline {
+        let text = "the deadline passed".to_owned();
+        points.push(Point { class: "end", time: text::moment(failure.time), text, line: 0 });
+    }
+    Witness {
+        how: facts::how(failure),
+        time: text::moment(failure.time),
+        margin: verdict.worst_margin.map(|(value, unit)| text::margin(value, unit)).unwrap_or_default(),
+        more: verdict.failures.saturating_sub(1),
+        points,
+    }
+}

@@ -1,0 +1,16 @@
+//! Reports from [`Results`](crate::results::Results): the only module that writes prose.
+//!
+//! Whatever comes from a scenario, a test or a robot program is untrusted text: it is cleaned ([`text`]) and escaped
+//! before it reaches a terminal, a browser or an XML parser.
+
+mod facts;
+#[cfg(test)]
+pub(crate) mod fixture;
+mod html;
+mod junit;
+mod terminal;
+mod text;
+
+pub use html::html;
+pub use junit::junit;
+pub use terminal::summary;

@@ -1,0 +1,421 @@
+//! The summary for a terminal: requirements, first violations, bins, code and errors, in aligned columns.
+
+use std::fmt::Write as _;
+
+use super::{
+    facts::{self, Bin, Outcome},
+    text,
+};
+use crate::results::{BinResult, Ratios, Requirement, Results, TestResult};
+
+/// Room for a label at the start of a line, at the least.
+const LABEL: usize = 20;
+/// Bins and errors that are listed, at most.
+const BINS: usize = 16;
+const ERRORS: usize = 3;
+
+/// The results on at most `width` columns, with ANSI colours if `color`.
+#[must_use]
+pub fn summary(results: &Results, width: usize, color: bool) -> String {
+    let mut page = Page { out: String::new(), width: width.max(40), color };
+    header(&mut page, results);
+    requirements(&mut page, results);
+    violations(&mut page, results);
+    bins(&mut page, results);
+    code(&mut page, results);
+    errors(&mut page, results);
+    page.out
+}
+
+/// Colours; each comes with a symbol or word that says the same.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Style {
+    Plain,
+    Bold,
+    Dim,
+    Good,
+    Bad,
+    Warn,
+}
+
+impl Style {
+    fn code(self) -> &'static str {
+        match self {
+            Style::Plain => "",
+            Style::Bold => "1",
+            Style::Dim => "2",
+            Style::Good => "36",
+            Style::Bad => "1;31",
+            Style::Warn => "33",
+        }
+    }
+
+    fn of(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Pass => Style::Good,
+            Outcome::Fail => Style::Bad,
+            Outcome::NotChecked => Style::Dim,
+            Outcome::Open | Outcome::Error => Style::Warn,
+        }
+    }
+}
+
+/// A piece of a line. Its text is clean.
+struct Cell(String, Style);
+
+fn left(text: &str, width: usize, style: Style) -> Cell {
+    let text = text::cut(text, width);
+    Cell(format!("{text:<width$}"), style)
+}
+
+fn right(text: &str, width: usize, style: Style) -> Cell {
+    let text = text::cut(text, width);
+    Cell(format!("{text:>width$}"), style)
+}
+
+struct Page {
+    out: String,
+    width: usize,
+    color: bool,
+}
+
+impl Page {
+    fn line(&mut self, cells: &[Cell]) {
+        let used = cells.iter().rposition(|c| !c.0.trim_end().is_empty()).map_or(0, |last| last + 1);
+        let mut room = self.width;
+        for (i, Cell(text, style)) in cells[..used].iter().enumerate() {
+            let text = text::cut(text, room);
+            room -= text.chars().count();
+            let text = if i + 1 == used { text.trim_end() } else { &text };
+            if self.color && *style != Style::Plain && !text.trim().is_empty() {
+                let _ = write!(self.out, "\u{1b}[{}m{text}\u{1b}[0m", style.code());
+            } else {
+                self.out.push_str(text);
+            }
+        }
+        self.out.push('\n');
+    }
+
+    /// How many columns of a width fit beside the least label.
+    fn fit(&self, column: usize) -> usize {
+        (self.width.saturating_sub(LABEL) / column).max(1)
+    }
+
+    fn label(&self, columns: usize, column: usize) -> usize {
+        self.width.saturating_sub(columns * column).max(8)
+    }
+}
+
+fn header(page: &mut Page, results: &Results) {
+    let scenario = text::line(&results.scenario);
+    let about = format!("   seed {}   hrdsl {}", results.seed, text::line(&results.version));
+    page.line(&[Cell(scenario, Style::Bold), Cell(about, Style::Dim)]);
+    let failing = results.tests.iter().filter(|t| t.has_failed()).count();
+    let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
+    let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
+    page.line(&[
+        Cell(text::count(results.tests.len(), "test"), Style::Plain),
+        Cell(", ".into(), Style::Plain),
+        Cell(format!("{failing} with violations"), if failing > 0 { Style::Bad } else { Style::Good }),
+        Cell(", ".into(), Style::Plain),
+        Cell(text::count(broken, "error"), if broken > 0 { Style::Warn } else { Style::Good }),
+        Cell(format!(", {} simulated", text::stretch(simulated)), Style::Plain),
+    ]);
+}
+
+/// The outcomes with a column: the first three always, the others if there are any.
+fn columns(results: &Results) -> Vec<(Outcome, usize)> {
+    let most = |o: Outcome| {
+        results.requirements.iter().flat_map(|r| &r.tally).map(|t| o.count(t)).max().unwrap_or(0)
+    };
+    Outcome::ALL
+        .into_iter()
+        .map(|o| (o, most(o)))
+        .filter(|(o, most)| matches!(o, Outcome::Pass | Outcome::Fail | Outcome::NotChecked) || *most > 0)
+        .map(|(o, most)| (o, most.to_string().len().max(o.short().len()) + 1))
+        .collect()
+}
+
+fn requirements(page: &mut Page, results: &Results) {
+    if results.requirements.is_empty() {
+        return;
+    }
+    let columns = columns(results);
+    let group = columns.iter().map(|(_, w)| w).sum::<usize>() + 2;
+    let all: Vec<usize> = (0..results.suites.len()).collect();
+    for suites in all.chunks(page.fit(group)) {
+        let label = page.label(suites.len(), group);
+        page.out.push('\n');
+        let mut names = vec![left("Requirements", label, Style::Bold)];
+        let mut heads = vec![left("", label, Style::Plain)];
+        for suite in suites {
+            names.push(right(&text::line(&results.suites[*suite].name), group, Style::Bold));
+            heads.push(Cell("  ".into(), Style::Plain));
+            heads.extend(columns.iter().map(|(o, w)| right(o.short(), *w, Style::Dim)));
+        }
+        page.line(&names);
+        page.line(&heads);
+        for requirement in &results.requirements {
+            requirement_line(page, requirement, suites, &columns, label);
+        }
+    }
+}
+
+fn requirement_line(
+    page: &mut Page,
+    requirement: &Requirement,
+    suites: &[usize],
+    columns: &[(Outcome, usize)],
+    label: usize,
+) {
+    let standing = facts::standing(requirement);
+    let name = format!("{} {}", standing.symbol(), text::line(&requirement.name));
+    let room = label.saturating_sub(name.chars().count());
+    let title = format!(" {}", text::line(&requirement.title));
+    let mut cells = vec![Cell(name, Style::of(standing)), left(&title, room, Style::Plain)];
+    for suite in suites {
+        let tally = requirement.tally.get(*suite).copied().unwrap_or_default();
+        cells.push(Cell("  ".into(), Style::Plain));
+        for (outcome, width) in columns {
+            let number = outcome.count(&tally);
+            let marked = matches!(outcome, Outcome::Fail | Outcome::Open | Outcome::Error);
+            let style = match number {
+                0 => Style::Dim,
+                _ if marked => Style::of(*outcome),
+                _ => Style::Plain,
+            };
+            cells.push(right(&if number == 0 { "·".to_owned() } else { number.to_string() }, *width, style));
+        }
+    }
+    page.line(&cells);
+}
+
+fn violations(page: &mut Page, results: &Results) {
+    let violated: Vec<(&Requirement, Vec<(usize, &TestResult)>)> = results
+        .requirements
+        .iter()
+        .map(|r| (r, facts::failing(results, r)))
+        .filter(|(_, tests)| !tests.is_empty())
+        .collect();
+    if violated.is_empty() {
+        return;
+    }
+    page.out.push('\n');
+    page.line(&[Cell("Violations".into(), Style::Bold), Cell("  the first of each".into(), Style::Dim)]);
+    let width = |texts: Vec<String>| texts.iter().map(|t| t.chars().count()).max().unwrap_or(0);
+    let names = width(violated.iter().map(|(r, _)| text::line(&r.name)).collect());
+    let test_of = |tests: &[(usize, &TestResult)]| text::line(facts::short(results, &tests[0].1.name));
+    let tests_width = width(violated.iter().map(|(_, t)| test_of(t)).collect()).min(page.width / 3);
+    for (requirement, tests) in &violated {
+        let name = format!("✗ {:<names$}  ", text::line(&requirement.name));
+        let failure = facts::failure(tests[0].1, &requirement.name);
+        let time = failure.map(|(_, f)| text::moment(f.time)).unwrap_or_default();
+        let what = failure.map(|(_, f)| facts::in_short(f)).unwrap_or_default();
+        let others = match tests.len() - 1 {
+            0 => String::new(),
+            more => format!("  +{more}"),
+        };
+        let used = name.chars().count() + 9 + 2 + tests_width + 2 + others.chars().count();
+        page.line(&[
+            Cell(name, Style::Bad),
+            right(&time, 9, Style::Plain),
+            Cell("  ".into(), Style::Plain),
+            left(&test_of(tests), tests_width, Style::Plain),
+            Cell("  ".into(), Style::Plain),
+            left(&what, page.width.saturating_sub(used), Style::Plain),
+            Cell(others, Style::Dim),
+        ]);
+    }
+}
+
+fn bins(page: &mut Page, results: &Results) {
+    if results.bins.is_empty() {
+        return;
+    }
+    let widest = results.suites.iter().map(|s| text::line(&s.name).chars().count()).max().unwrap_or(0);
+    let column = widest.clamp(8, 14) + 2;
+    let crosses: Vec<&str> = results.bins.iter().map(|b| b.cross.as_str()).collect();
+    let is_one = crosses.windows(2).all(|w| w[0] == w[1]);
+    let shown: Vec<&BinResult> = if results.bins.len() <= BINS {
+        results.bins.iter().collect()
+    } else {
+        results.bins.iter().filter(|b| Bin::of(b) != Bin::Hit).take(BINS).collect()
+    };
+    let all: Vec<usize> = (0..results.suites.len()).collect();
+    for suites in all.chunks(page.fit(column)) {
+        let label = page.label(suites.len(), column);
+        page.out.push('\n');
+        let mut names = vec![
+            Cell("Bins".into(), Style::Bold),
+            left("  tests that hit / were predicted to", label.saturating_sub(4), Style::Dim),
+        ];
+        let name = |i: &usize| right(&text::line(&results.suites[*i].name), column, Style::Bold);
+        names.extend(suites.iter().map(name));
+        page.line(&names);
+        for bin in &shown {
+            bin_line(page, results, bin, suites, (label, column), is_one);
+        }
+        let mut totals = vec![left(&format!("  hit, of {}", results.bins.len()), label, Style::Dim)];
+        let total = |i: &usize| {
+            let hit = facts::bins_hit(results, *i);
+            right(&format!("{hit}{:w$}", "", w = prediction(results, *i)), column, Style::Dim)
+        };
+        totals.extend(suites.iter().map(total));
+        page.line(&totals);
+    }
+}
+
+/// The width of a suite's predictions with their slash; 0 if it has none.
+fn prediction(results: &Results, suite: usize) -> usize {
+    let most = results.bins.iter().filter_map(|b| b.predicted.get(suite)).max().copied().unwrap_or(0);
+    if most == 0 { 0 } else { most.to_string().len() + 1 }
+}
+
+fn bin_line(
+    page: &mut Page,
+    results: &Results,
+    bin: &BinResult,
+    suites: &[usize],
+    (label, column): (usize, usize),
+    is_one_cross: bool,
+) {
+    let state = Bin::of(bin);
+    let (style, note) = match state {
+        Bin::Hit => (Style::Good, ""),
+        Bin::Missed => (Style::Warn, "  not hit"),
+        Bin::Unreachable => (Style::Dim, "  unreachable in the model"),
+        Bin::Refuted => (Style::Bad, "  hit, yet unreachable in the model"),
+    };
+    let name = text::line(if is_one_cross { &bin.bin } else { &bin.name });
+    let name = text::cut(&name, label.saturating_sub(3 + note.chars().count()).max(12));
+    let rest = label.saturating_sub(2 + name.chars().count());
+    let mut cells =
+        vec![Cell(format!("{} ", state.symbol()), style), Cell(name, Style::Plain), left(note, rest, style)];
+    for suite in suites {
+        let hits = bin.hits.get(*suite).copied().unwrap_or(0);
+        let predicted = bin.predicted.get(*suite).copied().unwrap_or(0);
+        let number = if hits == 0 && predicted == 0 { "·".to_owned() } else { hits.to_string() };
+        let shown = if hits == 0 && predicted == 0 { String::new() } else { format!("/{predicted}") };
+        let digits = prediction(results, *suite);
+        let text = if digits == 0 { number } else { format!("{number}{shown:<digits$}") };
+        let style = match (hits, predicted) {
+            (0, 0) => Style::Dim,
+            (0, _) => Style::Warn,
+            _ => Style::Plain,
+        };
+        cells.push(right(&text, column, style));
+    }
+    page.line(&cells);
+}
+
+fn code(page: &mut Page, results: &Results) {
+    let all = facts::code(results);
+    if all.lines_total == 0 {
+        return;
+    }
+    let mut entries: Vec<(String, Ratios)> =
+        results.suites.iter().map(|s| (text::line(&s.name), s.code)).collect();
+    if entries.len() > 1 {
+        entries.push(("all".to_owned(), all));
+    }
+    let column = ((page.width - 10) / entries.len().max(1)).clamp(17, 19);
+    for entries in entries.chunks(((page.width - 10) / column).max(1)) {
+        page.out.push('\n');
+        let mut names = vec![left("Code", 10, Style::Bold)];
+        names.extend(entries.iter().map(|(name, _)| right(name, column, Style::Bold)));
+        page.line(&names);
+        let ratio = |part: u32, whole: u32, percent: f64| {
+            right(&format!("{part}/{whole}  {percent:>5.1} %"), column, Style::Plain)
+        };
+        let mut lines = vec![left("  lines", 10, Style::Plain)];
+        lines.extend(entries.iter().map(|(_, c)| ratio(c.lines, c.lines_total, c.line_percent())));
+        page.line(&lines);
+        if all.branches_total > 0 {
+            let mut branches = vec![left("  branches", 10, Style::Plain)];
+            branches
+                .extend(entries.iter().map(|(_, c)| ratio(c.branches, c.branches_total, c.branch_percent())));
+            page.line(&branches);
+        }
+    }
+}
+
+fn errors(page: &mut Page, results: &Results) {
+    let broken: Vec<(&TestResult, &str)> =
+        results.tests.iter().filter_map(|t| t.error.as_deref().map(|e| (t, e))).collect();
+    if broken.is_empty() {
+        return;
+    }
+    page.out.push('\n');
+    page.line(&[Cell("Errors".into(), Style::Bold), Cell("  tests that broke off".into(), Style::Dim)]);
+    for (test, error) in broken.iter().take(ERRORS) {
+        let name = text::line(facts::short(results, &test.name));
+        let clean = text::clean(error);
+        let first = clean.lines().find(|l| !l.trim().is_empty()).map(text::line).unwrap_or_default();
+        page.line(&[
+            Cell("! ".into(), Style::Warn),
+            Cell(format!("{}  ", text::cut(&name, page.width / 3)), Style::Plain),
+            Cell(first, Style::Plain),
+        ]);
+    }
+    if broken.len() > ERRORS {
+        page.line(&[Cell(format!("  and {} more", broken.len() - ERRORS), Style::Dim)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::fixture, *};
+
+    #[test]
+    fn the_page_is_as_agreed() {
+        let results = fixture::campaign(12);
+        assert_eq!(summary(&results, 100, false), include_str!("golden/summary-100.txt"));
+        assert_eq!(summary(&results, 80, false), include_str!("golden/summary-80.txt"));
+    }
+
+    #[test]
+    fn it_fits_the_screen() {
+        for (count, widths) in [(12, [60, 80, 100]), (160, [72, 80, 120])] {
+            let results = fixture::campaign(count);
+            for width in widths {
+                let text = summary(&results, width, false);
+                let widest = text.lines().map(|l| l.chars().count()).max();
+                assert!(widest <= Some(width), "{widest:?} > {width}\n{text}");
+            }
+            assert!(summary(&results, 100, false).lines().count() <= 45);
+        }
+    }
+
+    #[test]
+    fn colours_only_if_asked_and_only_colours() {
+        let results = fixture::campaign(12);
+        let plain = summary(&results, 100, false);
+        let coloured = summary(&results, 100, true);
+        assert!(!plain.contains('\u{1b}') && coloured.contains("\u{1b}[1;31m"));
+        assert_eq!(text::clean(&coloured), plain);
+    }
+
+    #[test]
+    fn hostile_text_cannot_steer_the_terminal() {
+        let mut results = fixture::campaign(2);
+        results.tests[0].error = Some("\u{1b}[2J\u{1b}]0;owned\u{7}died\u{8}\r\nmore".into());
+        results.requirements[0].title = "a\u{1b}[31m\nb".into();
+        let text = summary(&results, 100, false);
+        assert!(!text.chars().any(|c| c.is_control() && c != '\n'));
+        assert!(text.contains("  died\n"));
+    }
+
+    #[test]
+    fn nothing_to_say() {
+        let mut results = fixture::campaign(1);
+        results.tests.clear();
+        results.bins.clear();
+        results.code.clear();
+        results.suites.clear();
+        results.requirements.clear();
+        assert_eq!(
+            summary(&results, 80, false),
+            "handover   seed 1   hrdsl 0.1.0\n0 tests, 0 with violations, 0 errors, 0.0 s simulated\n"
+        );
+    }
+}

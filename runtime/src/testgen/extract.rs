@@ -1,0 +1,154 @@
+//! From what happened in a model to an abstract test: the environment's stimuli, and what they waited for.
+//!
+//! A stimulus that followed an event which its actor's model waits for becomes "await that event, then the stimulus";
+//! what is left of the time between becomes a wait.
+
+use hrdsl_coverage::Collector;
+use hrdsl_ir::{
+    ActorId, EventPattern, Nanos, Program, Role,
+    bdi::{StepKind, TriggerOn},
+    event::ArgPattern,
+    expr::Expr,
+    suite::PlayerRef,
+    ta::{ReceiveArg, Sync},
+    test::TestStep,
+    value::nanos,
+};
+use hrdsl_trace::{Trace, What};
+
+/// The groups of events that an actor's model waits for at once.
+pub struct Awaits {
+    groups: Vec<(ActorId, Vec<EventPattern>)>,
+}
+
+impl Awaits {
+    /// What the models that play environment actors wait for.
+    #[must_use]
+    pub fn of(program: &Program, players: &[PlayerRef]) -> Self {
+        let mut groups = Vec::new();
+        for player in players {
+            match player {
+                PlayerRef::Agent(id) => {
+                    let agent = &program.agents[id.0 as usize];
+                    let steps = agent.plans.iter().flat_map(|p| &p.body);
+                    let awaits = steps.filter_map(|s| match &s.kind {
+                        StepKind::Await { events, .. } => Some(events.clone()),
+                        _ => None,
+                    });
+                    let perceived = agent.plans.iter().filter_map(|p| match p.trigger.on {
+                        TriggerOn::Perceived(event) => Some(vec![any(program, event)]),
+                        _ => None,
+                    });
+                    groups.extend(awaits.chain(perceived).map(|g| (agent.actor, g)));
+                }
+                PlayerRef::Automaton(id) => {
+                    let automaton = &program.automata[id.0 as usize];
+                    for location in 0..automaton.locations.len() {
+                        let edges = automaton.edges.iter().filter(|e| e.from.0 as usize == location);
+                        let group: Vec<EventPattern> = edges.filter_map(|e| received(&e.sync)).collect();
+                        if !group.is_empty() {
+                            groups.push((automaton.actor, group));
+                        }
+                    }
+                }
+            }
+        }
+        groups.retain_mut(|(actor, group)| {
+            group.retain(|p| program.actor(program.event(p.event).from).role == Role::System);
+            !group.is_empty() && program.actor(*actor).role == Role::Environment
+        });
+        Self { groups }
+    }
+
+    /// The first group of this actor that waits for such an event.
+    fn group(&self, actor: ActorId, what: &What) -> Option<&[EventPattern]> {
+        let What::Event { event, args } = what else { return None };
+        let waits = |(a, group): &&(ActorId, Vec<EventPattern>)| {
+            *a == actor && group.iter().any(|p| p.matches(*event, args))
+        };
+        self.groups.iter().find(waits).map(|(_, group)| group.as_slice())
+    }
+}
+
+fn any(program: &Program, event: hrdsl_ir::EventId) -> EventPattern {
+    EventPattern { event, args: vec![ArgPattern::Any; program.event(event).params.len()] }
+}
+
+fn received(sync: &Sync) -> Option<EventPattern> {
+    match sync {
+        Sync::Receive { event, args } => {
+            let args = args.iter().map(|a| match a {
+                ReceiveArg::Match(pattern) => *pattern,
+                ReceiveArg::Bind => ArgPattern::Any,
+            });
+            Some(EventPattern { event: *event, args: args.collect() })
+        }
+        Sync::Internal | Sync::Send { .. } => None,
+    }
+}
+
+/// The test that stimulates what the trace shows. `patience` bounds each await.
+#[must_use]
+pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos) -> Vec<TestStep> {
+    let mut out = Vec::new();
+    // When the script is free again, as far as the model's time goes, and the first trace step it has not looked at.
+    let mut free: Nanos = 0;
+    let mut looked = 0;
+    for (index, step) in trace.steps.iter().enumerate() {
+        let What::Event { event, args } = &step.what else { continue };
+        let declared = program.event(*event);
+        if !declared.is_stimulus() || program.actor(declared.from).role != Role::Environment {
+            continue;
+        }
+        let between = trace.steps[looked..index].iter().rev();
+        let awaited = between.filter_map(|s| Some((s.time, awaits.group(declared.from, &s.what)?))).next();
+        if let Some((time, group)) = awaited {
+            out.push(TestStep::Await { events: group.to_vec(), within: patience });
+            free = free.max(time);
+            looked = index;
+        }
+        if step.time > free {
+            out.push(TestStep::Wait { time: step.time - free });
+        }
+        out.push(TestStep::Do { event: *event, args: args.clone(), samples: Vec::new() });
+        free = step.time + duration(program, *event, args);
+    }
+    out
+}
+
+/// How long a stimulus holds: the sum of its holds, so far as they do not depend on samples.
+fn duration(program: &Program, event: hrdsl_ir::EventId, args: &[hrdsl_ir::Value]) -> Nanos {
+    use hrdsl_ir::event::StimulusStep;
+    fn sum(steps: &[StimulusStep], eval: &dyn Fn(&Expr) -> Option<hrdsl_ir::Value>) -> Nanos {
+        let of = |step: &StimulusStep| match step {
+            StimulusStep::Hold { seconds } => nanos(eval(seconds).and_then(|v| v.as_f64()).unwrap_or(0.0).max(0.0)),
+            StimulusStep::If { condition, then, otherwise } => {
+                let holds = eval(condition).and_then(|v| v.as_bool()) == Some(true);
+                sum(if holds { then } else { otherwise }, eval)
+            }
+            StimulusStep::Emit { .. } | StimulusStep::Act(_) => 0,
+        };
+        steps.iter().map(of).sum()
+    }
+    let eval = |e: &Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
+    program.event(event).stimulus.as_ref().map_or(0, |s| sum(&s.steps, &eval))
+}
+
+/// The cross-product bins that a trace falls into, by name.
+#[must_use]
+pub fn predicted(program: &Program, trace: &Trace) -> Vec<String> {
+    let mut collector = Collector::new(program);
+    trace.replay(&mut collector);
+    collector.finish().cross_names(&program.coverage)
+}
+
+/// Whether what happened keeps the scenario's assumptions.
+#[must_use]
+pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
+    let events = trace.steps.iter().filter_map(|s| match &s.what {
+        What::Event { event, args } => Some((s.time, *event, args.clone())),
+        What::Sample { .. } => None,
+    });
+    let events: Vec<_> = events.collect();
+    hrdsl_coverage::assume::Assumptions::allows(program, &events)
+}

@@ -1,0 +1,127 @@
+//! The baseline: stimuli, awaits and pauses drawn at random (Section "Baseline: Pseudorandom Test Generation").
+
+use hrdsl_coverage::assume::Assumptions;
+use hrdsl_ir::{
+    EventId, Nanos, Program, Type, Value,
+    event::StimulusStep,
+    suite::{Method, Suite},
+    test::TestStep,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::{AbstractTest, Harvest};
+
+/// Draws `count` sequences.
+///
+/// # Errors
+/// A suite without stimuli, or a stimulus whose arguments cannot be enumerated.
+pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<Harvest, String> {
+    let Method::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } = &suite.method else {
+        return Err(format!("suite `{}` is not by random", suite.name));
+    };
+    let mut choices: Vec<TestStep> = Vec::new();
+    for event in stimuli {
+        choices.extend(instances(program, *event)?);
+    }
+    choices.extend(
+        awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.patience }),
+    );
+    if choices.is_empty() {
+        return Err(format!("suite `{}` has no stimuli to draw from", suite.name));
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut harvest = Harvest::default();
+    for _ in 0..count {
+        let length = rng.random_range(*length_lo..=*length_hi.max(length_lo));
+        let mut draw = Draw { program, assumptions: Assumptions::new(program), steps: Vec::new(), time: 0 };
+        for _ in 0..length {
+            let pause = if pause_lo < pause_hi { rng.random_range(*pause_lo..=*pause_hi) } else { *pause_lo };
+            // Tenths of a second: a person's pauses, readable in the test's text.
+            draw.pause(pause / 100_000_000 * 100_000_000);
+            let choice = &choices[rng.random_range(0..choices.len())];
+            draw.step(choice);
+        }
+        harvest.tests.push(AbstractTest {
+            steps: draw.steps,
+            because: vec![format!("{length} steps drawn at random")],
+            predicts: Vec::new(),
+        });
+    }
+    Ok(harvest)
+}
+
+/// A sequence under construction. Its times are lower bounds: that is what an assumption's window must be judged by.
+struct Draw<'p> {
+    program: &'p Program,
+    assumptions: Assumptions,
+    steps: Vec<TestStep>,
+    time: Nanos,
+}
+
+impl Draw<'_> {
+    fn pause(&mut self, time: Nanos) {
+        if time > 0 {
+            self.time += time;
+            self.steps.push(TestStep::Wait { time });
+        }
+    }
+
+    /// Adds the step, unless it would break an assumption.
+    fn step(&mut self, step: &TestStep) {
+        if let TestStep::Do { event, args, .. } = step {
+            let made = makes(self.program, *event, args);
+            let breaks = |(e, a): &(EventId, Vec<Value>)| self.assumptions.would_violate(self.time, *e, a).is_some();
+            if made.iter().any(breaks) {
+                return;
+            }
+            for (event, args) in &made {
+                self.assumptions.record(self.time, *event, args);
+            }
+        }
+        self.steps.push(step.clone());
+    }
+}
+
+/// A stimulus with each tuple of its arguments.
+fn instances(program: &Program, event: EventId) -> Result<Vec<TestStep>, String> {
+    let declared = program.event(event);
+    let mut tuples: Vec<Vec<Value>> = vec![Vec::new()];
+    for param in &declared.params {
+        let Some(domain) = Type::domain(param.ty) else {
+            return Err(format!("stimulus `{}`: values of `{}` cannot be enumerated", declared.name, param.name));
+        };
+        let extend = |tuple: &Vec<Value>| {
+            let tuple = tuple.clone();
+            domain.iter().map(move |v| [tuple.as_slice(), &[*v]].concat()).collect::<Vec<_>>()
+        };
+        tuples = tuples.iter().flat_map(extend).collect();
+    }
+    Ok(tuples.into_iter().map(|args| TestStep::Do { event, args, samples: Vec::new() }).collect())
+}
+
+/// The stimulus itself and the events that it makes whose arguments do not depend on samples.
+fn makes(program: &Program, event: EventId, args: &[Value]) -> Vec<(EventId, Vec<Value>)> {
+    fn collect(steps: &[StimulusStep], args: &[Value], out: &mut Vec<(EventId, Vec<Value>)>) {
+        let eval = |e: &hrdsl_ir::Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
+        for step in steps {
+            match step {
+                StimulusStep::Emit { event, args: exprs } => {
+                    if let Some(values) = exprs.iter().map(eval).collect() {
+                        out.push((*event, values));
+                    }
+                }
+                StimulusStep::If { condition, then, otherwise } => {
+                    let holds = eval(condition) == Some(Value::Bool(true));
+                    collect(if holds { then } else { otherwise }, args, out);
+                }
+                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
+            }
+        }
+    }
+    let mut out = vec![(event, args.to_vec())];
+    if let Some(stimulus) = &program.event(event).stimulus {
+        collect(&stimulus.steps, args, &mut out);
+    }
+    out
+}

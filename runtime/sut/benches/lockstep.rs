@@ -1,0 +1,57 @@
+//! What lock-step costs: a round trip of `node.now()`, and a whole process from start to finish.
+
+use std::{path::PathBuf, time::Duration};
+
+use hrdsl_sut::{Answer, Launch, Process, PythonEnv, Reply, Request, pin_to_core};
+
+fn main() {
+    divan::main();
+}
+
+fn launch(script: &str, coverage: bool) -> Launch {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let cache = root.join("../../target/hrdsl-sut-cache");
+    let env = PythonEnv::prepare(&cache, None).expect("Python 3 and a way to install coverage.py");
+    Launch {
+        command: vec!["python3".into(), script.into()],
+        dir: root.join("tests/programs"),
+        seed: 1,
+        coverage: if coverage { vec![script.into()] } else { Vec::new() },
+        env,
+        budget: Duration::from_secs(10),
+        output_limit: 1 << 16,
+    }
+}
+
+fn answer(process: &mut Process) -> Request {
+    let request = process.next().expect("a request");
+    process.reply(&Reply { time: 0, answer: Answer::Ok }).expect("a reply");
+    request
+}
+
+/// 1,000 round trips; parent and child left to the scheduler, then on one core. (The last benchmark, in this order:
+/// the thread stays pinned.)
+#[divan::bench(args = [false, true], sample_count = 50)]
+fn thousand_round_trips(bencher: divan::Bencher, pinned: bool) {
+    if pinned {
+        pin_to_core(0).expect("a core");
+    }
+    let mut process = Process::spawn(&launch("ask_forever.py", false)).expect("a process");
+    answer(&mut process);
+    bencher.counter(divan::counter::ItemsCount::new(1000_u32)).bench_local(|| {
+        for _ in 0..1000 {
+            answer(&mut process);
+        }
+    });
+}
+
+/// From the start of a program that only says hello to its end; with and without coverage.
+#[divan::bench(args = [false, true], sample_count = 30)]
+fn start_to_finish(bencher: divan::Bencher, coverage: bool) {
+    let launch = launch("hello.py", coverage);
+    bencher.bench_local(|| {
+        let mut process = Process::spawn(&launch).expect("a process");
+        while answer(&mut process) != Request::Done {}
+        process.finish(Duration::from_secs(10))
+    });
+}

@@ -1,0 +1,34 @@
+//! Code coverage as the runner writes it.
+
+use std::{collections::BTreeMap, path::Path};
+
+use serde::{Deserialize, Serialize};
+
+/// What one run executed of one source file. Lines count from 1; all lists are sorted.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileCoverage {
+    /// As it was given in [`Launch::coverage`](crate::Launch::coverage).
+    #[serde(default)]
+    pub file: String,
+    /// The first lines of all executable statements.
+    pub statements: Vec<u32>,
+    /// Those of them that were executed.
+    pub executed: Vec<u32>,
+    /// The ways out of every line that has more than one: (line, next line). A next line below zero is the end of the
+    /// function, class or module that starts at that line.
+    pub branches: Vec<(u32, i32)>,
+    /// Those of them that were taken.
+    pub executed_branches: Vec<(u32, i32)>,
+}
+
+/// Reads what the runner wrote, in the order of `files`; `None` if it wrote nothing or was cut short.
+pub(crate) fn read(path: &Path, files: &[String]) -> Option<Vec<FileCoverage>> {
+    let text = std::fs::read(path).ok()?;
+    let mut found: BTreeMap<String, FileCoverage> = serde_json::from_slice(&text).ok()?;
+    Some(
+        files
+            .iter()
+            .filter_map(|file| found.remove(file).map(|c| FileCoverage { file: file.clone(), ..c }))
+            .collect(),
+    )
+}

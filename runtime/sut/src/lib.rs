@@ -1,0 +1,30 @@
+//! The system under test: a process that runs in lock-step with simulated time; the only crate that starts processes.
+//!
+//! # Steps
+//!
+//! 1. [`PythonEnv::prepare`] installs, once, what robot code in Python needs: the SDK, coverage.py, its requirements.
+//! 2. [`Process::spawn`] starts the program of a [`Launch`], with its output captured in bounded memory.
+//! 3. [`Process::next`] waits for the program's [`Request`], at most for the launch's budget of wall time.
+//! 4. [`Process::reply`] answers it with a [`Reply`], which carries the simulated time.
+//! 5. [`Process::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
+//!
+//! Whatever the program does (die, hang, flood its output, write rubbish) is a [`SutError`], never a panic and never a
+//! blocked harness. The protocol is `spec/protocol.md`.
+
+mod affinity;
+mod coverage;
+mod environment;
+mod error;
+mod launch;
+mod output;
+mod process;
+mod protocol;
+
+pub use affinity::pin_to_core;
+pub use coverage::FileCoverage;
+pub use environment::PythonEnv;
+pub use error::SutError;
+pub use launch::Launch;
+pub use output::{Captured, Output};
+pub use process::{Exit, Finished, Process};
+pub use protocol::{Answer, Arg, PROTOCOL_VERSION, Reply, Request};

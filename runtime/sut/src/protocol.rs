@@ -1,0 +1,271 @@
+//! The lock-step protocol, version 1, as data (`spec/protocol.md`): one JSON line each way.
+
+use std::collections::BTreeMap;
+
+use hrdsl_ir::{Nanos, Value};
+use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
+
+/// The version that this crate speaks.
+pub const PROTOCOL_VERSION: u32 = 1;
+
+/// What the program asks for. Durations are in seconds, finite and not negative ([`Process::next`](crate::Process::next)
+/// refuses others).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "request", rename_all = "snake_case")]
+pub enum Request {
+    /// The first request; may come again with another name.
+    Hello { version: u32, name: String },
+    /// What time is it?
+    Now,
+    /// Make an event of the scenario happen.
+    Emit {
+        event: String,
+        #[serde(default)]
+        args: BTreeMap<String, Value>,
+    },
+    /// Let simulated time pass.
+    Sleep { seconds: f64 },
+    /// Take the first of these events out of the mailbox, or wait for one.
+    WaitFor {
+        events: Vec<String>,
+        /// No timeout: wait until the end of the test.
+        #[serde(default)]
+        timeout: Option<f64>,
+    },
+    /// Forget these events in the mailbox; none named: all.
+    Drop { events: Vec<String> },
+    /// The present value of a signal.
+    Read { signal: String },
+    /// Let a device do something.
+    Act {
+        /// The device: `robot.arm`.
+        on: String,
+        /// The action: `move_to`, `move_joints`, `close`, `open`.
+        #[serde(rename = "do")]
+        action: String,
+        #[serde(default)]
+        args: BTreeMap<String, Arg>,
+        /// Whether the reply comes when the action has ended; version 1 always waits.
+        #[serde(default = "yes")]
+        wait: bool,
+    },
+    /// The program has come to its normal end.
+    Done,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// An argument of an action.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Arg {
+    Scalar(Value),
+    /// A place (x, y, z; metres) or joint angles (radians).
+    Numbers(Vec<f64>),
+    Text(String),
+}
+
+impl Request {
+    /// Why the request makes no sense whatever the scenario, if it does not.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let bad = |s: f64| (!s.is_finite() || s < 0.0).then(|| format!("{s} is no duration"));
+        match self {
+            Request::Hello { version, .. } => (*version != PROTOCOL_VERSION)
+                .then(|| format!("protocol version {version} is not spoken here, only {PROTOCOL_VERSION}")),
+            Request::Sleep { seconds } => bad(*seconds),
+            Request::WaitFor { events, .. } if events.is_empty() => {
+                Some("wait_for without events".to_owned())
+            }
+            Request::WaitFor { timeout, .. } => timeout.and_then(bad),
+            Request::Act { wait: false, .. } => Some("version 1 has no act without wait".to_owned()),
+            Request::Now
+            | Request::Emit { .. }
+            | Request::Drop { .. }
+            | Request::Read { .. }
+            | Request::Act { .. }
+            | Request::Done => None,
+        }
+    }
+}
+
+/// What the harness answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reply {
+    /// Simulated time.
+    pub time: Nanos,
+    pub answer: Answer,
+}
+
+/// The part of a reply that depends on the request.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// To hello, now, emit, sleep, drop, done.
+    Ok,
+    /// To wait_for: the event that came, and when it happened.
+    Event { name: String, args: BTreeMap<String, Value>, time: Nanos },
+    /// To wait_for: the timeout passed.
+    TimedOut,
+    /// To read.
+    Value(Value),
+    /// To act: it ended, well or for this reason not.
+    Acted(Result<(), String>),
+    /// To any request: it was refused; the program gets an exception.
+    Error {
+        error: String,
+        /// What to write instead.
+        help: Option<String>,
+    },
+    /// To any request: the test is over.
+    Stop,
+}
+
+impl Serialize for Reply {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Happened<'a> {
+            name: &'a str,
+            args: &'a BTreeMap<String, Value>,
+            time: Nanos,
+        }
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("t", &self.time)?;
+        match &self.answer {
+            Answer::Ok => {}
+            Answer::Event { name, args, time } => {
+                map.serialize_entry("event", &Happened { name, args, time: *time })?;
+            }
+            Answer::TimedOut => map.serialize_entry("event", &None::<()>)?,
+            Answer::Value(value) => map.serialize_entry("value", value)?,
+            Answer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
+            Answer::Acted(Err(error)) => {
+                map.serialize_entry("ok", &false)?;
+                map.serialize_entry("error", error)?;
+            }
+            Answer::Error { error, help } => {
+                map.serialize_entry("error", error)?;
+                if let Some(help) = help {
+                    map.serialize_entry("help", help)?;
+                }
+            }
+            Answer::Stop => map.serialize_entry("stop", &true)?,
+        }
+        map.end()
+    }
+}
+
+/// What a line from the program is.
+#[derive(Debug)]
+pub(crate) enum Line {
+    Request(Request),
+    /// JSON, but not a request that this version knows: the program is told so.
+    Refused(String),
+    /// No JSON object with a `request`: whoever wrote it does not speak the protocol.
+    Rubbish(String),
+}
+
+pub(crate) fn parse(line: &[u8]) -> Line {
+    let why = match serde_json::from_slice::<Request>(line) {
+        Ok(request) => match request.fault() {
+            None => return Line::Request(request),
+            Some(fault) => return Line::Refused(fault),
+        },
+        Err(why) => why.to_string(),
+    };
+    match serde_json::from_slice::<serde_json::Value>(line) {
+        Ok(value) if value.get("request").is_some_and(serde_json::Value::is_string) => Line::Refused(why),
+        Ok(_) => Line::Rubbish("no request".to_owned()),
+        Err(_) => Line::Rubbish(why),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(line: &str) -> Request {
+        match parse(line.as_bytes()) {
+            Line::Request(request) => request,
+            other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_request_of_the_specification_is_understood() {
+        assert_eq!(request(r#"{"request":"now"}"#), Request::Now);
+        assert_eq!(request(r#"{"request":"sleep","seconds":2}"#), Request::Sleep { seconds: 2.0 });
+        assert_eq!(
+            request(r#"{"request":"wait_for","events":["a","b"]}"#),
+            Request::WaitFor { events: vec!["a".into(), "b".into()], timeout: None }
+        );
+        assert_eq!(
+            request(r#"{"request":"emit","event":"decided","args":{"ready":true,"n":3,"x":1.5}}"#),
+            Request::Emit {
+                event: "decided".into(),
+                args: BTreeMap::from([
+                    ("n".into(), Value::Int(3)),
+                    ("ready".into(), Value::Bool(true)),
+                    ("x".into(), Value::Float(1.5)),
+                ])
+            }
+        );
+        let Request::Act { on, action, args, wait } = request(
+            r#"{"request":"act","on":"robot.arm","do":"move_to","args":{"to":[0,1,2.5],"speed":0.2}}"#,
+        ) else {
+            panic!()
+        };
+        assert_eq!((on.as_str(), action.as_str(), wait), ("robot.arm", "move_to", true));
+        assert_eq!(args["to"], Arg::Numbers(vec![0.0, 1.0, 2.5]));
+        assert_eq!(args["speed"], Arg::Scalar(Value::Float(0.2)));
+    }
+
+    #[test]
+    fn what_is_no_request_is_refused_or_rubbish() {
+        for (line, refused) in [
+            (r#"{"request":"fly"}"#, true),
+            (r#"{"request":"sleep"}"#, true),
+            (r#"{"request":"sleep","seconds":-1}"#, true),
+            (r#"{"request":"sleep","seconds":"long"}"#, true),
+            (r#"{"request":"hello","version":2,"name":"x"}"#, true),
+            (r#"{"request":"wait_for","events":[]}"#, true),
+            (r#"{"request":"wait_for","events":["a"],"timeout":-0.1}"#, true),
+            (r#"{"request":"act","on":"a","do":"b","wait":false}"#, true),
+            (r#"{"request":1}"#, false),
+            ("{}", false),
+            ("[]", false),
+            ("", false),
+            ("Hello, world", false),
+            ("\u{fffd}{", false),
+        ] {
+            match parse(line.as_bytes()) {
+                Line::Refused(why) => assert!(refused, "{line}: {why}"),
+                Line::Rubbish(why) => assert!(!refused, "{line}: {why}"),
+                Line::Request(request) => panic!("{line}: {request:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn replies_are_written_as_specified() {
+        let wire = |answer| serde_json::to_string(&Reply { time: 5, answer }).unwrap();
+        assert_eq!(wire(Answer::Ok), r#"{"t":5}"#);
+        assert_eq!(wire(Answer::TimedOut), r#"{"t":5,"event":null}"#);
+        assert_eq!(wire(Answer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);
+        assert_eq!(wire(Answer::Acted(Ok(()))), r#"{"t":5,"ok":true}"#);
+        assert_eq!(wire(Answer::Acted(Err("far".into()))), r#"{"t":5,"ok":false,"error":"far"}"#);
+        assert_eq!(wire(Answer::Stop), r#"{"t":5,"stop":true}"#);
+        assert_eq!(
+            wire(Answer::Error { error: "no".into(), help: Some("yes".into()) }),
+            r#"{"t":5,"error":"no","help":"yes"}"#
+        );
+        assert_eq!(
+            wire(Answer::Event {
+                name: "go".into(),
+                args: BTreeMap::from([("far".into(), Value::Float(2.0))]),
+                time: 4
+            }),
+            r#"{"t":5,"event":{"name":"go","args":{"far":2.0},"time":4}}"#
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! What the tests share: an environment prepared once, and launches of the scripts beside.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::OnceLock,
+    time::Duration,
+};
+
+use hrdsl_sut::{Answer, Finished, Launch, Process, PythonEnv, Reply, Request};
+
+pub const GRACE: Duration = Duration::from_secs(20);
+
+/// For the interpreter named by `HRDSL_TEST_PYTHON`, or `python3`.
+pub fn environment(requirements: Option<&Path>) -> PythonEnv {
+    let python = std::env::var("HRDSL_TEST_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sut");
+    PythonEnv::prepare_with(&python, &cache, requirements).unwrap()
+}
+
+fn plain_environment() -> PythonEnv {
+    static ENV: OnceLock<PythonEnv> = OnceLock::new();
+    ENV.get_or_init(|| environment(None)).clone()
+}
+
+pub fn launch(words: &[&str]) -> Launch {
+    Launch {
+        command: words.iter().map(|&w| w.to_owned()).collect(),
+        dir: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/programs"),
+        seed: 17,
+        coverage: Vec::new(),
+        env: plain_environment(),
+        budget: Duration::from_secs(20),
+        output_limit: 1 << 16,
+    }
+}
+
+pub fn reply(process: &mut Process, time: i64, answer: Answer) {
+    process.reply(&Reply { time, answer }).unwrap();
+}
+
+/// Runs a program to its normal end, with a harness whose sleeps pass time and who says yes to all else.
+#[allow(dead_code)] // not every test file uses it
+pub fn run(launch: &Launch) -> (Vec<Request>, Finished) {
+    let mut process = Process::spawn(launch).unwrap();
+    let mut requests = Vec::new();
+    let mut time = 0;
+    while requests.last() != Some(&Request::Done) {
+        let request = process.next().unwrap();
+        if let Request::Sleep { seconds } = request {
+            time += hrdsl_ir::value::nanos(seconds);
+        }
+        reply(&mut process, time, Answer::Ok);
+        requests.push(request);
+    }
+    (requests, process.finish(GRACE))
+}

@@ -1,0 +1,219 @@
+//! The example's robot code through whole hand-overs, against a scripted person.
+
+mod common;
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use common::{GRACE, launch, reply};
+use hrdsl_ir::{Nanos, Value, value::nanos, value::seconds};
+use hrdsl_sut::{Answer, Exit, Finished, Launch, Process, Request};
+
+/// What the person does with one leg.
+#[derive(Clone, Copy, PartialEq)]
+enum Person {
+    TakesIt,
+    LooksAway,
+    /// Lets go after the decision, before the release.
+    LetsGo,
+    SaysNothing,
+}
+
+/// A harness in a few lines: time passes in sleeps, waits and motions; the person and the sensors are a script.
+struct Harness {
+    time: Nanos,
+    legs: Vec<Person>,
+    offered: usize,
+    holds: bool,
+    arm_works: bool,
+    /// Events to come, and those that came, in order of time.
+    queue: Vec<(Nanos, &'static str)>,
+    mailbox: Vec<(Nanos, &'static str)>,
+    emitted: Vec<(Nanos, String, BTreeMap<String, Value>)>,
+}
+
+impl Harness {
+    fn new(legs: &[Person]) -> Self {
+        let queue = vec![(nanos(10.0), "leg_request")];
+        let legs = legs.to_vec();
+        Self {
+            time: 0,
+            legs,
+            offered: 0,
+            holds: false,
+            arm_works: true,
+            queue,
+            mailbox: vec![],
+            emitted: vec![],
+        }
+    }
+
+    fn soon(&mut self, after: f64, event: &'static str) {
+        self.queue.push((self.time + nanos(after), event));
+        self.queue.sort();
+    }
+
+    fn pass(&mut self, until: Nanos) {
+        while self.queue.first().is_some_and(|(time, _)| *time <= until) {
+            self.mailbox.push(self.queue.remove(0));
+        }
+        self.time = until;
+    }
+
+    fn leg(&self) -> Person {
+        self.legs[self.offered.saturating_sub(1).min(self.legs.len() - 1)]
+    }
+
+    fn emitted(&mut self, event: &str) {
+        match event {
+            "handover_offered" => {
+                self.offered += 1;
+                if self.leg() != Person::SaysNothing {
+                    self.holds = true;
+                    self.soon(2.0, "human_ready");
+                }
+            }
+            "sense" => self.soon(0.2, "sensed"),
+            "decided" if self.leg() == Person::LetsGo => self.holds = false,
+            "released" | "discarded" => {
+                self.holds = false;
+                self.soon(15.0, "leg_request");
+            }
+            _ => {}
+        }
+    }
+
+    fn wait_for(&mut self, events: &[String], timeout: Option<f64>) -> Answer {
+        let until = self.time + timeout.map_or(nanos(300.0), nanos);
+        loop {
+            if let Some(at) = self.mailbox.iter().position(|(_, name)| events.iter().any(|e| e == name)) {
+                let (time, name) = self.mailbox.remove(at);
+                let readings =
+                    [("gaze", self.leg() != Person::LooksAway), ("pressure", self.holds), ("location", true)];
+                let args = readings.iter().filter(|_| name == "sensed");
+                let args = args.map(|&(k, v)| (k.to_owned(), Value::Bool(v))).collect();
+                return Answer::Event { name: name.to_owned(), args, time };
+            }
+            match self.queue.first() {
+                Some(&(next, _)) if next <= until => self.pass(next),
+                _ => {
+                    self.pass(until);
+                    return Answer::TimedOut;
+                }
+            }
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Answer {
+        match request {
+            Request::Hello { .. } | Request::Now | Request::Done => Answer::Ok,
+            Request::Sleep { seconds } => {
+                self.pass(self.time + nanos(seconds));
+                Answer::Ok
+            }
+            Request::Emit { event, args } => {
+                self.emitted(&event);
+                self.emitted.push((self.time, event, args));
+                Answer::Ok
+            }
+            Request::WaitFor { events, timeout } => self.wait_for(&events, timeout),
+            Request::Drop { events } => {
+                self.mailbox.retain(|(_, name)| !events.iter().any(|e| e == name));
+                Answer::Ok
+            }
+            Request::Read { signal } => {
+                assert_eq!(signal, "pressure");
+                Answer::Value(Value::Bool(self.holds))
+            }
+            Request::Act { on, .. } => {
+                self.pass(self.time + nanos(1.5));
+                let fails = on == "robot.arm" && !self.arm_works;
+                Answer::Acted(if fails { Err("the planner finds no way".into()) } else { Ok(()) })
+            }
+        }
+    }
+
+    fn run(&mut self, launch: &Launch) -> Finished {
+        let mut process = Process::spawn(launch).unwrap();
+        loop {
+            let request = process.next().unwrap();
+            let done = request == Request::Done;
+            let answer = self.answer(request);
+            reply(&mut process, self.time, answer);
+            if done {
+                return process.finish(GRACE);
+            }
+        }
+    }
+
+    fn times(&self, event: &str) -> Vec<f64> {
+        self.emitted.iter().filter(|(_, name, _)| name == event).map(|&(time, ..)| seconds(time)).collect()
+    }
+}
+
+fn robot(seed: u64) -> Launch {
+    let dir = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../examples/handover");
+    Launch {
+        dir,
+        seed,
+        coverage: vec!["robot.py".into(), "fsm.py".into()],
+        ..launch(&["python3", "robot.py"])
+    }
+}
+
+#[test]
+fn four_legs_to_four_people() {
+    let mut harness =
+        Harness::new(&[Person::TakesIt, Person::LooksAway, Person::LetsGo, Person::SaysNothing]);
+    let finished = harness.run(&robot(3));
+    assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
+    let order: Vec<&str> = harness.emitted.iter().map(|(_, name, _)| name.as_str()).collect();
+    let leg = |end| ["handover_offered", "sense", "decided", end];
+    let expected = [leg("released"), leg("discarded"), leg("released")].concat();
+    assert_eq!(order, [expected, vec!["handover_offered", "discarded"]].concat());
+    let ready: Vec<Value> =
+        harness.emitted.iter().filter_map(|(.., args)| args.get("ready").copied()).collect();
+    assert_eq!(ready, [true, false, true].map(Value::Bool));
+
+    let late: Vec<f64> = harness
+        .times("decided")
+        .iter()
+        .zip(harness.times("released").iter().take(1))
+        .map(|(d, r)| r - d)
+        .collect();
+    assert!(late[0] < 10.0, "the first leg comes in time: {late:?}");
+    let held_on = harness.times("released")[1] - harness.times("decided")[2];
+    assert!(held_on > 10.0, "this seed's window is long, and the robot holds on: {held_on}");
+
+    let text = finished.output.stdout.text();
+    assert!(
+        text.contains("legs handled: 4 (released 2, discarded 2)") && text.contains("outcome: finished"),
+        "{text}"
+    );
+    let coverage = finished.coverage.expect("coverage");
+    let (all, some) = (coverage[0].statements.len(), coverage[0].executed.len());
+    assert!((240..=280).contains(&all), "{all} statements");
+    assert!(some * 100 > all * 85, "{some} of {all} statements");
+    assert!(coverage[0].executed_branches.len() > coverage[0].branches.len() / 2);
+}
+
+#[test]
+fn the_same_seed_is_the_same_run() {
+    let run = |seed| {
+        let mut harness = Harness::new(&[Person::LetsGo]);
+        let finished = harness.run(&robot(seed));
+        (harness.emitted, finished.output, finished.coverage)
+    };
+    assert_eq!(run(5), run(5));
+    assert_ne!(run(5).0, run(6).0, "another seed draws another window");
+}
+
+#[test]
+fn an_arm_that_fails_ends_the_work() {
+    let mut harness = Harness::new(&[Person::TakesIt]);
+    harness.arm_works = false;
+    let finished = harness.run(&robot(1));
+    assert_eq!(finished.exit, Exit::Code(0));
+    let text = finished.output.stdout.text();
+    assert!(text.contains("attempt 3 to rest failed: the planner finds no way"), "{text}");
+    assert!(harness.emitted.is_empty());
+}

@@ -1,0 +1,5 @@
+import hrdsl
+
+node = hrdsl.Node("asker")
+while True:
+    node.now()

@@ -1,0 +1,6 @@
+import hrdsl
+
+node = hrdsl.Node("hangs")
+print("thinking")
+while True:
+    pass

@@ -1,0 +1,3 @@
+import hrdsl
+
+hrdsl.Node("hello")

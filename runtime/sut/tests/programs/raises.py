@@ -1,0 +1,10 @@
+import hrdsl
+
+node = hrdsl.Node("raises")
+
+
+def fail():
+    raise ValueError("a wheel came off")
+
+
+fail()

@@ -1,0 +1,76 @@
+//! Checks that an automaton is well formed, so that engines can index without looking.
+
+use hrdsl_ir::{
+    Program,
+    ta::{Automaton, AutomatonId, ClockConstraint, Sync, Update, Var},
+};
+
+use crate::ModelError;
+
+/// The automaton of this id, if all its indices are within bounds.
+///
+/// # Errors
+/// `Malformed` says what is not.
+pub(crate) fn automaton(program: &Program, id: AutomatonId) -> Result<&Automaton, ModelError> {
+    let Some(automaton) = program.automata.get(usize::from(id.0)) else {
+        return Err(ModelError::Malformed { automaton: format!("#{}", id.0), what: "does not exist".into() });
+    };
+    match fault(program, automaton) {
+        None => Ok(automaton),
+        Some(what) => Err(ModelError::Malformed { automaton: automaton.name.clone(), what }),
+    }
+}
+
+fn fault(program: &Program, a: &Automaton) -> Option<String> {
+    let locations = a.locations.len();
+    let known = |l: hrdsl_ir::ta::LocationId| usize::from(l.0) < locations;
+    if !known(a.initial) {
+        return Some("no initial location".into());
+    }
+    if let Some(v) = program.shared.iter().chain(&a.vars).find(|v| !range_is_sound(v)) {
+        return Some(format!("the range of `{}` does not hold its initial value", v.name));
+    }
+    if a.locations.iter().any(|l| l.invariant.iter().any(|c| !clocks_exist(a, c))) {
+        return Some("an invariant has an unknown clock".into());
+    }
+    for (i, e) in a.edges.iter().enumerate() {
+        if !known(e.from) || !known(e.to) {
+            return Some(format!("edge {i} has an unknown location"));
+        }
+        if e.clock_guard.iter().any(|c| !clocks_exist(a, c)) {
+            return Some(format!("edge {i} has an unknown clock"));
+        }
+        if !updates_exist(program, a, &e.updates) {
+            return Some(format!("edge {i} updates an unknown variable or clock"));
+        }
+        if !sync_exists(program, &e.sync) {
+            return Some(format!("edge {i} has an unknown event or a wrong number of arguments"));
+        }
+    }
+    None
+}
+
+fn range_is_sound(v: &Var) -> bool {
+    v.lo <= v.init && v.init <= v.hi
+}
+
+fn clocks_exist(a: &Automaton, c: &ClockConstraint) -> bool {
+    let known = |clock: hrdsl_ir::ta::ClockId| usize::from(clock.0) < a.clocks.len();
+    known(c.clock) && c.minus.is_none_or(known)
+}
+
+fn updates_exist(program: &Program, a: &Automaton, updates: &[Update]) -> bool {
+    updates.iter().all(|u| match u {
+        Update::Assign { slot, .. } => usize::from(*slot) < program.shared.len() + a.vars.len(),
+        Update::Reset { clock } => usize::from(clock.0) < a.clocks.len(),
+    })
+}
+
+fn sync_exists(program: &Program, sync: &Sync) -> bool {
+    let arity = |event: &hrdsl_ir::EventId| program.events.get(usize::from(event.0)).map(|e| e.params.len());
+    match sync {
+        Sync::Internal => true,
+        Sync::Send { event, args } => arity(event) == Some(args.len()),
+        Sync::Receive { event, args } => arity(event) == Some(args.len()),
+    }
+}

@@ -1,0 +1,404 @@
+//! Difference bound matrices: conjunctions of bounds on differences of clocks.
+//!
+//! After Dill (1989) and Bengtsson and Yi, "Timed Automata: Semantics, Algorithms and Tools" (2004). Clock 0 is the
+//! reference, which is always zero.
+
+use std::fmt;
+
+use smallvec::SmallVec;
+
+/// An upper bound `< c` or `≤ c` on a difference of clocks, or none.
+///
+/// Packed as `2c` for `< c` and `2c + 1` for `≤ c`, so that the order of the packed numbers is the order of strength.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Bound(i64);
+
+impl Bound {
+    /// No bound.
+    pub const INFINITY: Bound = Bound(i64::MAX);
+    /// `≤ 0`
+    pub const LE_ZERO: Bound = Bound(1);
+    /// `< 0`
+    pub const LT_ZERO: Bound = Bound(0);
+
+    /// `≤ c`; `c` must be within ±2⁶⁰.
+    #[must_use]
+    pub fn le(c: i64) -> Self {
+        Bound(2 * c + 1)
+    }
+
+    /// `< c`; `c` must be within ±2⁶⁰.
+    #[must_use]
+    pub fn lt(c: i64) -> Self {
+        Bound(2 * c)
+    }
+
+    #[must_use]
+    pub fn is_infinite(self) -> bool {
+        self == Bound::INFINITY
+    }
+
+    /// The number; meaningless for no bound.
+    #[must_use]
+    pub fn value(self) -> i64 {
+        self.0 >> 1
+    }
+
+    #[must_use]
+    pub fn is_strict(self) -> bool {
+        self.0 & 1 == 0
+    }
+
+    /// The bound of a sum of two bounded differences.
+    #[must_use]
+    pub fn plus(self, other: Bound) -> Bound {
+        if self.is_infinite() || other.is_infinite() {
+            Bound::INFINITY
+        } else {
+            Bound(self.0 + other.0 - ((self.0 | other.0) & 1))
+        }
+    }
+
+    /// `x - y ≺ c` fails exactly if `y - x` keeps the negated bound. Not for no bound.
+    #[must_use]
+    pub fn negated(self) -> Bound {
+        Bound(1 - self.0)
+    }
+}
+
+impl fmt::Debug for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_infinite() {
+            f.write_str("<inf")
+        } else {
+            write!(f, "{}{}", if self.is_strict() { "<" } else { "<=" }, self.value())
+        }
+    }
+}
+
+/// A set of clock valuations, given by `x_i - x_j ≺ m[i][j]` for all `i`, `j`.
+///
+/// INVARIANT: canonical (each entry is the tightest that follows from all), unless the set is empty; then the first
+/// entry is less than `≤ 0`.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Dbm {
+    dim: usize,
+    m: Box<[Bound]>,
+}
+
+impl Dbm {
+    /// All clocks are zero. `dim` counts the reference clock.
+    #[must_use]
+    pub fn zero(dim: usize) -> Self {
+        Self { dim, m: vec![Bound::LE_ZERO; dim * dim].into_boxed_slice() }
+    }
+
+    /// All valuations without negative clocks.
+    #[must_use]
+    pub fn universe(dim: usize) -> Self {
+        let mut all = Self { dim, m: vec![Bound::INFINITY; dim * dim].into_boxed_slice() };
+        for i in 0..dim {
+            all.put(i, i, Bound::LE_ZERO);
+            all.put(0, i, Bound::LE_ZERO);
+        }
+        all
+    }
+
+    /// The number of clocks, the reference included.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// The bound of `x_i - x_j`.
+    #[must_use]
+    pub fn at(&self, i: usize, j: usize) -> Bound {
+        self.m[i * self.dim + j]
+    }
+
+    /// Sets one entry, whatever it was; [`close`](Self::close) must follow before anything else.
+    pub(crate) fn put(&mut self, i: usize, j: usize, b: Bound) {
+        self.m[i * self.dim + j] = b;
+    }
+
+    /// Becomes a copy of a matrix of the same dimension, without allocation.
+    pub(crate) fn copy_from(&mut self, other: &Dbm) {
+        self.m.copy_from_slice(&other.m);
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.m[0] < Bound::LE_ZERO
+    }
+
+    /// The bytes it takes on the heap.
+    #[must_use]
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.m)
+    }
+
+    /// Makes it canonical (Floyd, Warshall). Returns whether it is not empty.
+    pub fn close(&mut self) -> bool {
+        let n = self.dim;
+        let mut through: SmallVec<[Bound; 16]> = SmallVec::new();
+        for k in 0..n {
+            through.clear();
+            through.extend_from_slice(&self.m[k * n..(k + 1) * n]);
+            for row in self.m.chunks_exact_mut(n) {
+                relax(row, row[k], &through);
+            }
+            if (0..n).any(|i| self.at(i, i) < Bound::LE_ZERO) {
+                self.m[0] = Bound::LT_ZERO;
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether some valuation keeps `x_i - x_j ≺ b`.
+    #[must_use]
+    pub fn meets(&self, i: usize, j: usize, b: Bound) -> bool {
+        b.plus(self.at(j, i)) >= Bound::LE_ZERO
+    }
+
+    /// Adds `x_i - x_j ≺ b` and closes again, in quadratic time. Returns whether it is not empty.
+    pub fn constrain(&mut self, i: usize, j: usize, b: Bound) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        if b >= self.at(i, j) {
+            return true;
+        }
+        if !self.meets(i, j, b) {
+            self.m[0] = Bound::LT_ZERO;
+            return false;
+        }
+        self.put(i, j, b);
+        let n = self.dim;
+        let through: SmallVec<[Bound; 16]> = SmallVec::from_slice(&self.m[j * n..(j + 1) * n]);
+        for row in self.m.chunks_exact_mut(n) {
+            relax(row, row[i].plus(b), &through);
+        }
+        true
+    }
+
+    /// Lets any time pass.
+    pub fn up(&mut self) {
+        if self.is_empty() {
+            return;
+        }
+        for i in 1..self.dim {
+            self.put(i, 0, Bound::INFINITY);
+        }
+    }
+
+    /// Sets a clock to zero.
+    pub fn reset(&mut self, x: usize) {
+        if self.is_empty() {
+            return;
+        }
+        for k in 0..self.dim {
+            let (row, column) = (self.at(0, k), self.at(k, 0));
+            self.put(x, k, row);
+            self.put(k, x, column);
+        }
+        self.put(x, x, Bound::LE_ZERO);
+    }
+
+    /// Whether each valuation of `other` is one of this.
+    #[must_use]
+    pub fn includes(&self, other: &Dbm) -> bool {
+        other.is_empty() || (!self.is_empty() && self.m.iter().zip(&other.m).all(|(a, b)| a >= b))
+    }
+
+    /// Keeps what both have. Returns whether it is not empty.
+    pub fn intersect(&mut self, other: &Dbm) -> bool {
+        if self.is_empty() || other.is_empty() {
+            self.m[0] = Bound::LT_ZERO;
+            return false;
+        }
+        for (a, b) in self.m.iter_mut().zip(&other.m) {
+            *a = (*a).min(*b);
+        }
+        self.close()
+    }
+
+    /// Whether it has the valuation whose clock `i` is `point[i] / scale`; `point[0]` must be 0.
+    #[must_use]
+    pub fn contains(&self, point: &[i64], scale: i64) -> bool {
+        !self.is_empty()
+            && (0..self.dim).all(|i| {
+                (0..self.dim).all(|j| {
+                    let b = self.at(i, j);
+                    let difference = i128::from(point[i]) - i128::from(point[j]);
+                    let limit = i128::from(b.value()) * i128::from(scale);
+                    b.is_infinite() || difference < limit || (difference == limit && !b.is_strict())
+                })
+            })
+    }
+}
+
+/// Tightens the bounds of `x - l` for all `l`, by that of `x - y` and those of `y - l`.
+fn relax(row: &mut [Bound], to: Bound, through: &[Bound]) {
+    if to.is_infinite() {
+        return;
+    }
+    for (old, &rest) in row.iter_mut().zip(through) {
+        *old = (*old).min(to.plus(rest));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const DIM: usize = 4;
+
+    fn bound() -> impl Strategy<Value = Bound> {
+        prop_oneof![
+            2 => Just(Bound::INFINITY),
+            3 => (-4i64..8).prop_map(Bound::le),
+            3 => (-4i64..8).prop_map(Bound::lt),
+        ]
+    }
+
+    /// Constraints, in order.
+    fn constraints() -> impl Strategy<Value = Vec<(usize, usize, Bound)>> {
+        prop::collection::vec((0..DIM, 0..DIM, bound()), 0..8)
+            .prop_map(|cs| cs.into_iter().filter(|(i, j, _)| i != j).collect())
+    }
+
+    fn zone(cs: &[(usize, usize, Bound)]) -> Dbm {
+        let mut z = Dbm::universe(DIM);
+        for &(i, j, b) in cs {
+            z.constrain(i, j, b);
+        }
+        z
+    }
+
+    /// A valuation in quarters.
+    fn point() -> impl Strategy<Value = Vec<i64>> {
+        prop::collection::vec(0i64..36, DIM - 1).prop_map(|mut p| {
+            p.insert(0, 0);
+            p
+        })
+    }
+
+    fn keeps(p: &[i64], (i, j, b): (usize, usize, Bound)) -> bool {
+        let d = p[i] - p[j];
+        b.is_infinite() || d < b.value() * 4 || (d == b.value() * 4 && !b.is_strict())
+    }
+
+    #[test]
+    fn bounds_add_and_negate() {
+        assert_eq!(Bound::le(2).plus(Bound::le(3)), Bound::le(5));
+        assert_eq!(Bound::le(2).plus(Bound::lt(3)), Bound::lt(5));
+        assert_eq!(Bound::lt(-2).plus(Bound::lt(3)), Bound::lt(1));
+        assert_eq!(Bound::le(2).plus(Bound::INFINITY), Bound::INFINITY);
+        assert_eq!(Bound::le(3).negated(), Bound::lt(-3));
+        assert_eq!(Bound::lt(3).negated(), Bound::le(-3));
+        assert!(Bound::lt(3) < Bound::le(3) && Bound::le(3) < Bound::lt(4));
+    }
+
+    #[test]
+    fn strict_bounds_meet_nowhere() {
+        let mut z = Dbm::universe(2);
+        assert!(z.constrain(1, 0, Bound::lt(3)));
+        assert!(!z.constrain(0, 1, Bound::le(-3)));
+        assert!(z.is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn incremental_closure_is_canonical(cs in constraints()) {
+            let z = zone(&cs);
+            let mut full = Dbm::universe(DIM);
+            for &(i, j, b) in &cs {
+                let b = b.min(full.at(i, j));
+                full.put(i, j, b);
+            }
+            let nonempty = full.close();
+            prop_assert_eq!(nonempty, !z.is_empty());
+            if nonempty {
+                prop_assert_eq!(&full, &z);
+                let mut again = z.clone();
+                again.close();
+                prop_assert_eq!(&again, &z);
+            }
+        }
+
+        #[test]
+        fn constraining_filters_points(cs in constraints(), p in point()) {
+            let all = cs.iter().all(|&c| keeps(&p, c));
+            prop_assert_eq!(zone(&cs).contains(&p, 4), all);
+        }
+
+        #[test]
+        fn intersection_is_conjunction(a in constraints(), b in constraints(), p in point()) {
+            let mut z = zone(&a);
+            z.intersect(&zone(&b));
+            prop_assert_eq!(z.contains(&p, 4), zone(&a).contains(&p, 4) && zone(&b).contains(&p, 4));
+        }
+
+        #[test]
+        fn up_holds_what_a_delay_gives(cs in constraints(), p in point()) {
+            let z = zone(&cs);
+            let mut later = z.clone();
+            later.up();
+            // Strict bounds in quarters of quarters: a finer grid finds the predecessor if there is one.
+            let fine: Vec<i64> = p.iter().map(|v| v * 4).collect();
+            let least = fine[1..].iter().copied().min().unwrap_or(0);
+            let reached = (0..=least).any(|d| {
+                let earlier: Vec<i64> =
+                    fine.iter().enumerate().map(|(i, v)| if i == 0 { 0 } else { v - d }).collect();
+                z.contains(&earlier, 16)
+            });
+            prop_assert_eq!(later.contains(&p, 4), reached);
+            if !z.is_empty() {
+                let mut closed = later.clone();
+                closed.close();
+                prop_assert_eq!(closed, later);
+            }
+        }
+
+        #[test]
+        fn reset_holds_what_a_reset_gives(cs in constraints(), p in point(), x in 1..DIM) {
+            let z = zone(&cs);
+            let mut after = z.clone();
+            after.reset(x);
+            let mut there = p.clone();
+            there[x] = 0;
+            if z.contains(&p, 4) {
+                prop_assert!(after.contains(&there, 4));
+            }
+            // The other way: some value of the clock leads there.
+            let fine: Vec<i64> = there.iter().map(|v| v * 4).collect();
+            let from = (0..16 * 40).any(|v| {
+                let mut q = fine.clone();
+                q[x] = v;
+                z.contains(&q, 16)
+            });
+            prop_assert_eq!(after.contains(&there, 4), from);
+            prop_assert!(p[x] == 0 || !after.contains(&p, 4));
+        }
+
+        #[test]
+        fn inclusion_is_a_partial_order(a in constraints(), b in constraints(), c in constraints(), p in point()) {
+            let (x, mut y) = (zone(&a), zone(&b));
+            prop_assert!(x.includes(&x));
+            if x.includes(&y) && y.includes(&x) && !x.is_empty() {
+                prop_assert_eq!(&x, &y);
+            }
+            if x.includes(&y) && y.contains(&p, 4) {
+                prop_assert!(x.contains(&p, 4));
+            }
+            y.intersect(&x);
+            prop_assert!(x.includes(&y));
+            let mut w = zone(&c);
+            w.intersect(&y);
+            prop_assert!(y.includes(&w) && x.includes(&w));
+        }
+    }
+}

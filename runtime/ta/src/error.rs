@@ -1,0 +1,77 @@
+//! What can be wrong with a model, and how a search can fail.
+
+use hrdsl_ir::{
+    Span,
+    expr::EvalError,
+    ta::{Automaton, Edge, LocationId},
+};
+
+use crate::Witness;
+
+/// What errors call an edge.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("automaton `{automaton}`, edge {from} -> {to}")]
+pub struct EdgeName {
+    pub automaton: String,
+    pub from: String,
+    pub to: String,
+    /// Where the edge is written.
+    pub origin: Span,
+}
+
+impl EdgeName {
+    pub(crate) fn of(automaton: &Automaton, edge: &Edge) -> Box<Self> {
+        let name = |l: LocationId| automaton.locations[usize::from(l.0)].name.clone();
+        let (from, to) = (name(edge.from), name(edge.to));
+        Box::new(Self { automaton: automaton.name.clone(), from, to, origin: edge.origin })
+    }
+}
+
+/// A fault of the model that a search or a run met.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The program is not what the checker lets through.
+    #[error("malformed automaton `{automaton}`: {what}")]
+    Malformed { automaton: String, what: String },
+    /// A question about the network that has no meaning.
+    #[error("malformed question: {0}")]
+    Question(String),
+    /// A constant of more than 2⁵⁰ units, the unit being the greatest in which all constants are whole.
+    #[error("the time constants of `{automaton}` are too far apart")]
+    Constants { automaton: String },
+    /// The invariants of the initial locations exclude clocks at zero.
+    #[error("the invariants of the initial locations do not hold at the start")]
+    Initial,
+    /// An expression of an edge has no value.
+    #[error("{edge}: {error}")]
+    Evaluation { edge: Box<EdgeName>, error: EvalError },
+    /// An update leaves the range of a variable.
+    #[error("{edge}: `{variable}` becomes {value}, outside {lo}..{hi}")]
+    Range { edge: Box<EdgeName>, variable: String, value: i64, lo: i64, hi: i64 },
+    /// An argument of a sent event is outside the range of its parameter.
+    #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
+    Argument { edge: Box<EdgeName>, event: String, parameter: String, value: i64 },
+    /// A player's invariant (or urgent location) lets no time pass, yet time passed: nothing it could do was enabled.
+    #[error("automaton `{automaton}` may not stay in `{location}` and has no enabled edge")]
+    Timelock { automaton: String, location: String },
+    /// A player took very many edges at one instant.
+    #[error("automaton `{automaton}` takes edges without end at one instant, now in `{location}`")]
+    Zeno { automaton: String, location: String },
+}
+
+/// Why a search gave no report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The model is at fault; the witness, if there is one, leads to the state in which it is.
+    #[error("{error}")]
+    Model { error: ModelError, witness: Option<Box<Witness>> },
+    /// The engine contradicts itself: a witness that does not replay. Never the model's fault.
+    #[error("internal error of the model checker: {0}")]
+    Internal(String),
+}
+
+impl From<ModelError> for Error {
+    fn from(error: ModelError) -> Self {
+        Error::Model { error, witness: None }
+    }
+}

@@ -1,0 +1,176 @@
+//! Builds programs of timed automata, and the standard families.
+#![allow(dead_code)]
+
+pub mod families;
+
+use hrdsl_ir::{
+    Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Span, Type,
+    expr::BinaryOp,
+    ta::{
+        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
+        Network, ReceiveArg, Sync, Update, Var,
+    },
+    value::SECOND,
+};
+
+/// A program with one network, `all`, of all its automata.
+pub fn program() -> Program {
+    let actor = |name: &str, role| Actor { name: name.into(), role, origin: Span::default() };
+    Program {
+        actors: vec![actor("env", Role::Environment), actor("sys", Role::System)],
+        networks: vec![Network { name: "all".into(), automata: Vec::new(), origin: Span::default() }],
+        ..Program::default()
+    }
+}
+
+pub fn shared(p: &mut Program, name: &str, lo: i64, hi: i64, init: i64) -> u16 {
+    p.shared.push(var(name, lo, hi, init));
+    p.shared.len() as u16 - 1
+}
+
+pub fn var(name: &str, lo: i64, hi: i64, init: i64) -> Var {
+    Var { name: name.into(), lo, hi, init, is_bool: false }
+}
+
+pub fn event(p: &mut Program, name: &str, params: &[Type]) -> EventId {
+    p.events.push(Event {
+        name: name.into(),
+        params: params.iter().map(|&ty| Param { name: "p".into(), ty }).collect(),
+        from: ActorId(0),
+        to: Vec::new(),
+        stimulus: None,
+        origin: Span::default(),
+    });
+    EventId(p.events.len() as u16 - 1)
+}
+
+/// An automaton without locations and edges, of one clock for each name.
+pub fn automaton(name: &str, clocks: &[&str]) -> Automaton {
+    Automaton {
+        name: name.into(),
+        actor: ActorId(0),
+        clocks: clocks.iter().map(|c| (*c).into()).collect(),
+        vars: Vec::new(),
+        locations: Vec::new(),
+        initial: LocationId(0),
+        edges: Vec::new(),
+        origin: Span::default(),
+    }
+}
+
+/// Adds it to the program and its network.
+pub fn add(p: &mut Program, a: Automaton) -> AutomatonId {
+    p.automata.push(a);
+    let id = AutomatonId(p.automata.len() as u16 - 1);
+    p.networks[0].automata.push(id);
+    id
+}
+
+pub fn location(
+    a: &mut Automaton,
+    name: &str,
+    kind: LocationKind,
+    invariant: &[ClockConstraint],
+) -> LocationId {
+    a.locations.push(Location {
+        name: name.into(),
+        kind,
+        invariant: invariant.to_vec(),
+        origin: Span::default(),
+    });
+    LocationId(a.locations.len() as u16 - 1)
+}
+
+pub fn normal(a: &mut Automaton, name: &str) -> LocationId {
+    location(a, name, LocationKind::Normal, &[])
+}
+
+/// `clock op n` seconds
+pub fn clock(clock: u16, op: ClockOp, n: i64) -> ClockConstraint {
+    ClockConstraint { clock: ClockId(clock), minus: None, op, bound: n * SECOND }
+}
+
+/// An edge under construction.
+pub struct E(pub Edge);
+
+pub fn edge(from: LocationId, to: LocationId) -> E {
+    E(Edge {
+        from,
+        to,
+        selects: Vec::new(),
+        clock_guard: Vec::new(),
+        guard: None,
+        sync: Sync::Internal,
+        updates: Vec::new(),
+        origin: Span::default(),
+    })
+}
+
+impl E {
+    pub fn clock(mut self, x: u16, op: ClockOp, n: i64) -> Self {
+        self.0.clock_guard.push(clock(x, op, n));
+        self
+    }
+    pub fn when(mut self, guard: Expr) -> Self {
+        self.0.guard = Some(match self.0.guard.take() {
+            None => guard,
+            Some(g) => Expr::binary(BinaryOp::And, g, guard),
+        });
+        self
+    }
+    pub fn send(mut self, event: EventId) -> Self {
+        self.0.sync = Sync::Send { event, args: Vec::new() };
+        self
+    }
+    pub fn send_args(mut self, event: EventId, args: &[Expr]) -> Self {
+        self.0.sync = Sync::Send { event, args: args.to_vec() };
+        self
+    }
+    pub fn on(mut self, event: EventId) -> Self {
+        self.0.sync = Sync::Receive { event, args: Vec::new() };
+        self
+    }
+    pub fn on_args(mut self, event: EventId, args: &[ReceiveArg]) -> Self {
+        self.0.sync = Sync::Receive { event, args: args.to_vec() };
+        self
+    }
+    pub fn set(mut self, slot: u16, value: Expr) -> Self {
+        self.0.updates.push(Update::Assign { slot, value });
+        self
+    }
+    pub fn reset(mut self, clock: u16) -> Self {
+        self.0.updates.push(Update::Reset { clock: ClockId(clock) });
+        self
+    }
+    pub fn select(mut self, v: Var) -> Self {
+        self.0.selects.push(v);
+        self
+    }
+    pub fn to(self, a: &mut Automaton) {
+        a.edges.push(self.0);
+    }
+}
+
+pub fn v(i: u16) -> Expr {
+    Expr::Var(i)
+}
+
+pub fn n(k: i64) -> Expr {
+    Expr::int(k)
+}
+
+pub fn eq(a: Expr, b: Expr) -> Expr {
+    Expr::binary(BinaryOp::Eq, a, b)
+}
+
+pub fn bin(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+    Expr::binary(op, a, b)
+}
+
+pub fn or(a: Expr, b: Expr) -> Expr {
+    Expr::binary(BinaryOp::Or, a, b)
+}
+
+pub fn and(a: Expr, b: Expr) -> Expr {
+    Expr::binary(BinaryOp::And, a, b)
+}

@@ -1,0 +1,229 @@
+//! Counters, limits, settled goals, faults, budgets and witnesses of the search.
+
+mod common;
+
+use common::{add, automaton, bin, clock, edge, event, location, n, normal, program, shared, v, var};
+use hrdsl_ir::{
+    ArgPattern, EventId, EventPattern, Program, Type, Value,
+    expr::BinaryOp,
+    ta::{ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg},
+    value::SECOND,
+};
+use hrdsl_ta::{
+    Budget, Counter, Error, Exhausted, Goal, GoalKind, Limit, ModelError, Outcome, Report, StateFormula,
+    Witness, check, slot_names,
+};
+
+fn condition(f: StateFormula) -> Goal {
+    Goal { what: GoalKind::Condition(f), settled: false }
+}
+
+fn at(automaton: usize, location: u16) -> Goal {
+    Goal { what: GoalKind::Location { automaton, location: LocationId(location) }, settled: false }
+}
+
+fn pattern(event: EventId, arg: Option<bool>) -> EventPattern {
+    let args = vec![arg.map_or(ArgPattern::Any, |b| ArgPattern::Is(Value::Bool(b)))];
+    EventPattern { event, args }
+}
+
+fn search(p: &Program, goals: &[Goal], counters: &[Counter], limits: &[Limit]) -> Result<Report, Error> {
+    check(p, &p.networks[0], goals, counters, limits, Budget::default())
+}
+
+fn reached(outcome: &Outcome) -> &Witness {
+    match outcome {
+        Outcome::Reached(w) => w,
+        Outcome::Unreachable | Outcome::Open(_) => panic!("{outcome:?}"),
+    }
+}
+
+/// One automaton that decides yes or no every two seconds; another counts the yes in a variable of its own.
+fn decider() -> (Program, EventId) {
+    let mut p = program();
+    let e = event(&mut p, "decided", &[Type::Bool]);
+    let mut a = automaton("Decider", &["x"]);
+    let l = location(&mut a, "think", LocationKind::Normal, &[clock(0, ClockOp::Le, 2)]);
+    let mut choice = var("ready", 0, 1, 0);
+    choice.is_bool = true;
+    edge(l, l).clock(0, ClockOp::Ge, 2).select(choice).send_args(e, &[v(0)]).reset(0).to(&mut a);
+    add(&mut p, a);
+    let mut b = automaton("Tally", &[]);
+    b.vars.push(var("yes", 0, 3, 0));
+    let (l, brief) = (normal(&mut b, "listen"), location(&mut b, "brief", LocationKind::Committed, &[]));
+    let yes = ReceiveArg::Match(ArgPattern::Is(Value::Bool(true)));
+    let room = || bin(BinaryOp::Lt, v(0), n(3));
+    edge(l, brief).on_args(e, &[yes]).when(room()).set(0, bin(BinaryOp::Add, v(0), n(1))).to(&mut b);
+    edge(brief, l).to(&mut b);
+    add(&mut p, b);
+    (p, e)
+}
+
+#[test]
+fn counters_saturate_and_make_conditions() {
+    let (p, e) = decider();
+    let counters = [
+        Counter { patterns: vec![pattern(e, Some(true))], cap: 3 },
+        Counter { patterns: vec![pattern(e, Some(false))], cap: 2 },
+    ];
+    let counted = |counter, lo, hi| StateFormula::CounterIn { counter, lo, hi };
+    let goals = [
+        condition(StateFormula::And(vec![counted(0, 3, None), counted(1, 1, Some(1))])),
+        condition(StateFormula::And(vec![
+            counted(0, 2, Some(2)),
+            StateFormula::Not(Box::new(StateFormula::Data(bin(BinaryOp::Eq, v(0), n(2))))),
+        ])),
+    ];
+    let report = search(&p, &goals, &counters, &[]).unwrap();
+    assert_eq!(slot_names(&p, &p.networks[0]), ["Tally.yes"]);
+    let w = reached(&report.goals[0]);
+    // Four decisions, two seconds each; the last leaves the tally in its committed location.
+    let times: Vec<i64> = w.trace().steps.iter().map(|s| s.time / SECOND).collect();
+    assert_eq!(times, [2, 4, 6, 8]);
+    assert_eq!(report.goals[1], Outcome::Unreachable);
+    assert!(report.complete);
+}
+
+#[test]
+fn a_counter_that_stops_too_early_is_refused() {
+    let (p, e) = decider();
+    let counters = [Counter { patterns: vec![pattern(e, None)], cap: 2 }];
+    for (lo, hi) in [(3, None), (0, Some(2))] {
+        let goal = condition(StateFormula::CounterIn { counter: 0, lo, hi });
+        let found = search(&p, &[goal], &counters, &[]);
+        assert!(matches!(found, Err(Error::Model { error: ModelError::Question(_), .. })));
+    }
+}
+
+#[test]
+fn limits_restrict_what_happens() {
+    let (p, e) = decider();
+    let yes = || pattern(e, Some(true));
+    let counters = [Counter { patterns: vec![yes()], cap: 3 }];
+    let goal = |lo| condition(StateFormula::CounterIn { counter: 0, lo, hi: None });
+    let limits = [Limit { patterns: vec![yes()], at_most: 2 }];
+    let report = search(&p, &[goal(2), goal(3)], &counters, &limits).unwrap();
+    reached(&report.goals[0]);
+    assert_eq!(report.goals[1], Outcome::Unreachable);
+}
+
+#[test]
+fn settled_goals_wait_until_no_location_is_committed() {
+    let (p, _) = decider();
+    let one = StateFormula::Data(bin(BinaryOp::Eq, v(0), n(1)));
+    let goals = [condition(one.clone()), Goal { what: GoalKind::Condition(one), settled: true }, at(1, 1)];
+    let settled_brief = Goal { settled: true, ..at(1, 1) };
+    let goals = [goals.as_slice(), &[settled_brief]].concat();
+    let report = search(&p, &goals, &[], &[]).unwrap();
+    assert_eq!(reached(&report.goals[0]).steps.len(), 1);
+    assert_eq!(reached(&report.goals[1]).steps.len(), 2);
+    assert_eq!(reached(&report.goals[2]).steps.len(), 1);
+    assert_eq!(report.goals[3], Outcome::Unreachable);
+}
+
+#[test]
+fn a_witness_reads_well() {
+    let (p, _) = decider();
+    let goal = Goal { what: GoalKind::Edge { automaton: 1, edge: 1 }, settled: false };
+    let report = search(&p, &[goal], &[], &[]).unwrap();
+    assert_eq!(
+        reached(&report.goals[0]).text(&p, &p.networks[0]),
+        "2 s  Decider sends decided(true): Decider think -> think; Tally listen -> brief; Tally.yes 0 -> 1\n\
+         2 s  Tally: Tally brief -> listen\n"
+    );
+}
+
+#[test]
+fn leaving_a_range_is_a_fault_with_the_way_to_it() {
+    let mut p = program();
+    let count = shared(&mut p, "count", 0, 2, 0);
+    let mut a = automaton("A", &["x"]);
+    let l = normal(&mut a, "l");
+    let up = edge(l, l).clock(0, ClockOp::Eq, 3).reset(0);
+    up.set(count, bin(BinaryOp::Add, v(count), n(1))).to(&mut a);
+    add(&mut p, a);
+    let Err(Error::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
+    assert_eq!(error.to_string(), "automaton `A`, edge l -> l: `count` becomes 3, outside 0..2");
+    assert_eq!(witness.unwrap().steps.iter().map(|s| s.time).collect::<Vec<_>>(), [3 * SECOND, 6 * SECOND]);
+}
+
+#[test]
+fn a_fault_that_no_time_allows_is_none() {
+    let mut p = program();
+    let count = shared(&mut p, "count", 0, 2, 0);
+    let mut a = automaton("A", &["x"]);
+    let l = location(&mut a, "l", LocationKind::Normal, &[clock(0, ClockOp::Le, 2)]);
+    edge(l, l).clock(0, ClockOp::Gt, 2).set(count, n(9)).to(&mut a);
+    add(&mut p, a);
+    assert!(search(&p, &[], &[], &[]).unwrap().complete);
+}
+
+#[test]
+fn what_the_budget_leaves_is_open() {
+    let (p, _) = decider();
+    let yes = |k| condition(StateFormula::Data(bin(BinaryOp::Ge, v(0), n(k))));
+    let goals = [yes(1), yes(3)];
+    for (budget, why) in [
+        (Budget { states: 3, ..Budget::default() }, Exhausted::States),
+        (Budget { bytes: 300, ..Budget::default() }, Exhausted::Memory),
+    ] {
+        let report = check(&p, &p.networks[0], &goals, &[], &[], budget).unwrap();
+        assert_eq!(report.goals[1], Outcome::Open(why));
+        assert!(!report.complete);
+    }
+}
+
+#[test]
+fn strict_bounds_in_a_tiny_unit_need_finer_ticks() {
+    // Two strict bounds within one nanosecond: 0 < t1 < t2 < 1 ns.
+    let mut p = program();
+    let mut a = automaton("A", &["x", "y"]);
+    let nano = |clock, op, bound| ClockConstraint { clock: ClockId(clock), minus: None, op, bound };
+    let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "c")];
+    let mut first = edge(l[0], l[1]).reset(0);
+    first.0.clock_guard.push(nano(0, ClockOp::Gt, 0));
+    first.to(&mut a);
+    let mut second = edge(l[1], l[2]);
+    second.0.clock_guard.extend([nano(0, ClockOp::Gt, 0), nano(1, ClockOp::Lt, 1)]);
+    second.to(&mut a);
+    add(&mut p, a);
+    let report = search(&p, &[at(0, 2)], &[], &[]).unwrap();
+    let w = reached(&report.goals[0]);
+    assert_eq!((w.ticks, w.steps[0].time, w.steps[1].time), (3, 1, 2));
+}
+
+#[test]
+fn malformed_programs_are_errors() {
+    let (mut p, _) = decider();
+    p.automata[0].edges[0].to = LocationId(7);
+    assert!(matches!(
+        search(&p, &[], &[], &[]),
+        Err(Error::Model { error: ModelError::Malformed { .. }, .. })
+    ));
+    let (p, _) = decider();
+    assert!(matches!(search(&p, &[at(5, 0)], &[], &[]), Err(Error::Model { .. })));
+}
+
+#[test]
+fn receivers_update_after_the_sender_in_order() {
+    let mut p = program();
+    let s = shared(&mut p, "s", 0, 100, 1);
+    let e = event(&mut p, "e", &[]);
+    let mut sender = automaton("S", &[]);
+    let (a, b) = (normal(&mut sender, "a"), normal(&mut sender, "b"));
+    edge(a, b).send(e).set(s, n(5)).to(&mut sender);
+    // Its own reception is not for it.
+    edge(a, a).on(e).set(s, n(99)).to(&mut sender);
+    for (name, op, k) in [("R1", BinaryOp::Mul, 3), ("R2", BinaryOp::Add, 4)] {
+        let mut r = automaton(name, &[]);
+        let l = normal(&mut r, "l");
+        // The guard sees the value before the sender's update.
+        edge(l, l).on(e).when(common::eq(v(s), n(1))).set(s, bin(op, v(s), n(k))).to(&mut r);
+        add(&mut p, r);
+    }
+    add(&mut p, sender);
+    let is = |k| condition(StateFormula::Data(common::eq(v(s), n(k))));
+    let report = search(&p, &[is(19), is(99)], &[], &[]).unwrap();
+    reached(&report.goals[0]);
+    assert_eq!(report.goals[1], Outcome::Unreachable);
+}

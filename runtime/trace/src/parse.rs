@@ -1,0 +1,253 @@
+//! Reads a recording back into a trace, with its names resolved against a program.
+//!
+//! Recordings come from other programs, too: whatever is wrong with one is said with the number of its line.
+
+mod line;
+
+use std::collections::BTreeMap;
+
+use hrdsl_ir::{EventId, Nanos, Param, Program, Type, Unit, Value, world::SignalId};
+use serde_json::Value as Json;
+use thiserror::Error;
+
+use crate::{
+    Step, Trace, What, decimal,
+    record::{Header, KIND, VERSION},
+};
+use line::{HeaderLine, Line};
+
+/// Why a text is not a recording of this program.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line}: {problem}")]
+pub struct ParseError {
+    /// Counted from 1.
+    pub line: usize,
+    pub problem: Problem,
+}
+
+/// What is wrong with a line.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Problem {
+    #[error("not a line of a recording: {0}")]
+    Json(String),
+    #[error(
+        "the recording has to start with a header: {{\"hrdsl\":\"trace\",\"version\":1,\"scenario\":...}}"
+    )]
+    NoHeader,
+    #[error("this is format version {0}; only version {VERSION} can be read")]
+    Version(u64),
+    #[error("{0}")]
+    Form(&'static str),
+    #[error("unknown event `{name}`{}", hint(.near))]
+    UnknownEvent { name: String, near: Option<String> },
+    #[error("unknown signal `{name}`{}", hint(.near))]
+    UnknownSignal { name: String, near: Option<String> },
+    #[error("event `{event}` has no parameter `{name}`{}", hint(.near))]
+    UnknownArgument { event: String, name: String, near: Option<String> },
+    #[error("event `{event}` has the argument `{name}` twice")]
+    DoubleArgument { event: String, name: String },
+    #[error("event `{event}` lacks the argument `{name}`")]
+    MissingArgument { event: String, name: String },
+    #[error("`{of}` has to be {expected}, not {found}")]
+    Type { of: String, expected: String, found: String },
+    #[error("`{0}` is not a time in seconds, at least 0")]
+    Time(String),
+    #[error("time goes backwards: {now} s after {before} s")]
+    Backwards { before: String, now: String },
+    #[error("the recording is cut off: its last line has to be {{\"end\":...}}")]
+    Truncated,
+    #[error("there is something after the end")]
+    AfterEnd,
+}
+
+fn hint(near: &Option<String>) -> String {
+    near.as_ref().map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+}
+
+/// The header and the trace of a recording. Blank lines are skipped.
+///
+/// # Errors
+/// The first line that is wrong, and why.
+pub fn parse(program: &Program, text: &str) -> Result<(Header, Trace), ParseError> {
+    let mut reader = Reader::new(program);
+    let mut last = 1;
+    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        last = index + 1;
+        reader.line(line).map_err(|problem| {
+            // A line that was being written when the recorder died has no line break.
+            let is_cut = matches!(problem, Problem::Json(_)) && text.ends_with(line);
+            ParseError { line: last, problem: if is_cut { Problem::Truncated } else { problem } }
+        })?;
+    }
+    reader.finish().map_err(|problem| ParseError { line: last, problem })
+}
+
+/// Reads line by line.
+struct Reader<'a> {
+    program: &'a Program,
+    events: BTreeMap<&'a str, EventId>,
+    signals: BTreeMap<&'a str, SignalId>,
+    header: Option<Header>,
+    trace: Trace,
+    now: Nanos,
+    ended: bool,
+}
+
+impl<'a> Reader<'a> {
+    fn new(program: &'a Program) -> Self {
+        // From the back, so that the first of several of the same name stands.
+        let events = (0u16..).zip(&program.events).map(|(i, e)| (e.name.as_str(), EventId(i)));
+        let signals = (0u16..).zip(&program.signals).map(|(i, s)| (s.name.as_str(), SignalId(i)));
+        Self {
+            program,
+            events: events.collect::<Vec<_>>().into_iter().rev().collect(),
+            signals: signals.collect::<Vec<_>>().into_iter().rev().collect(),
+            header: None,
+            trace: Trace::default(),
+            now: 0,
+            ended: false,
+        }
+    }
+
+    fn line(&mut self, text: &str) -> Result<(), Problem> {
+        if self.header.is_none() {
+            self.header = Some(header(text)?);
+            return Ok(());
+        }
+        let line = Line::read(text)?;
+        if self.ended {
+            return Err(Problem::AfterEnd);
+        }
+        if let Some(end) = line.end {
+            self.trace.end = self.pass(end.get())?;
+            self.ended = true;
+            return line.only_end();
+        }
+        let Some(time) = line.t else { return Err(Problem::Form("the step lacks its time `t`")) };
+        let time = self.pass(time.get())?;
+        let what = match (line.event, line.args, line.signal, line.value) {
+            (Some(event), args, None, None) => self.event(&event, args.map(|a| a.0).unwrap_or_default())?,
+            (None, None, Some(signal), Some(value)) => self.sample(&signal, &value)?,
+            (Some(_), _, _, _) => return Err(Problem::Form("an event has `t`, `event` and `args` only")),
+            (None, _, Some(_), None) => return Err(Problem::Form("the sample lacks its `value`")),
+            (None, _, Some(_), Some(_)) => {
+                return Err(Problem::Form("a sample has `t`, `signal` and `value` only"));
+            }
+            (None, _, None, _) => return Err(Problem::Form("the step has neither `event` nor `signal`")),
+        };
+        self.trace.steps.push(Step { time, what });
+        Ok(())
+    }
+
+    fn pass(&mut self, text: &str) -> Result<Nanos, Problem> {
+        let time = decimal::nanos(text).filter(|t| *t >= 0).ok_or_else(|| Problem::Time(text.to_owned()))?;
+        if time < self.now {
+            let (before, now) = (decimal::seconds(self.now), decimal::seconds(time));
+            return Err(Problem::Backwards { before, now });
+        }
+        self.now = time;
+        Ok(time)
+    }
+
+    fn event(&self, name: &str, given: Vec<(String, Json)>) -> Result<What, Problem> {
+        let Some(&event) = self.events.get(name) else {
+            let near = nearest(name, self.events.keys().copied());
+            return Err(Problem::UnknownEvent { name: name.to_owned(), near });
+        };
+        let params = &self.program.event(event).params;
+        let mut args: Vec<Option<Value>> = vec![None; params.len()];
+        for (arg, json) in given {
+            let Some(index) = params.iter().position(|p| p.name == arg) else {
+                let near = nearest(&arg, params.iter().map(|p| p.name.as_str()));
+                return Err(Problem::UnknownArgument { event: name.to_owned(), name: arg, near });
+            };
+            if args[index].is_some() {
+                return Err(Problem::DoubleArgument { event: name.to_owned(), name: arg });
+            }
+            args[index] = Some(typed(&arg, params[index].ty, &json)?);
+        }
+        let missing =
+            |param: &Param| Problem::MissingArgument { event: name.to_owned(), name: param.name.clone() };
+        let all = args.into_iter().zip(params).map(|(arg, param)| arg.ok_or_else(|| missing(param)));
+        Ok(What::Event { event, args: all.collect::<Result<_, _>>()? })
+    }
+
+    fn sample(&self, name: &str, json: &Json) -> Result<What, Problem> {
+        let Some(&signal) = self.signals.get(name) else {
+            let near = nearest(name, self.signals.keys().copied());
+            return Err(Problem::UnknownSignal { name: name.to_owned(), near });
+        };
+        let ty = self.program.signals[usize::from(signal.0)].ty;
+        Ok(What::Sample { signal, value: typed(name, ty, json)? })
+    }
+
+    fn finish(self) -> Result<(Header, Trace), Problem> {
+        let header = self.header.ok_or(Problem::NoHeader)?;
+        if self.ended { Ok((header, self.trace)) } else { Err(Problem::Truncated) }
+    }
+}
+
+fn header(text: &str) -> Result<Header, Problem> {
+    let head = HeaderLine::read(text)?;
+    let (Some(kind), Some(version), Some(scenario)) = (head.hrdsl, head.version, head.scenario) else {
+        return Err(Problem::NoHeader);
+    };
+    if kind != KIND {
+        return Err(Problem::NoHeader);
+    }
+    if version != VERSION {
+        return Err(Problem::Version(version));
+    }
+    Ok(Header { scenario, test: head.test, seed: head.seed })
+}
+
+/// The value, if it is of the type. A whole number will do for a float; a float that no JSON number can be is a string.
+fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, Problem> {
+    let value = match ty {
+        Type::Bool => json.as_bool().map(Value::Bool),
+        Type::Int { .. } => json.as_i64().map(Value::Int),
+        Type::Float(_) => match json.as_str() {
+            Some("nan") => Some(Value::Float(f64::NAN)),
+            Some("inf") => Some(Value::Float(f64::INFINITY)),
+            Some("-inf") => Some(Value::Float(f64::NEG_INFINITY)),
+            Some(_) => None,
+            None => json.as_f64().map(Value::Float),
+        },
+    };
+    value.filter(|v| ty.admits(*v)).ok_or_else(|| Problem::Type {
+        of: of.to_owned(),
+        expected: described(ty),
+        found: json.to_string(),
+    })
+}
+
+fn described(ty: Type) -> String {
+    match ty {
+        Type::Bool => "true or false".to_owned(),
+        Type::Int { lo, hi } => format!("a whole number in {lo}..{hi}"),
+        Type::Float(Unit::None) => "a number".to_owned(),
+        Type::Float(unit) => format!("a number ({})", unit.symbol()),
+    }
+}
+
+/// The most similar name, if it differs in no more than a third of its letters.
+fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    let close = names.map(|n| (distance(name, n), n)).filter(|(d, n)| d * 3 <= n.chars().count().max(3));
+    close.min().map(|(_, n)| n.to_owned())
+}
+
+/// How many letters have to be added, dropped or changed (Levenshtein's edit distance).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let change = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}

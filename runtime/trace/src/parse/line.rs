@@ -1,0 +1,93 @@
+//! The lines of a recording as JSON objects, before names and types are looked at.
+
+use std::{borrow::Cow, fmt};
+
+use serde::{
+    Deserialize, Deserializer,
+    de::{MapAccess, Visitor},
+};
+use serde_json::{Value as Json, value::RawValue};
+
+use super::Problem;
+
+/// The first line. Other programs may say more in it, which is skipped.
+#[derive(Deserialize)]
+pub(super) struct HeaderLine {
+    pub hrdsl: Option<String>,
+    pub version: Option<u64>,
+    pub scenario: Option<String>,
+    pub test: Option<String>,
+    pub seed: Option<u64>,
+}
+
+/// Any other line: a step or the end. Times stay text, since they must not become floats.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Line<'a> {
+    #[serde(borrow)]
+    pub t: Option<&'a RawValue>,
+    #[serde(borrow)]
+    pub event: Option<Cow<'a, str>>,
+    pub args: Option<Arguments>,
+    #[serde(borrow)]
+    pub signal: Option<Cow<'a, str>>,
+    pub value: Option<Json>,
+    #[serde(borrow)]
+    pub end: Option<&'a RawValue>,
+}
+
+/// An event's arguments in the order written, doubles included.
+pub(super) struct Arguments(pub Vec<(String, Json)>);
+
+impl HeaderLine {
+    pub fn read(text: &str) -> Result<Self, Problem> {
+        serde_json::from_str(text).map_err(|error| problem(&error))
+    }
+}
+
+impl<'a> Line<'a> {
+    pub fn read(text: &'a str) -> Result<Self, Problem> {
+        serde_json::from_str(text).map_err(|error| problem(&error))
+    }
+
+    /// Fails if there is anything but `end`.
+    pub fn only_end(self) -> Result<(), Problem> {
+        let more = self.t.is_some()
+            || self.event.is_some()
+            || self.args.is_some()
+            || self.signal.is_some()
+            || self.value.is_some();
+        if more { Err(Problem::Form("the last line has `end` only")) } else { Ok(()) }
+    }
+}
+
+/// The parser sees one line only, so its own line number would mislead.
+fn problem(error: &serde_json::Error) -> Problem {
+    let full = error.to_string();
+    let message = full.rsplit_once(" at line ").map_or(full.as_str(), |(message, _)| message);
+    Problem::Json(format!("{message} (column {})", error.column()))
+}
+
+impl<'de> Deserialize<'de> for Arguments {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Pairs;
+
+        impl<'de> Visitor<'de> for Pairs {
+            type Value = Arguments;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object of arguments by name")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Arguments, A::Error> {
+                let mut pairs = Vec::new();
+                while let Some(pair) = map.next_entry()? {
+                    pairs.push(pair);
+                }
+                Ok(Arguments(pairs))
+            }
+        }
+
+        deserializer.deserialize_map(Pairs)
+    }
+}

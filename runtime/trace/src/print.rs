@@ -1,0 +1,78 @@
+//! Shows the steps of a trace to people.
+
+use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
+
+use crate::{Step, What, record};
+
+/// What stands in the column of the actors when a signal is sampled.
+const SIGNAL: &str = "signal";
+
+/// One step as a line: the time to the millisecond, who did it, and what.
+///
+/// ```text
+///   12.500 s  robot   decided(ready: true)
+///   12.550 s  signal  gaze = 0.25 m
+/// ```
+#[must_use]
+pub fn line(program: &Program, step: &Step) -> String {
+    let names = program.actors.iter().map(|a| a.name.as_str());
+    let width = names.chain([SIGNAL]).map(|n| n.chars().count()).max().unwrap_or(0);
+    let (who, what) = match &step.what {
+        What::Event { event, args } => (maker(program, *event), event_text(program, *event, args)),
+        What::Sample { signal, value } => (SIGNAL, sample(program, *signal, *value)),
+    };
+    format!("{:>8} s  {who:<width$}  {what}", milliseconds(step.time))
+}
+
+/// An event with its arguments: `sensed(gaze: true, distance: 0.25 m)`.
+#[must_use]
+pub fn event_text(program: &Program, event: EventId, args: &[Value]) -> String {
+    let name = record::event_name(program, event);
+    if args.is_empty() {
+        return name.to_owned();
+    }
+    let declared = program.events.get(usize::from(event.0));
+    let unit =
+        |index: usize| declared.and_then(|e| e.params.get(index)).map_or(Unit::None, |p| unit_of(p.ty));
+    let shown = args.iter().enumerate().map(|(index, arg)| {
+        format!("{}: {}", record::param_name(program, event, index), value(*arg, unit(index)))
+    });
+    format!("{name}({})", shown.collect::<Vec<_>>().join(", "))
+}
+
+/// A value with the symbol of its unit; a float to five significant digits.
+#[must_use]
+pub fn value(value: Value, unit: Unit) -> String {
+    let number = match value {
+        Value::Float(x) => format!("{x:.4e}").parse().map_or(value, Value::Float),
+        Value::Bool(_) | Value::Int(_) => value,
+    };
+    match unit.symbol() {
+        "" => number.to_string(),
+        symbol => format!("{number} {symbol}"),
+    }
+}
+
+fn maker(program: &Program, event: EventId) -> &str {
+    let from = |e: &Event| program.actors.get(usize::from(e.from.0));
+    program.events.get(usize::from(event.0)).and_then(from).map_or("?", |actor| &actor.name)
+}
+
+fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {
+    let unit = program.signals.get(usize::from(signal.0)).map_or(Unit::None, |s| unit_of(s.ty));
+    format!("{} = {}", record::signal_name(program, signal), value(sampled, unit))
+}
+
+fn unit_of(ty: Type) -> Unit {
+    match ty {
+        Type::Float(unit) => unit,
+        Type::Bool | Type::Int { .. } => Unit::None,
+    }
+}
+
+/// Seconds, rounded to the nearest millisecond.
+fn milliseconds(time: Nanos) -> String {
+    let rounded = time.unsigned_abs().saturating_add(500_000) / 1_000_000;
+    let sign = if time < 0 { "-" } else { "" };
+    format!("{sign}{}.{:03}", rounded / 1000, rounded % 1000)
+}

@@ -1,0 +1,19 @@
+"""What robot code imports to be tested in lock-step with simulated time.
+
+    import hrdsl
+
+    node = hrdsl.Node("robot")
+    request = node.wait_for("leg_request", timeout=3.0)
+    if request is not None:
+        node.arm("robot.arm").move_to((0.3, -0.3, 0.55))
+        node.gripper("robot.grip").close()
+        node.emit("handover_offered")
+
+A call that waits (`sleep`, `wait_for`, an arm's motion) is one message to the harness, which lets simulated time
+pass and answers when the wait is over; between calls no simulated time passes.
+"""
+
+from hrdsl.errors import ProtocolError, Stopped
+from hrdsl.node import Arm, Event, Gripper, Node
+
+__all__ = ["Arm", "Event", "Gripper", "Node", "ProtocolError", "Stopped"]

@@ -1,0 +1,275 @@
+"""Measures which statements and branches of the given files a run executes.
+
+The tracer is coverage.py's own, written in C. It is loaded without the rest of that package, whose import costs more
+than a whole short run; what follows from the source text alone (statements, possible branches) is found by coverage.py
+once and kept in a cache, since the same file is run in hundreds of tests.
+"""
+
+import _imp
+import _thread
+import json
+import os
+import sys
+
+#: Of the kept analyses.
+FORMAT = 2
+
+
+class Recorder:
+    """Records the arcs (pairs of line numbers run one after the other) of the given files."""
+
+    def __init__(self, files, package, cache):
+        """`package` is the folder that has coverage.py, `cache` the folder of static analyses; both may be None."""
+        self._files = {os.path.realpath(name): name for name in files}
+        self._package = package
+        self._cache = cache
+        self._data = {}
+        self._seen = {}
+        self._tracers = []
+        self._threading = None
+        self._fallback = None
+        self._lock = _thread.allocate_lock()
+        self._dispositions = {}
+
+    def start(self):
+        """Starts to record, in this thread and those to come."""
+        self._module = _tracer_module(self._package)
+        self._bits = self._module and self._packing()
+        if not self._bits:
+            coverage = self._import()
+            self._fallback = coverage.Coverage(
+                branch=True, include=list(self._files), data_file=None, config_file=False, messages=False
+            )
+            self._fallback.start()
+            return
+        import threading
+
+        self._threading = threading
+        threading.settrace(self._in_new_thread)
+        self._trace(self._data)
+
+    def stop(self):
+        if self._fallback is not None:
+            self._fallback.stop()
+            return
+        self._threading.settrace(None)
+        for tracer in self._tracers:
+            tracer.stop()
+
+    def write(self, out):
+        """Writes {file: statements, executed, branches, executed_branches} as JSON."""
+        result = {}
+        arcs = self._arcs()
+        for path, name in self._files.items():
+            try:
+                static = self._static(path)
+            except Exception as error:
+                sys.stderr.write("hrdsl: no coverage of %s: %s\n" % (name, error))
+                continue
+            result[name] = combine(static, arcs.get(path, ()))
+        with open(out, "w", encoding="utf-8") as file:
+            json.dump(result, file, separators=(",", ":"))
+
+    def _arcs(self):
+        if self._fallback is not None:
+            data = self._fallback.get_data()
+            return {path: data.arcs(path) or () for path in self._files}
+        found = {}
+        for name, packed in self._data.items():
+            found.setdefault(self._seen[name], set()).update(_unpack(arc, self._bits) for arc in packed)
+        return found
+
+    # ── the tracer ──
+
+    def _packing(self):
+        """In how many bits the tracer packs a line number, which has changed between its versions: seen from a piece of
+        code whose lines are known; None if it does something else."""
+        self._files["<two lines>"] = None
+        data = {}
+        tracer = self._trace(data)
+        exec(compile("\n\na = 1\nb = 2", "<two lines>", "exec"), {})
+        tracer.stop()
+        del self._tracers[:], self._files["<two lines>"]
+        self._dispositions.clear()
+        self._seen.clear()
+        return next((bits for bits in (20, 28) if 3 | 4 << bits in data.get("<two lines>", ())), None)
+
+    def _trace(self, data):
+        tracer = self._module.CTracer()
+        tracer.data = data
+        tracer.trace_arcs = True
+        tracer.should_trace = self._should_trace
+        tracer.should_trace_cache = self._dispositions
+        tracer.warn = lambda message, slug=None, once=False: sys.stderr.write("hrdsl: coverage: %s\n" % message)
+        tracer.lock_data = self._lock.acquire
+        tracer.unlock_data = self._lock.release
+        tracer.file_tracers = {}
+        for name in ("concur_id_func", "check_include", "should_start_context", "switch_context", "disable_plugin"):
+            if hasattr(tracer, name):
+                setattr(tracer, name, None)
+        self._tracers.append(tracer)
+        tracer.start()
+        return tracer
+
+    def _in_new_thread(self, frame, event, arg):
+        sys.settrace(None)
+        self._trace(self._data)
+        return sys.gettrace()(frame, event, arg)
+
+    def _should_trace(self, name, frame):
+        path = name if name in self._files else os.path.realpath(name)
+        answer = self._module.CFileDisposition()
+        answer.original_filename = answer.canonical_filename = answer.source_filename = name
+        answer.trace = path in self._files
+        answer.reason = ""
+        answer.file_tracer = None
+        answer.has_dynamic_filename = False
+        if answer.trace:
+            self._seen[name] = path
+        return answer
+
+    # ── the static analysis ──
+
+    def _static(self, path):
+        with open(path, "rb") as file:
+            text = file.read()
+        digest = _imp.source_hash(FORMAT, text).hex()
+        package = os.path.basename(self._package or "")  # its name tells the versions of Python and coverage.py
+        kept = self._cache and os.path.join(self._cache, "%s-%s.json" % (digest, package))
+        if kept:
+            try:
+                with open(kept, encoding="utf-8") as file:
+                    return json.load(file)
+            except (OSError, ValueError):
+                pass
+        static = analyse(self._import(), path)
+        if kept:
+            temporary = "%s.%d" % (kept, os.getpid())
+            try:
+                with open(temporary, "w", encoding="utf-8") as file:
+                    json.dump(static, file, separators=(",", ":"))
+                os.replace(temporary, kept)
+            except OSError:
+                pass
+        return static
+
+    def _import(self):
+        if self._package and self._package not in sys.path:
+            sys.path.append(self._package)
+        import coverage
+
+        return coverage
+
+
+def _tracer_module(package):
+    """coverage.py's C tracer, without the package around it; None if it has none for this interpreter."""
+    from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader, ModuleSpec
+
+    for folder in [package] if package else sys.path:
+        for suffix in EXTENSION_SUFFIXES:
+            path = os.path.join(folder, "coverage", "tracer" + suffix)
+            if not os.path.exists(path):
+                continue
+            try:
+                module = _imp.create_dynamic(
+                    ModuleSpec("coverage.tracer", ExtensionFileLoader("coverage.tracer", path), origin=path)
+                )
+                _imp.exec_dynamic(module)
+                return module if hasattr(module, "CTracer") else None
+            except ImportError:
+                return None
+    return None
+
+
+def _unpack(packed, bits):
+    # As the tracer packs them: so many bits each, and then a bit each for the sign.
+    mask = (1 << bits) - 1
+    here, there = packed & mask, packed >> bits & mask
+    return -here if packed >> 2 * bits & 1 else here, -there if packed >> 2 * bits + 1 & 1 else there
+
+
+def analyse(coverage, path):
+    """What follows from the source text alone."""
+    from coverage.python import PythonFileReporter
+
+    reporter = PythonFileReporter(path, coverage.Coverage(branch=True, data_file=None, config_file=False))
+    parser = reporter.parser
+    statements = reporter.lines()
+    possible = reporter.arcs()
+    excluded = reporter.excluded_lines()
+    no_branch = reporter.no_branch_lines()
+    several = {line for line, count in reporter.exit_counts().items() if count > 1 and line not in no_branch}
+    # coverage.py before 7.7 has jumps within a line, for comprehensions; later ones do not.
+    branches = [arc for arc in possible if arc[0] in several and arc[1] not in excluded and arc[0] != arc[1]]
+    first_lines = getattr(parser, "multiline_map", None) or getattr(parser, "_multiline", {})
+    jumps = getattr(parser, "_with_jump_fixers", {})
+    return {
+        "statements": sorted(statements),
+        "branches": sorted(branches),
+        "possible": sorted(possible),
+        "first_lines": sorted([line, first] for line, first in first_lines.items() if line != first),
+        "jumps": sorted(jumps.items(), key=lambda jump: jump[0]),
+    }
+
+
+def combine(static, arcs):
+    """The static analysis and the arcs of one run, as coverage.py's reports combine them."""
+    first_lines = dict(static["first_lines"])
+    jumps = {_tuples(arc): _tuples(to) for arc, to in static["jumps"]}
+    after = {}
+    for here, there in static["possible"]:
+        after.setdefault(here, []).append(there)
+
+    def first(line):
+        return first_lines.get(line, line) if line >= 0 else -first_lines.get(-line, -line)
+
+    def translate(arcs):
+        return {(first(here), first(there)) for here, there in _without_jumps(arcs, jumps)}
+
+    lines = {first(line) for arc in arcs for line in arc if line > 0}
+    moved = set()
+    for here, there in translate(map(tuple, arcs)):
+        if here != there:
+            moved.add((here, there))
+        elif len(after.get(here, ())) == 1:
+            moved.add((here, after[here][0]))
+    taken = translate(moved)
+    return {
+        "statements": static["statements"],
+        "executed": [line for line in static["statements"] if line in lines],
+        "branches": static["branches"],
+        "executed_branches": [arc for arc in static["branches"] if tuple(arc) in taken],
+    }
+
+
+def _tuples(value):
+    return tuple(_tuples(part) for part in value) if isinstance(value, (list, tuple)) else value
+
+
+def _without_jumps(arcs, jumps):
+    """Undoes the visits that the interpreter pays to the head of a `with` when it leaves it. coverage.py says which
+    they are; up to 7.16 as arc: (next arc, last arc), in chains, then as arc: the arc in its place, or None."""
+    arcs = set(arcs)
+    gone, new = set(), set()
+    for arc in arcs:
+        if arc not in jumps:
+            continue
+        gone.add(arc)
+        to = jumps[arc]
+        if to is None:
+            continue
+        if not isinstance(to[0], tuple):
+            new.add(to)
+            continue
+        following, last = to
+        while following in jumps:
+            gone.add(following)
+            following, last = jumps[following]
+            gone.add(last)
+        new.add((arc[0], last[1]))
+        gone.add(following)
+    return (arcs - gone) | new if _is_flat(jumps) else (arcs | new) - gone
+
+
+def _is_flat(jumps):
+    return not any(to is not None and isinstance(to[0], tuple) for to in jumps.values())

@@ -1,0 +1,94 @@
+"""The connection to the harness: one JSON line out, one JSON line back (spec/protocol.md)."""
+
+import _thread
+import json
+import os
+
+from hrdsl.errors import ProtocolError, Stopped
+
+VERSION = 1
+
+_encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
+_decode = json.JSONDecoder().decode
+
+
+class Link:
+    """Sends requests one at a time and keeps the simulated time of the last reply."""
+
+    def __init__(self, request_fd, reply_fd):
+        # Programs that the robot code starts must not hold the pipes open.
+        os.set_inheritable(request_fd, False)
+        os.set_inheritable(reply_fd, False)
+        self._out = request_fd
+        self._in = open(reply_fd, "rb")
+        self._lock = _thread.allocate_lock()
+        self._greeted = False
+        self._stopped = None
+        self.time = 0  # simulated nanoseconds at the last reply
+
+    @property
+    def stopped(self):
+        """Whether the harness has ended the test."""
+        return self._stopped is not None
+
+    def hello(self, name):
+        """Names the program, and agrees on the protocol's version."""
+        self._greeted = True
+        self.request({"request": "hello", "version": VERSION, "name": name})
+
+    def request(self, message):
+        """Sends a request and waits for its reply; raises `Stopped` when the test is over."""
+        if not self._greeted:
+            self.hello("program")
+        line = _encode(message).encode("ascii") + b"\n"
+        with self._lock:
+            if self._stopped is not None:
+                raise Stopped(self._stopped)
+            answer = self._exchange(line)
+        if "error" in answer and "ok" not in answer:
+            raise ProtocolError(answer["error"], answer.get("help"))
+        return answer
+
+    def _exchange(self, line):
+        try:
+            sent = os.write(self._out, line)
+            while sent < len(line):
+                sent += os.write(self._out, line[sent:])
+            answer = self._in.readline()
+        except OSError as error:
+            self._stop("the harness has gone: %s" % error)
+        if not answer:
+            self._stop("the harness has gone")
+        answer = _decode(answer.decode("utf-8"))
+        self.time = answer.get("t", self.time)
+        if answer.get("stop"):
+            self._stop("the test is over")
+        return answer
+
+    def _stop(self, why):
+        self._stopped = why
+        raise Stopped(why)
+
+    def done(self):
+        """Says that the program has ended by itself; never raises."""
+        try:
+            self.request({"request": "done"})
+        except (Stopped, ProtocolError):
+            pass
+
+
+_link = None
+
+
+def the_link():
+    """The one connection of this process, made at the first use."""
+    global _link
+    if _link is None:
+        try:
+            fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
+        except (KeyError, ValueError):
+            raise ProtocolError(
+                "no harness: HRDSL_REQUEST_FD and HRDSL_REPLY_FD are not set", "start the program with `hrdsl sim`"
+            ) from None
+        _link = Link(*fds)
+    return _link

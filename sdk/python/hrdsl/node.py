@@ -1,0 +1,134 @@
+"""`Node`: the robot program's view of the world."""
+
+import atexit
+import os
+import sys
+
+from hrdsl import link as _links
+from hrdsl.errors import ProtocolError
+
+
+class Event:
+    """Something that happened: its `name`, its arguments (`event.args["ready"]` or `event.ready`), and its `time` in
+    simulated seconds."""
+
+    __slots__ = ("name", "args", "time")
+
+    def __init__(self, name, args, time):
+        self.name = name
+        self.args = args
+        self.time = time
+
+    def __getattr__(self, name):
+        try:
+            return self.args[name]
+        except KeyError:
+            raise AttributeError("event %s has no argument %r" % (self.name, name)) from None
+
+    def __repr__(self):
+        args = ", ".join("%s=%r" % item for item in sorted(self.args.items()))
+        return "Event(%s(%s) at %.3f s)" % (self.name, args, self.time)
+
+
+class _Device:
+    def __init__(self, link, name):
+        self._link = link
+        self.name = name
+        self.last_error = None  # why the last action failed
+
+    def _act(self, do, **args):
+        given = {key: value for key, value in args.items() if value is not None}
+        message = {"request": "act", "on": self.name, "do": do, "args": given, "wait": True}
+        answer = self._link.request(message)
+        self.last_error = answer.get("error")
+        return bool(answer.get("ok"))
+
+
+class Arm(_Device):
+    """A chain of joints under motor control. Motions return when they end: whether the target was reached."""
+
+    def move_to(self, place, speed=None):
+        """Brings the tool to a place (x, y, z; metres); `speed` limits the joints (rad/s)."""
+        return self._act("move_to", to=_numbers(place, 3), speed=speed)
+
+    def move_joints(self, angles, speed=None):
+        """Brings the joints to these angles (radians, from the base to the tip)."""
+        return self._act("move_joints", to=_numbers(angles, None), speed=speed)
+
+
+class Gripper(_Device):
+    """A hand. Both calls return when the hand has done it; `close` says whether it now holds something."""
+
+    def close(self):
+        return self._act("close")
+
+    def open(self):
+        return self._act("open")
+
+
+class Node:
+    """The program's end of the harness: events, signals, devices and simulated time. Times are in seconds."""
+
+    def __init__(self, name):
+        self._link = _links.the_link()
+        self._link.hello(name)
+        self.name = name
+        self.seed = int(os.environ.get("HRDSL_SEED", "0"))
+        if "hrdsl.runner" not in sys.modules:
+            atexit.register(_farewell, self._link)
+
+    def now(self):
+        """Simulated seconds since the start of the test."""
+        return self._link.request({"request": "now"})["t"] / 1e9
+
+    def sleep(self, seconds):
+        """Lets simulated time pass."""
+        self._link.request({"request": "sleep", "seconds": _seconds(seconds)})
+
+    def emit(self, event, **args):
+        """Makes an event of the scenario's vocabulary happen now."""
+        self._link.request({"request": "emit", "event": event, "args": args})
+
+    def wait_for(self, *events, timeout=None):
+        """Takes the first of these events out of the mailbox, or waits for one; `None` when `timeout` has passed."""
+        if not events:
+            raise ProtocolError("wait_for needs the name of an event")
+        message = {"request": "wait_for", "events": list(events)}
+        if timeout is not None:
+            message["timeout"] = _seconds(timeout)
+        found = self._link.request(message).get("event")
+        return None if found is None else Event(found["name"], found.get("args", {}), found["time"] / 1e9)
+
+    def drop(self, *events):
+        """Forgets these events in the mailbox; without names, all."""
+        self._link.request({"request": "drop", "events": list(events)})
+
+    def read(self, signal):
+        """The present value of a signal: a bool, an int, or a float in SI units."""
+        return self._link.request({"request": "read", "signal": signal})["value"]
+
+    def arm(self, name):
+        return Arm(self._link, name)
+
+    def gripper(self, name):
+        return Gripper(self._link, name)
+
+
+def _farewell(link):
+    # Outside the runner: an uncaught exception leaves its type here, and is no normal end.
+    if not hasattr(sys, "last_type"):
+        link.done()
+
+
+def _seconds(value):
+    value = float(value)
+    if not value >= 0.0 or value == float("inf"):
+        raise ValueError("a duration must be finite and not negative: %r" % value)
+    return value
+
+
+def _numbers(values, count):
+    numbers = [float(value) for value in values]
+    if count is not None and len(numbers) != count:
+        raise ValueError("a place has %d coordinates, not %d" % (count, len(numbers)))
+    return numbers

@@ -1,0 +1,163 @@
+"""`python3 -m unittest discover sdk/python/tests`: the SDK against a harness in a thread, and the example's machine."""
+
+import json
+import os
+import sys
+import threading
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path[:0] = [ROOT, os.path.join(ROOT, "..", "..", "examples", "handover")]
+
+import hrdsl  # noqa: E402
+from hrdsl import cover, link  # noqa: E402
+
+
+class Harness(threading.Thread):
+    """Answers each request by a function."""
+
+    def __init__(self, answer):
+        super().__init__(daemon=True)
+        read, its_write = os.pipe()
+        its_read, self.write = os.pipe()
+        self.lines, self.answer, self.requests = os.fdopen(read), answer, []
+        self.link = link.Link(its_write, its_read)
+        self.its_write = its_write
+        self.start()
+
+    def run(self):
+        for line in self.lines:
+            self.requests.append(json.loads(line))
+            os.write(self.write, (json.dumps(self.answer(self.requests[-1])) + "\n").encode())
+
+    def close(self):
+        os.close(self.its_write)
+        self.join()
+        self.lines.close()
+        self.link._in.close()
+        os.close(self.write)
+
+
+class Messages(unittest.TestCase):
+    def node(self, answer):
+        harness = Harness(answer)
+        self.addCleanup(harness.close)
+        link._link = harness.link
+        self.addCleanup(setattr, link, "_link", None)
+        sys.modules.setdefault("hrdsl.runner", None)  # no farewell at exit
+        return harness, hrdsl.Node("test")
+
+    def test_a_motion_is_one_message(self):
+        harness, node = self.node(lambda request: {"t": 1500000000, "ok": True})
+        self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), True)
+        self.assertEqual(
+            harness.requests[-1],
+            {"request": "act", "on": "robot.arm", "do": "move_to", "args": {"to": [1.0, 2.0, 3.0]}, "wait": True},
+        )
+        self.assertEqual(node.now(), 1.5)
+
+    def test_an_event_has_its_arguments(self):
+        event = {"name": "sensed", "args": {"gaze": True}, "time": 250000000}
+        _, node = self.node(lambda request: {"t": 1, "event": event})
+        got = node.wait_for("sensed", timeout=1)
+        self.assertEqual((got.name, got.gaze, got.args, got.time), ("sensed", True, {"gaze": True}, 0.25))
+        with self.assertRaises(AttributeError):
+            got.pressure
+
+    def test_after_a_stop_every_request_stops(self):
+        harness, node = self.node(lambda request: {"t": 1, "stop": request["request"] == "now"})
+        for _ in range(2):
+            with self.assertRaises(SystemExit) as caught:
+                node.now()
+            self.assertIsInstance(caught.exception, hrdsl.Stopped)
+        self.assertEqual(len(harness.requests), 2)  # hello, and one now
+
+    def test_bad_values_never_leave(self):
+        harness, node = self.node(lambda request: {"t": 1})
+        for wrong in (
+            lambda: node.sleep(float("inf")),
+            lambda: node.wait_for("a", timeout=-1),
+            lambda: node.arm("a").move_to((1, 2)),
+            lambda: node.emit("a", x=float("nan")),
+        ):
+            with self.assertRaises(ValueError):
+                wrong()
+        self.assertEqual(len(harness.requests), 1)
+
+
+class Coverage(unittest.TestCase):
+    """`cover.combine` against coverage.py's own report of the same run."""
+
+    def test_it_agrees_with_coverage(self):
+        sys.path.append(os.environ.get("HRDSL_COVERAGE_PACKAGE", ""))
+        try:
+            import coverage
+        except ImportError:
+            self.skipTest("coverage.py is not installed")
+        import fsm
+        import robot
+
+        here = os.path.dirname(os.path.abspath(__file__))
+        for path in (fsm.__file__, robot.__file__, os.path.join(here, "branches.py")):
+            path = os.path.abspath(path)
+            with self.subTest(path=path):
+                self.compare(coverage, path)
+
+    def compare(self, coverage, path):
+        measured = coverage.Coverage(branch=True, include=[path], data_file=None, config_file=False, messages=False)
+        with open(path) as file:
+            code = compile(file.read(), path, "exec")
+        measured.start()
+        space = {"__name__": "measured", "__file__": path}
+        exec(code, space)
+        if path.endswith("robot.py"):
+            space["check_configuration"]()
+            space["build"](Hardware())
+            space["Statistics"](0.0).report(1.0)
+        measured.stop()
+        theirs = measured._analyze(path)
+        kept = json.loads(json.dumps(cover.analyse(coverage, path)))
+        ours = cover.combine(kept, measured.get_data().arcs(path))
+        executed = sorted((a, b) for a, bs in theirs.executed_branch_arcs().items() for b in bs if a != b)
+        missing = sorted((a, b) for a, bs in theirs.missing_branch_arcs().items() for b in bs if a != b)
+        self.assertEqual(ours["statements"], sorted(theirs.statements))
+        self.assertEqual(ours["executed"], sorted(theirs.executed & theirs.statements))
+        self.assertEqual([tuple(arc) for arc in ours["executed_branches"]], executed)
+        self.assertEqual([tuple(arc) for arc in ours["branches"]], sorted(executed + missing))
+        self.assertTrue(missing)
+        self.assertEqual(bool(executed), not path.endswith("fsm.py"))
+
+
+class Hardware:
+    node = None
+
+
+class Machine(unittest.TestCase):
+    def test_14_states_and_22_transitions(self):
+        import robot
+
+        machine = robot.build(Hardware())
+        machine.check()
+        self.assertEqual(len(machine.states), 14)
+        self.assertEqual(len(machine.edges()), 22)
+        reached, todo = set(), [machine.initial]
+        while todo:
+            name = todo.pop()
+            if name not in reached and name in machine.states:
+                reached.add(name)
+                todo += machine.transitions[name].values()
+        self.assertEqual(reached, set(machine.states))
+
+    def test_a_machine_that_leads_nowhere_is_refused(self):
+        import fsm
+
+        machine = fsm.StateMachine(outcomes=["end"])
+        machine.add("A", fsm.State(["go"]), {"go": "B"})
+        with self.assertRaises(fsm.InvalidTransition):
+            machine.execute(None)
+        with self.assertRaises(fsm.InvalidTransition):
+            machine.add("C", fsm.State(["go", "stay"]), {"go": "A"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,23 @@
+//! The standard modules, embedded: `std.robots.bert2` is `stdlib/robots/bert2.hri`.
+
+/// All modules: path and text, sorted by path.
+pub const MODULES: &[(&str, &str)] = &[
+    ("std.person", include_str!("../person.hri")),
+    ("std.robots.bert2", include_str!("../robots/bert2.hri")),
+];
+
+/// The text of a module.
+#[must_use]
+pub fn module(path: &str) -> Option<&'static str> {
+    MODULES.iter().find(|(name, _)| *name == path).map(|(_, text)| *text)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn modules_are_found_by_path() {
+        assert!(super::module("std.person").is_some());
+        assert!(super::module("std.persn").is_none());
+        assert!(super::MODULES.is_sorted_by_key(|m| m.0));
+    }
+}
