@@ -68,8 +68,7 @@ pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
     diagnostics.extend(issues);
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
-    let program =
-        (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
+    let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
     Compilation { files, ast, scenario: Some(resolved), program, diagnostics }
 }
 

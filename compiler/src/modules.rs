@@ -28,7 +28,8 @@ pub fn load(files: &mut Files, ast: &mut Vec<ast::File>, diagnostics: &mut Vec<D
 }
 
 fn uses(file: &ast::File) -> Vec<ast::Path> {
-    let path = |item: &ast::Item| if let ItemKind::Use(path) = &item.kind { Some(path.clone()) } else { None };
+    let path =
+        |item: &ast::Item| if let ItemKind::Use(path) = &item.kind { Some(path.clone()) } else { None };
     file.items.iter().filter_map(path).collect()
 }
 

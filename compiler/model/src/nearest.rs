@@ -1,9 +1,9 @@
 //! The nearest name: which declared name a misspelt one was meant to be.
 
-/// Costs of the edits. A slip of the keyboard more often adds, drops or swaps letters than it exchanges one for another,
-/// which also decides between `m` and `mm` for `mx`.
+/// Costs of the edits. A slip of the keyboard most often swaps two letters; it more often adds or drops one than it exchanges it,
+/// which also decides between `m` and `mm` for `mx`, `ms` and `s` for `sm`.
 const INDEL: usize = 2;
-const SWAP: usize = 2;
+const SWAP: usize = 1;
 const REPLACE: usize = 3;
 
 /// The weighted edit distance of optimal string alignment (Damerau–Levenshtein without edits inside a transposition).

@@ -3,9 +3,7 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{
-    ActorId, BodyId, CurrentId, EventId, EventPattern, Expr, GripperId, JointId, Type,
-};
+use crate::{ActorId, BodyId, CurrentId, EventId, EventPattern, Expr, GripperId, JointId, Type};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct World {
@@ -154,7 +152,6 @@ pub enum Action {
     Grasp(GripperId),
     LetGo(GripperId),
 }
-
 
 impl Frame {
     /// A direction of the part, in the world.

@@ -12,11 +12,8 @@ use hrdsl_model as model;
 use super::{expr, vocabulary};
 
 pub(crate) fn agent(a: &model::Agent) -> Agent {
-    let belief = |b: &model::Belief| Belief {
-        name: b.name.clone(),
-        params: expr::params(&b.params),
-        origin: b.span,
-    };
+    let belief =
+        |b: &model::Belief| Belief { name: b.name.clone(), params: expr::params(&b.params), origin: b.span };
     let fact = |(belief, args): &(model::BeliefId, Vec<model::Value>)| Fact {
         belief: BeliefId(belief.0),
         args: expr::values(args),

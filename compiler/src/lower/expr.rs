@@ -87,7 +87,9 @@ pub(crate) fn local(e: &model::Expr) -> Expr {
     expr(e, &mut |source| match source {
         Source::Leaf(Leaf::Local(i)) => Expr::Var(i),
         // INVARIANT: the checker lets nothing else into such an expression.
-        Source::Leaf(Leaf::Own(_) | Leaf::Shared(_) | Leaf::Signal(_)) | Source::Term(..) => Expr::bool(false),
+        Source::Leaf(Leaf::Own(_) | Leaf::Shared(_) | Leaf::Signal(_)) | Source::Term(..) => {
+            Expr::bool(false)
+        }
     })
 }
 

@@ -12,7 +12,8 @@ use hrdsl_source::Files;
 use hrdsl_syntax::ast;
 
 use super::{
-    expr, vocabulary::patterns,
+    expr,
+    vocabulary::patterns,
     world::{Reader, Signals},
 };
 use Effect::{Discharge, Fail, ResetClock, Trigger};
@@ -130,7 +131,8 @@ fn globally(condition: &model::Expr, signals: &mut Signals<'_>) -> Machine {
         edge(1, 2, On::Sample, Some(broken), &[Fail]),
         edge(2, 1, On::Sample, Some(holds), &[]),
     ];
-    let states = vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
+    let states =
+        vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
     Machine {
         states,
         edges,

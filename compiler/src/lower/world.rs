@@ -4,8 +4,8 @@ use hrdsl_ir::{
     self as ir, ActorId, EventId, Expr, Span, Type, Unit,
     value::nanos,
     world::{
-        Arm, Axis, Body, BodyId, BodyRef, Current, CurrentId, Gripper, GripperId, Joint, JointId, Motion, Point,
-        Rule, RuleOn, Shape, Signal, SignalId, Term, World, WorldAction,
+        Arm, Axis, Body, BodyId, BodyRef, Current, CurrentId, Gripper, GripperId, Joint, JointId, Motion,
+        Point, Rule, RuleOn, Shape, Signal, SignalId, Term, World, WorldAction,
     },
 };
 use hrdsl_model::{self as model, Leaf, world as from};

@@ -232,6 +232,7 @@ fn help(cx: &Context<'_>, fault: &Fault, before: Option<Lexeme>, token: Lexeme) 
         Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
         Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
         Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
+        Kind::Comma if fault.has("from") => "each event has a line of its own, which starts with `event`",
         Kind::If if before == Some(Kind::Else) => "write `else { if … }`",
         Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
         Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",

@@ -96,6 +96,9 @@ pub fn generate(program: &Program, suite: &Suite, count: Option<u32>, seed: u64)
     })
 }
 
+/// How many origins of one abstract test are written out.
+const ORIGINS: usize = 3;
+
 /// Equal abstract tests are one; the first keeps its place and takes over the others' reasons.
 fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
     let mut seen: indexmap::IndexMap<String, AbstractTest> = indexmap::IndexMap::new();
@@ -115,7 +118,15 @@ fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
             }
         }
     }
-    seen.into_values().collect()
+    let mut tests: Vec<AbstractTest> = seen.into_values().collect();
+    for test in &mut tests {
+        let more = test.because.len().saturating_sub(ORIGINS);
+        if more > 0 {
+            test.because.truncate(ORIGINS);
+            test.because.push(format!("and {more} more that lead to the same test"));
+        }
+    }
+    tests
 }
 
 /// Numbers and seeds the tests; abstract tests that are too few come again with other seeds.

@@ -74,7 +74,10 @@ impl Checker<'_> {
         if fact.name.text != declared.text {
             let name = &fact.name;
             let near = [declared.text.as_str()];
-            self.report(names::unknown(Noun::Belief, &name.text, name.span, near).label(declared.span, "declared here"));
+            self.report(
+                names::unknown(Noun::Belief, &name.text, name.span, near)
+                    .label(declared.span, "declared here"),
+            );
         }
         let args = self.belief_params(scope.id, belief);
         let args = self.ground(Noun::Belief, fact, &args);
@@ -172,4 +175,3 @@ fn achieved(agent: &ast::Agent) -> IndexMap<String, usize> {
     }
     goals
 }
-

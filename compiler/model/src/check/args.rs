@@ -34,7 +34,9 @@ impl Checker<'_> {
                 _ => {
                     let e = self.expr_for(arg, param.ty, env);
                     if e.constant().is_none() && e.ty != crate::Kind::Unknown {
-                        self.report(types::not_constant(e.span).help("write a constant, or `_` for any value"));
+                        self.report(
+                            types::not_constant(e.span).help("write a constant, or `_` for any value"),
+                        );
                     }
                     e.constant()
                 }

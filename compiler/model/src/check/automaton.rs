@@ -5,9 +5,7 @@ use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name};
 
 use super::{Checker, Env, env::Local, table::Table};
 use crate::{
-    ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player,
-    noun::Noun,
-    report::automata,
+    ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, noun::Noun, report::automata,
 };
 
 /// The names of one automaton.
@@ -34,8 +32,13 @@ impl Checker<'_> {
 
     fn automaton(&mut self, index: usize, automaton: &ast::Automaton) {
         let actor = self.s.automata[index].actor;
-        let mut scope =
-            Scope { index, actor, clocks: Table::default(), vars: Table::default(), locations: Table::default() };
+        let mut scope = Scope {
+            index,
+            actor,
+            clocks: Table::default(),
+            vars: Table::default(),
+            locations: Table::default(),
+        };
         for member in &automaton.members {
             match &member.kind {
                 Member::Clock(clocks) => {
@@ -58,9 +61,7 @@ impl Checker<'_> {
 
     fn clock(&mut self, index: usize, clock: &Name, scope: &mut Scope) {
         self.check_free(&self.automaton_env(scope), Noun::Clock, clock);
-        if scope.vars.get(&clock.text).is_none()
-            && scope.clocks.insert(&clock.text, clock.span).is_ok()
-        {
+        if scope.vars.get(&clock.text).is_none() && scope.clocks.insert(&clock.text, clock.span).is_ok() {
             self.s.automata[index].clocks.push(clock.text.clone());
         }
     }
@@ -123,9 +124,7 @@ impl Checker<'_> {
                     }
                 }
             }
-            let Some(id) =
-                Self::declare(&mut self.issues, &mut scope.locations, Noun::Location, name)
-            else {
+            let Some(id) = Self::declare(&mut self.issues, &mut scope.locations, Noun::Location, name) else {
                 continue;
             };
             if *init {

@@ -1,7 +1,9 @@
 //! Coverage points, their bins, and cross products.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, UnaryOp};
+use hrdsl_syntax::ast::{
+    self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, UnaryOp,
+};
 
 use super::{Checker, table::Table};
 use crate::{
@@ -126,7 +128,8 @@ impl Checker<'_> {
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };
-        let bins: Vec<String> = self.s.points[usize::from(id.0)].bins.iter().map(|b| b.name.clone()).collect();
+        let bins: Vec<String> =
+            self.s.points[usize::from(id.0)].bins.iter().map(|b| b.name.clone()).collect();
         let Some(at) = bins.iter().position(|b| *b == bin.text) else {
             self.unknown(Noun::Bin, bin, &bins, Some(Noun::Bin));
             return None;

@@ -1,12 +1,14 @@
 //! Edges: selects, guards split into clock bounds and data, synchronisation, updates.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam};
+use hrdsl_syntax::ast::{
+    self, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam,
+};
 
 use super::{Checker, Env, automaton::Scope, is_variable_name};
 use crate::{
-    ClockConstraint, ClockId, ClockOp, Dim, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param, ReceiveArg,
-    StimulusStep, Sync, Type, Update, Value,
+    ClockConstraint, ClockId, ClockOp, Dim, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param,
+    ReceiveArg, StimulusStep, Sync, Type, Update, Value,
     noun::Noun,
     report::{automata, types},
 };
@@ -98,7 +100,13 @@ impl Checker<'_> {
         Some(Sync::Receive { event, args: received })
     }
 
-    fn received(&mut self, arg: &ast::Expr, param: &Param, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+    fn received(
+        &mut self,
+        arg: &ast::Expr,
+        param: &Param,
+        env: &mut Env,
+        equal: &mut Vec<Expr>,
+    ) -> ReceiveArg {
         if arg.kind == Syntax::Any {
             return ReceiveArg::Any;
         }
@@ -165,7 +173,9 @@ impl Checker<'_> {
         if let Some(clock) = scope.clocks.get(&target.text) {
             let zero = match value.kind {
                 Syntax::Int(n) => n == 0,
-                Syntax::Quantity { number, .. } => number == 0.0 && self.expr_of(value, Kind::Float(Dim::TIME), env).constant().is_some(),
+                Syntax::Quantity { number, .. } => {
+                    number == 0.0 && self.expr_of(value, Kind::Float(Dim::TIME), env).constant().is_some()
+                }
                 _ => false,
             };
             if !zero || op.is_some() {
@@ -182,7 +192,8 @@ impl Checker<'_> {
             Some((Some(Leaf::Shared(i)), _)) => (Leaf::Shared(i), self.s.shared[usize::from(i)].ty),
             Some((Some(Leaf::Local(_) | Leaf::Signal(_)) | None, _)) => {
                 let message = format!("`{}` is bound by the edge: it cannot be assigned", target.text);
-                let issue = hrdsl_source::Diagnostic::error(hrdsl_source::Code::WRONG_KIND, target.span, message);
+                let issue =
+                    hrdsl_source::Diagnostic::error(hrdsl_source::Code::WRONG_KIND, target.span, message);
                 self.report(issue.help("assign a variable declared by `var`"));
                 return None;
             }

@@ -156,8 +156,7 @@ impl Checker<'_> {
 
     /// A name that has no value here.
     fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
-        let mut names: Vec<String> =
-            env.locals.iter().filter(|l| l.bound).map(|l| l.name.clone()).collect();
+        let mut names: Vec<String> = env.locals.iter().filter(|l| l.bound).map(|l| l.name.clone()).collect();
         names.extend(self.consts.keys().map(|k| (*k).to_owned()));
         names.extend(self.signal_names(env));
         if env.plan && is_variable_name(&name.text) {
@@ -338,7 +337,8 @@ impl Checker<'_> {
         span: Span,
         env: &mut Env,
     ) -> Expr {
-        let sides = ((then.ty, then.span, then.constant()), (otherwise.ty, otherwise.span, otherwise.constant()));
+        let sides =
+            ((then.ty, then.span, then.constant()), (otherwise.ty, otherwise.span, otherwise.constant()));
         let Some(ty) = self.same("if", sides.0, sides.1) else { return Expr::error(span) };
         let (then, otherwise) = (self.fit(then, ty, env), self.fit(otherwise, ty, env));
         if let Some(Value::Bool(b)) = condition.constant() {

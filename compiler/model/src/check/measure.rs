@@ -37,7 +37,12 @@ impl Checker<'_> {
     /// `person.hand.x`, `robot.signal`
     pub(super) fn dotted(&mut self, path: &ast::Path, env: &Env) -> Expr {
         let Some(prefix) = env.world.clone() else {
-            self.report(names::unknown(env.noun.unwrap_or(Noun::Constant), &text(&path.names), path.span, []));
+            self.report(names::unknown(
+                env.noun.unwrap_or(Noun::Constant),
+                &text(&path.names),
+                path.span,
+                [],
+            ));
             return Expr::error(path.span);
         };
         if let Some(id) = self.in_world.signals.get(&format!("{prefix}{}", text(&path.names))) {

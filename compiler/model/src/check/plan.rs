@@ -1,11 +1,14 @@
 //! Plans: trigger, context, body; each variable must have a value before it is read, from left to right.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, Call, ExprKind as Syntax, StepKind as SyntaxStep, TriggerKind, UnaryOp};
+use hrdsl_syntax::ast::{
+    self, BinaryOp, Call, ExprKind as Syntax, StepKind as SyntaxStep, TriggerKind, UnaryOp,
+};
 
 use super::{Checker, Env, agent::Scope, expr::FUNCTIONS, is_variable_name};
 use crate::{
-    ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Param, Plan, Role, Step, StepKind, TriggerOn, Type,
+    ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Param, Plan, Role, Step, StepKind,
+    TriggerOn, Type,
     noun::Noun,
     report::{names, roles, types},
 };
@@ -19,8 +22,7 @@ impl Checker<'_> {
             Some(e) => self.context(scope, e, &mut env),
             None => Context::True,
         };
-        let body: Vec<Step> =
-            plan.body.iter().filter_map(|step| self.step(scope, step, &mut env)).collect();
+        let body: Vec<Step> = plan.body.iter().filter_map(|step| self.step(scope, step, &mut env)).collect();
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
         let (trigger, args) = trigger?;
         Some(Plan { label, trigger, args, context, body, vars, span })

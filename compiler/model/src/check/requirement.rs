@@ -5,8 +5,7 @@ use hrdsl_syntax::ast::{self, ItemKind, PatternKind};
 
 use super::{Checker, Env, table::Table};
 use crate::{
-    Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind,
-    noun::Noun,
+    Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind, noun::Noun,
     report::requirements::says_nothing,
 };
 
@@ -68,10 +67,8 @@ impl Checker<'_> {
         let e = self.expr_of(e, Kind::Bool, &mut Env::measured(""));
         let mut reads = false;
         e.each(&mut |part| {
-            reads |= matches!(
-                part.kind,
-                ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error
-            );
+            reads |=
+                matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);
         });
         if !reads {
             self.report(says_nothing(e.span));

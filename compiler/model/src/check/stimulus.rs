@@ -102,7 +102,9 @@ impl Checker<'_> {
             SampleRange::Plain(range) => {
                 let lo = self.expr(&range.lo, env);
                 let Some(hi) = &range.hi else {
-                    self.report(types::no_value("a range without an upper end", range.span).help("write `lo .. hi`"));
+                    self.report(
+                        types::no_value("a range without an upper end", range.span).help("write `lo .. hi`"),
+                    );
                     return (Expr::error(range.span), Expr::error(range.span));
                 };
                 let hi = self.expr_of(hi, if lo.ty == Kind::Int { Kind::Unknown } else { lo.ty }, env);
@@ -203,7 +205,8 @@ impl Checker<'_> {
                 let span = names[0].span.to(names[names.len() - 1].span);
                 let message = format!("`{}` is not kinematic: actions cannot move it", text(names));
                 let world = self.s.world.as_ref();
-                let kinematic = world.iter().flat_map(|w| &w.bodies).filter(|b| b.motion == Motion::Kinematic);
+                let kinematic =
+                    world.iter().flat_map(|w| &w.bodies).filter(|b| b.motion == Motion::Kinematic);
                 let near: Vec<&str> = kinematic.map(|b| b.name.as_str()).collect();
                 let help = match near.as_slice() {
                     [] => "declare the body as `kinematic`".to_owned(),
@@ -238,8 +241,7 @@ impl Checker<'_> {
             self.report(not_a_point(e.span));
             return None;
         };
-        let parts: Vec<Expr> =
-            parts.iter().map(|p| self.expr_of(p, Kind::Float(Dim::LENGTH), env)).collect();
+        let parts: Vec<Expr> = parts.iter().map(|p| self.expr_of(p, Kind::Float(Dim::LENGTH), env)).collect();
         match <[Expr; 3]>::try_from(parts) {
             Ok(parts) => Some(Box::new(parts)),
             Err(_) => {

@@ -1,12 +1,14 @@
 //! Suites: how tests are made.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member};
+use hrdsl_syntax::ast::{
+    self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
+};
 
 use super::{Checker, Env};
 use crate::{
-    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, NetworkId, Player, Role, SearchGoal,
-    Suite, Value,
+    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, NetworkId, Player, Role,
+    SearchGoal, Suite, Value,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -31,7 +33,8 @@ impl Checker<'_> {
         for (item, span) in self.each_item() {
             if let ItemKind::Suite(suite) = item {
                 let resolved = self.suite(suite, span);
-                let new = Self::declare(&mut self.issues, &mut self.suites, Noun::Suite, &suite.name).is_some();
+                let new =
+                    Self::declare(&mut self.issues, &mut self.suites, Noun::Suite, &suite.name).is_some();
                 self.s.suites.extend(resolved.filter(|_| new));
             }
         }
@@ -58,7 +61,7 @@ impl Checker<'_> {
                 Method::Agents { players, choose: said.choose, explore }
             }
             SyntaxMethod::Search(_) => {
-                if !suite.members.iter().any(|m| is_goal(m)) {
+                if !suite.members.iter().any(is_goal) {
                     let message = format!("the suite `{}` has nothing to reach", suite.name.text);
                     self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
                 }
@@ -207,7 +210,8 @@ impl Checker<'_> {
         };
         let params = self.belief_params(id, belief_id);
         if let Some(param) = params.iter().find(|p| !p.ty.is_finite()) {
-            let message = format!("`{}` cannot be chosen: `{}` has infinitely many values", belief.text, param.name);
+            let message =
+                format!("`{}` cannot be chosen: `{}` has infinitely many values", belief.text, param.name);
             self.report(bad_suite(belief.span, message, "give the parameter the type `bool` or a range"));
         }
         let how = match per {

@@ -4,7 +4,10 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, SystemMemberKind as Member};
 
 use super::Checker;
-use crate::{ActorId, Role, System, report::{names, roles}};
+use crate::{
+    ActorId, Role, System,
+    report::{names, roles},
+};
 
 impl Checker<'_> {
     pub(super) fn systems(&mut self) {
@@ -37,7 +40,11 @@ impl Checker<'_> {
                     runs = true;
                     resolved.run.clone_from(&text.text);
                     if text.text.trim().is_empty() {
-                        self.report(names::missing(text.span, "the command is empty", "write `run \"python3 robot.py\"`"));
+                        self.report(names::missing(
+                            text.span,
+                            "the command is empty",
+                            "write `run \"python3 robot.py\"`",
+                        ));
                     }
                 }
                 Member::Coverage(files) => resolved.coverage.extend(files.iter().map(|f| f.text.clone())),

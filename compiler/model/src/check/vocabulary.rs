@@ -78,7 +78,13 @@ impl<'a> Checker<'a> {
         let by = self.actor(&stimulus.by);
         if let Some(actor) = by.filter(|a| self.role_of(*a) == Role::System) {
             let issue = roles::stimulus_by_system(self.actor_name(actor), stimulus.by.span);
-            let near: Vec<&str> = self.s.actors.iter().filter(|a| a.role == Role::Environment).map(|a| a.name.as_str()).collect();
+            let near: Vec<&str> = self
+                .s
+                .actors
+                .iter()
+                .filter(|a| a.role == Role::Environment)
+                .map(|a| a.name.as_str())
+                .collect();
             let issue = match near.as_slice() {
                 [] => issue,
                 _ => issue.help(format!("a stimulus is done by the environment: `{}`", near.join("`, `"))),

@@ -1,7 +1,9 @@
 //! The world: bodies, joints, arms, grippers, signals and rules.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member};
+use hrdsl_syntax::ast::{
+    self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member,
+};
 
 use super::{Checker, Env, world_parts::Placed};
 use crate::{
@@ -46,8 +48,13 @@ impl<'a> Checker<'a> {
         });
         let placed = self.flatten(members, "", Frame::default(), 0);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &Placed<'a>); 5] =
-            [Self::settings_and_bodies, Self::joints_and_grippers, Self::arms_and_currents, Self::signals, Self::rules];
+        let passes: [fn(&mut Self, &Placed<'a>); 5] = [
+            Self::settings_and_bodies,
+            Self::joints_and_grippers,
+            Self::arms_and_currents,
+            Self::signals,
+            Self::rules,
+        ];
         for pass in passes {
             placed.iter().for_each(|p| pass(self, p));
         }
@@ -310,7 +317,11 @@ impl<'a> Checker<'a> {
         for (pair, name) in joints.windows(2).zip(&names[1..]) {
             if pair[0].1 != pair[1].0 {
                 let message = format!("the joint `{}` does not follow the one before it", name.text);
-                self.report(bad_world(name.span, message, "name the joints in order, from the base to the tip"));
+                self.report(bad_world(
+                    name.span,
+                    message,
+                    "name the joints in order, from the base to the tip",
+                ));
             }
         }
         if joints.last().is_some_and(|last| last.1 != tip_id) {

@@ -17,7 +17,8 @@ pub(crate) fn second_initial(location: &str, span: Span, first: Span) -> Diagnos
 
 /// HR0502
 pub(crate) fn clock_misused(clock: &str, span: Span) -> Diagnostic {
-    let message = format!("the clock `{clock}` can only be compared with a constant, as a part of a conjunction");
+    let message =
+        format!("the clock `{clock}` can only be compared with a constant, as a part of a conjunction");
     Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
         .help(format!("write a bound such as `{clock} >= 3 s && …`; for an alternative, use two edges"))
 }

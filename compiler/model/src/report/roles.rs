@@ -6,19 +6,28 @@ use crate::noun::Noun;
 
 /// HR0301: a stimulus of the system.
 pub(crate) fn stimulus_by_system(actor: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::WRONG_ROLE, span, format!("`{actor}` is the system: it does not stimulate itself"))
-        .help("a stimulus is done by an actor with the role `environment`")
+    Diagnostic::error(
+        Code::WRONG_ROLE,
+        span,
+        format!("`{actor}` is the system: it does not stimulate itself"),
+    )
+    .help("a stimulus is done by an actor with the role `environment`")
 }
 
 /// HR0301: code under test for an actor of the environment.
 pub(crate) fn system_plays_environment(actor: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::WRONG_ROLE, span, format!("`{actor}` is environment: no code under test plays it"))
-        .help(format!("declare `actor {actor} : system`, or name an actor with that role"))
+    Diagnostic::error(
+        Code::WRONG_ROLE,
+        span,
+        format!("`{actor}` is environment: no code under test plays it"),
+    )
+    .help(format!("declare `actor {actor} : system`, or name an actor with that role"))
 }
 
 /// HR0301: a test or a random suite would do what the system does.
 pub(crate) fn test_acts_for_system(event: &str, actor: &str, span: Span) -> Diagnostic {
-    let message = format!("`{event}` is made by `{actor}`, the system: a test does only what the environment does");
+    let message =
+        format!("`{event}` is made by `{actor}`, the system: a test does only what the environment does");
     Diagnostic::error(Code::WRONG_ROLE, span, message).help(format!("to wait for it, write `await {event}`"))
 }
 

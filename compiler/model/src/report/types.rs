@@ -2,7 +2,9 @@
 
 use hrdsl_source::{Code, Diagnostic, Span};
 
-use crate::{Dim, Kind, Param, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError};
+use crate::{
+    Dim, Kind, Param, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
+};
 
 /// HR0202
 pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
@@ -25,8 +27,11 @@ pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) 
 
 /// HR0203: a number without the unit that the place needs.
 pub(crate) fn bare_number(dim: Dim, value: Option<Value>, span: Span) -> Diagnostic {
-    let error =
-        Diagnostic::error(Code::UNIT_MISMATCH, span, format!("{dim} needs a unit, but this is a bare number"));
+    let error = Diagnostic::error(
+        Code::UNIT_MISMATCH,
+        span,
+        format!("{dim} needs a unit, but this is a bare number"),
+    );
     match (value, dim.symbol()) {
         (Some(value), Some(unit)) => error.help(format!("write `{value} {unit}`")),
         (None, Some(unit)) => error.help(format!("give it the unit `{unit}`")),
@@ -112,6 +117,9 @@ pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span
     Diagnostic::error(
         Code::ARITY,
         span,
-        format!("the {noun} `{name}` has {want} argument{s}, but {got} {} given", if got == 1 { "is" } else { "are" }),
+        format!(
+            "the {noun} `{name}` has {want} argument{s}, but {got} {} given",
+            if got == 1 { "is" } else { "are" }
+        ),
     )
 }

@@ -1,0 +1,206 @@
+//! What small texts become, one snapshot for each construct: lists with the node's sort first, without spans.
+
+use hrdsl_source::FileId;
+use hrdsl_syntax::parse;
+use serde_json::Value;
+
+/// The tree of a text that must be without fault; an item per line.
+fn tree(text: &str) -> String {
+    let (file, diagnostics) = parse(FileId(0), text);
+    assert!(diagnostics.is_empty(), "{text}\n{diagnostics:#?}");
+    let scenario = file.scenario.map(|s| format!("scenario {}\n", s.text)).unwrap_or_default();
+    let items = file.items.iter().map(|item| {
+        let doc = if item.doc.is_empty() { String::new() } else { format!("{:?} ", item.doc) };
+        format!("{doc}{}\n", show(&serde_json::to_value(&item.kind).expect("trees are plain data")))
+    });
+    scenario + &items.collect::<String>()
+}
+
+fn show(value: &Value) -> String {
+    match value {
+        Value::Null => "-".to_owned(),
+        Value::String(s) => s.clone(),
+        Value::Bool(_) | Value::Number(_) => value.to_string(),
+        Value::Array(list) => format!("[{}]", list.iter().map(show).collect::<Vec<_>>().join(" ")),
+        Value::Object(map) => {
+            let named: Vec<_> = map.iter().filter(|(key, _)| *key != "span").collect();
+            match named.as_slice() {
+                [(key, text)] if *key == "text" || *key == "kind" => show(text),
+                [(key, Value::Array(names))] if *key == "names" => names.iter().map(show).collect::<Vec<_>>().join("."),
+                [(key, inner)] => format!("({key} {})", show(inner)),
+                several => {
+                    let parts = several.iter().filter(|(key, value)| *key != "doc" || *value != "");
+                    let parts: Vec<_> = parts.map(|(key, value)| format!("{key}={}", show(value))).collect();
+                    format!("{{{}}}", parts.join(" "))
+                }
+            }
+        }
+    }
+}
+
+macro_rules! trees {
+    ($($name:ident $text:literal)*) => {$(
+        #[test]
+        fn $name() {
+            insta::assert_snapshot!(tree($text));
+        }
+    )*};
+}
+
+trees! {
+    vocabulary r#"
+/// Dropped: a file has no doc comment.
+scenario s
+use std.robots.bert2
+actor person : environment
+actor robot
+  : system
+/// In metres.
+/// Two lines.
+const REACH = 4 + 2 * 10 cm
+event plain from a
+event full(gaze: bool, leg: 0..LEGS - 1,) from a to b, c; event third() from a
+"#
+    expressions r#"
+const a = 1 + 2 * 3 - -4 % 5
+const b = not x && y or z == 1 && !w
+const c = (1, -2.5, 3e)
+const d = 50 %
+const e = 7 % 2 + 10 m/s - 5cm
+const f = if a < b { 1 } else { if c { 2 } else { 3 } }
+const g = f(x, _, a.b.c) + abs(-(y))
+const h = !!true || false and not not x
+const i = 1.5e3 + 0.25 rad/s / 2
+const j = a.system.part * (1) >= x.y
+"#
+    stimulus r#"
+/// The person asks.
+stimulus ask(ok: bool, n: 0..3) by person {
+  sample offset in if ok { 10 cm .. 20 cm } else { if n > 1 { 1 m .. 2 m } else { 3 m .. 4 m } }
+  sample dy in -10 cm .. if ok { 1 cm } else { 2 cm }
+  emit leg_request emit decided(true); hold 5 s
+  person.hand.move_to(leg + (dx, dy, dz), 800 ms)
+  if ok { person.grasp.grasp() } else { hold 1 s; if n > 2 { emit x } }
+  hold.sample.emit()
+}
+stimulus nothing() by person { }
+"#
+    agent r#"
+agent Human plays person {
+  /// Chosen.
+  belief wants(legs: 0..LEGS)
+  belief asked(legs: 0..LEGS) = asked(0), asked(1); belief away goal !table
+  plan +!table when asked(N) && N < 4 { ask; !a; !!b(1); ?c(X); +d; -e(_); -+f(N + 1); }
+  plan @again -!leg(_) { await released | discarded(true) within 120 s; wait 10 s; await x }
+  plan +b { }
+  plan -b { }
+  plan +?b(X) when if X { true } else { false } { leave }
+  plan on look(G) { reach; hold(1) }
+}
+"#
+    automaton r#"
+var away: bool = false
+automaton P plays person {
+  clock x, y
+  var left: 0..LEGS = 0; var g: bool
+  init committed location start
+  urgent location mid { invariant x <= 3 s && y < 2 s; }
+  location idle { }
+  start -> mid
+  /// Three parts, in any order.
+  mid -> idle on e(p) when x >= 3 s && left > 0 select n: 0..4, b: bool do left = n; x = 0; ask(b);
+  idle -> mid do left -= 1; left += 2 idle -> idle when n == 4 idle -> start do go; ; location last
+}
+network table = P | Robot
+"#
+    requirements r#"
+require R1 functional "in time" after decided(_): (released or discarded) within DEADLINE
+require R2 functional sensed(true, true) causes released or discarded
+require R3 safety (a or b(_)) forbids c until (d or e)
+require R4 safety a or b causes c within 10 s
+require R5 safety "x" never closing while distance(p.hand, r.palm) < 5 cm
+require R6 safety never (a or b)
+require R7 safety globally speed(arm) < 0.25 rad/s
+assume at most 4 leg_request within 300 s
+assume at most LEGS (a or b(1))
+assume at most 2 reach or c within 1 s
+"#
+    coverage r#"
+cover legs = count(leg_request) bins none = 0, few = 1..3, one = 1, four = 4..
+cover both = count(a or decided(true)) bins no = 0
+cross c = legs * both {
+  bin "four \"legs\"" when legs.four && not both.no
+  ignore when legs.none
+}
+"#
+    suites r#"
+suite s by agents Human, Robot {
+  choose one wants of Human choose any shows of Human per leg
+  explore pairwise tests 160 horizon 300 s; patience 60 s
+}
+suite t by search of table { reach each bin of c; reach each location reach each edge }
+suite r by random { stimuli ask, look await offered | gone length 5..20 pause 0 s .. 10 s tests 3 }
+"#
+    tests r#"
+test bdi_tests.t017 { seed 17 method agents because "wants(2)" predicts "a, b\n\\" look(true) with offset = 15 cm, d = -1 cm; await released | discarded within 60 s; wait 10 s }
+test a.b {
+  seed 1
+  ask
+  ask look(true)
+  go with n = 3 ask()
+}
+"#
+    world r#"
+part p {
+  /// A palm.
+  body palm: dynamic box(4 cm, 8 cm, 8 cm) at (0 m, 0 m, 0 m) graspable mass 0.4 kg ghost rotated (0 deg, 0 deg, 1 deg)
+  joint j: torso -> palm at (0 m, 0 m, 0 m) axis (0, 0, 1) limits -60 deg .. 60 deg
+  arm a: j, k tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s
+  gripper g: palm tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms
+}
+world {
+  step 10 ms sample 50 ms gravity (0, 0, -9.81)
+  part robot = p at (0 m, 0 m, 0 m) rotated (0 deg, 0 deg, 90 deg)
+  current leg in leg1, p.leg2 by robot.g
+  signal gaze: bool to robot, person = abs(x) <= 20 cm
+    && visible(a, b)
+  on sense when range(a.b, c.d) < 2 m emit sensed(gaze)
+  on close robot.g emit closing on open robot.g emit opening
+  on close emit closed
+  on open(x) when x emit f
+}
+system robot { run "python3 robot.py" coverage "a.py", "b.py" limit 300 s budget 10 s }
+"#
+}
+
+/// Spans of names, units and nodes are those of the text.
+#[test]
+fn spans() {
+    let text = "const SPEED = (0.25 rad/s) + 3 % \nrequire R safety never a(1) or b while x.y";
+    let (file, _) = parse(FileId(0), text);
+    let mut spans = Vec::new();
+    collect(&serde_json::to_value(&file).expect("trees are plain data"), text, &mut spans);
+    insta::assert_snapshot!(spans.join("\n"));
+}
+
+fn collect(value: &Value, text: &str, spans: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => {
+            if let Some(span) = map.get("span") {
+                let at = |key: &str| span[key].as_u64().and_then(|n| usize::try_from(n).ok()).expect("a number");
+                spans.push(format!("[{}]", &text[at("start")..at("end")]));
+            }
+            map.values().for_each(|v| collect(v, text, spans));
+        }
+        Value::Array(list) => list.iter().for_each(|v| collect(v, text, spans)),
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+    }
+}
+
+#[test]
+fn the_reference_scenario_is_read_whole() {
+    let (file, diagnostics) = parse(FileId(0), include_str!("../../../examples/handover/scenario.hri"));
+    assert!(diagnostics.is_empty(), "{diagnostics:#?}");
+    assert_eq!(file.scenario.map(|s| s.text).as_deref(), Some("handover"));
+    assert!(file.items.len() > 40);
+}

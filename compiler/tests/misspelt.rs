@@ -1,0 +1,210 @@
+//! No misspelt name goes unnoticed: every name of the reference scenario, at every place, is misspelt in two ways, and each
+//! time the compiler must point at the very place and offer the right name.
+
+use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_source::Diagnostic;
+use hrdsl_syntax::token::KEYWORDS;
+
+const SCENARIO: &str = include_str!("../../examples/handover/scenario.hri");
+
+/// What a name is where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// The name is looked up: the error is here.
+    Use,
+    /// The name is given here: the errors are where it is used, and offer the new spelling.
+    Declaration,
+    /// The name is given here and used nowhere: there is nothing wrong with any spelling.
+    Unused,
+    /// A plan's variable where it is matched: another spelling is another variable, which may be meant.
+    Matched,
+}
+
+#[derive(Clone, Debug)]
+struct Occurrence {
+    text: String,
+    at: usize,
+    place: Place,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Token {
+    text: String,
+    at: usize,
+    name: bool,
+}
+
+/// Names, units and punctuation; no comments, strings or numbers but as `0`.
+fn tokens(text: &str) -> Vec<Token> {
+    let bytes = text.as_bytes();
+    let mut tokens: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < bytes.len() {
+        let rest = &text[i..];
+        let run = |f: fn(char) -> bool| rest.find(|c: char| !f(c)).unwrap_or(rest.len());
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        let (length, kept, name) = if rest.starts_with("//") {
+            (run(|c| c != '\n'), None, false)
+        } else if rest.starts_with('"') {
+            (rest[1..].find('"').unwrap() + 2, Some("\"".to_owned()), false)
+        } else if bytes[i].is_ascii_digit() {
+            let mut n = run(|c| c.is_ascii_digit() || c == '.');
+            // `0..4` is not one number
+            n = rest[..n].find("..").unwrap_or(n);
+            (n, Some("0".to_owned()), false)
+        } else if bytes[i].is_ascii_alphabetic() || bytes[i] == b'_' {
+            let mut n = run(is_name);
+            let unit = tokens.last().is_some_and(|t| t.text == "0") && rest[n..].starts_with("/s");
+            n += if unit { 2 } else { 0 };
+            (n, Some(rest[..n].to_owned()), true)
+        } else if bytes[i].is_ascii_whitespace() {
+            (1, None, false)
+        } else {
+            let n = if rest.starts_with("->") { 2 } else { rest.chars().next().unwrap().len_utf8() };
+            (n, Some(rest[..n].to_owned()), false)
+        };
+        tokens.extend(kept.map(|text| Token { text, at: i, name }));
+        i += length;
+    }
+    tokens
+}
+
+fn is_keyword(word: &str) -> bool {
+    KEYWORDS.iter().any(|k| k.word == word)
+}
+
+/// Words that name something though they are keywords elsewhere.
+fn is_name(tokens: &[Token], i: usize) -> bool {
+    let word = tokens[i].text.as_str();
+    if !tokens[i].name || word == "_" {
+        return false;
+    }
+    if !is_keyword(word) {
+        return true;
+    }
+    let (before, after) = (tokens[i - 1].text.as_str(), tokens[i + 1].text.as_str());
+    let called = after == "(" && !["at", "count", "tool", "or", "not", "and"].contains(&word);
+    let hard = ["or", "not", "and", "true", "false", "if", "in", "by", "on", "do", "when", "to", "from"];
+    let hard = hard.contains(&word) || ["system", "within", "else", "emit", "await"].contains(&word);
+    !hard
+        && (called
+            || ["->", "=", ".", ":", ",", ")"].contains(&after)
+            || [".", "->", "location", "stimulus"].contains(&before))
+}
+
+/// What declares a name by standing before it.
+const DECLARING: [&str; 21] = [
+    "actor", "const", "event", "stimulus", "agent", "automaton", "belief", "clock", "var", "location", "network",
+    "cover", "cross", "body", "current", "signal", "sample", "select", "scenario", "require", "suite",
+];
+
+fn occurrences(text: &str) -> Vec<Occurrence> {
+    let tokens = tokens(text);
+    let mut found = Vec::new();
+    let (mut section, mut in_body, mut on_args, mut depth) = (String::new(), false, false, 0usize);
+    for i in 0..tokens.len() {
+        let word = tokens[i].text.as_str();
+        let before = i.checked_sub(1).map_or("", |i| tokens[i].text.as_str());
+        let after = tokens.get(i + 1).map_or("", |t| t.text.as_str());
+        match word {
+            "{" => depth += 1,
+            "}" => depth -= 1,
+            _ => {}
+        }
+        let heads = ["agent", "automaton", "cover", "world", "suite", "event", "stimulus", "require", "cross"];
+        if depth == 0 && (heads.contains(&word) || word == "actor" || word == "var") {
+            word.clone_into(&mut section);
+        }
+        in_body = section == "agent" && depth == 2 && (in_body || word == "{");
+        on_args = section == "automaton" && (on_args || before == "on") && word != ")" && !["when", "do"].contains(&word);
+        if !is_name(&tokens, i) {
+            continue;
+        }
+        let variable = word.starts_with(char::is_uppercase) && section == "agent" && word != "LEGS";
+        let of_part = before == "part" || (after == "=" && section == "cover");
+        let unit = before == "0";
+        let place = if ["scenario", "require", "suite"].contains(&before) || word == "stand" {
+            Place::Unused
+        } else if unit {
+            Place::Use
+        } else if DECLARING.contains(&before) || of_part {
+            Place::Declaration
+        } else if after == ":" && before != "." {
+            // `leg` is what `choose … per leg` names; other parameters are known by their place.
+            let named = section == "stimulus" || section == "automaton" || word == "grip";
+            if named { Place::Declaration } else { Place::Unused }
+        } else if variable && !in_body && before != "<" && after != "<" && word != "Human" && word != "Sensors" {
+            Place::Matched
+        } else if on_args && before != "on" {
+            Place::Declaration
+        } else {
+            Place::Use
+        };
+        found.push(Occurrence { text: word.to_owned(), at: tokens[i].at, place });
+    }
+    found
+}
+
+/// One letter too many, and two letters swapped.
+fn misspellings(name: &str) -> Vec<String> {
+    let mut all = vec![format!("{name}x")];
+    let letters: Vec<char> = name.chars().collect();
+    let pairs = (0..letters.len().saturating_sub(1)).rev();
+    let differ = pairs.filter(|i| letters[*i] != letters[i + 1] && letters[*i] != '/' && letters[i + 1] != '/');
+    if let Some(i) = differ.min_by_key(|i| i.abs_diff(letters.len() / 2)) {
+        let mut swapped = letters.clone();
+        swapped.swap(i, i + 1);
+        let swapped: String = swapped.into_iter().collect();
+        if !is_keyword(&swapped) && !swapped.starts_with(|c: char| c.is_ascii_digit()) {
+            all.push(swapped);
+        }
+    }
+    all
+}
+
+fn compiled(text: &str) -> Compilation {
+    compile(Input { name: "scenario.hri", text }, &[])
+}
+
+fn offers(d: &Diagnostic, name: &str) -> bool {
+    let word = |c: char| c.is_alphanumeric() || c == '_' || c == '/';
+    d.is_error() && d.help.as_deref().is_some_and(|h| h.split(|c| !word(c)).any(|w| w == name))
+}
+
+/// What is wrong with the compiler's answer to a misspelling, if anything.
+fn fault(o: &Occurrence, wrong: &str) -> Option<String> {
+    let text = format!("{}{wrong}{}", &SCENARIO[..o.at], &SCENARIO[o.at + o.text.len()..]);
+    let c = compiled(&text);
+    let (start, end) = (o.at, o.at + wrong.len());
+    let covers = |d: &Diagnostic| {
+        let span = d.span();
+        span.file.0 == 0 && span.range().start <= start && end <= span.range().end
+    };
+    let tight = |d: &Diagnostic| d.span().range().len() <= wrong.len() + "std.robots.".len();
+    let right = match o.place {
+        Place::Use => c.diagnostics.iter().any(|d| covers(d) && tight(d) && offers(d, &o.text)),
+        Place::Declaration => c.diagnostics.iter().any(|d| !covers(d) && offers(d, wrong)),
+        Place::Unused => c.diagnostics.is_empty(),
+        Place::Matched => c.diagnostics.iter().all(|d| offers(d, wrong)),
+    };
+    (!right).then(|| {
+        let place = c.files.place(hrdsl_source::Span::new(hrdsl_source::FileId(0), start, end));
+        let said: Vec<String> = c
+            .diagnostics
+            .iter()
+            .map(|d| format!("\n    {} {}: {} ({})", d.code, c.files.place(d.span()), d.message, d.help.as_deref().unwrap_or("-")))
+            .collect();
+        format!("{place}: {:?} `{}` as `{wrong}`:{}\n", o.place, o.text, said.concat())
+    })
+}
+
+#[test]
+fn every_misspelt_name_is_found_where_it_stands() {
+    let all = occurrences(SCENARIO);
+    let uses = all.iter().filter(|o| o.place == Place::Use).count();
+    let declared = all.iter().filter(|o| o.place == Place::Declaration).count();
+    assert!(uses > 700 && declared > 100, "{uses} uses, {declared} declarations: the test looks at too little");
+    let faults: Vec<String> =
+        all.iter().flat_map(|o| misspellings(&o.text).into_iter().filter_map(|wrong| fault(o, &wrong))).collect();
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.concat());
+}
