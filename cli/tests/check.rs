@@ -48,7 +48,6 @@ fn misspelt_names_are_found_and_mended() {
     let text = fs::read_to_string(handover()).unwrap();
     let text = text
         .replace("after decided(_)", "after decide(_)")
-        .replace("hold 5 s }", "hold 5 s }")
         .replace("-+asked(N + 1)", "-+aksed(N + 1)")
         .replace("agent Sensors plays sensors", "agent Sensors plays sensor")
         .replace("DEADLINE = 10 s ", "DEADLINE = 10 sec ");

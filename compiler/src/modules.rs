@@ -33,11 +33,15 @@ fn uses(file: &ast::File) -> Vec<ast::Path> {
     file.items.iter().filter_map(path).collect()
 }
 
-/// HR0104
+/// HR0104, at the first name that differs from those of the nearest module.
 fn unknown(name: &str, path: &ast::Path) -> Diagnostic {
-    let error = Diagnostic::error(Code::UNKNOWN_MODULE, path.span, format!("no module is called `{name}`"));
     let names: Vec<&str> = hrdsl_stdlib::MODULES.iter().map(|m| m.0).collect();
-    match hrdsl_model::nearest(name, names.iter().copied()) {
+    let near = hrdsl_model::nearest(name, names.iter().copied());
+    let parts = near.unwrap_or_default().split('.').map(Some).chain(std::iter::repeat(None));
+    let wrong = path.names.iter().zip(parts).find(|(n, part)| Some(n.text.as_str()) != *part);
+    let span = if near.is_some() { wrong.map_or(path.span, |(n, _)| n.span) } else { path.span };
+    let error = Diagnostic::error(Code::UNKNOWN_MODULE, span, format!("no module is called `{name}`"));
+    match near {
         Some(near) => error.help(format!("did you mean `{near}`?")),
         None => error.help(format!("the modules are: `{}`", names.join("`, `"))),
     }

@@ -22,3 +22,30 @@ fn it_compiles_without_a_word() {
     assert_eq!(listing(&c), "");
     assert!(c.program.is_some());
 }
+
+#[test]
+fn its_program_means_what_it_says() {
+    let p = compiled(SCENARIO).program.unwrap();
+    let names = |signals: &[hrdsl_ir::world::Signal], recorded: bool| -> Vec<String> {
+        signals.iter().filter(|s| s.recorded == recorded).map(|s| s.name.clone()).collect()
+    };
+    assert_eq!(names(&p.signals, false), ["gaze", "pressure", "location", "range(person.head, robot.torso)"]);
+    assert!(names(&p.signals, true).iter().any(|n| n == "joint_speed(robot.arm)"));
+    let world = p.world.as_ref().unwrap();
+    let graspable = |g: &hrdsl_ir::world::Gripper| g.holds.len();
+    assert_eq!(world.grippers.iter().map(graspable).collect::<Vec<_>>(), [4, 4]);
+    // Asking is a stimulus and the event that it emits: two edges with a committed location between them.
+    let person = p.automata.iter().find(|a| a.name == "Person").unwrap();
+    let asks = person.locations.iter().position(|l| l.name == "idle.asked~1").unwrap();
+    let sent = |e: &&hrdsl_ir::ta::Edge| match &e.sync {
+        hrdsl_ir::ta::Sync::Send { event, .. } => p.event(*event).name.clone(),
+        hrdsl_ir::ta::Sync::Internal | hrdsl_ir::ta::Sync::Receive { .. } => String::new(),
+    };
+    let into = person.edges.iter().find(|e| usize::from(e.to.0) == asks).unwrap();
+    let out = person.edges.iter().find(|e| usize::from(e.from.0) == asks).unwrap();
+    assert_eq!((sent(&into), sent(&out)), ("ask_leg".to_owned(), "leg_request".to_owned()));
+    assert_eq!(into.updates.len(), 2);
+    let labels: Vec<&str> = p.agents[0].plans.iter().map(|p| p.label.as_str()).collect();
+    assert_eq!(labels[..3], ["table#1", "table#2", "reach_out#1"]);
+    assert_eq!(p.coverage.crosses[0].bins.len(), 14);
+}

@@ -59,7 +59,8 @@ impl Campaign<'_> {
     /// # Errors
     /// Only if the scenario has no system under test; what befalls a test is its result.
     pub fn run(&self, tests: &[Test], on_done: impl Fn(Done<'_>) + Sync) -> Result<Vec<TestResult>, String> {
-        let system = self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
+        let system =
+            self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
         let next = AtomicUsize::new(0);
         let results: Mutex<Vec<Option<TestResult>>> = Mutex::new(vec![None; tests.len()]);
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -203,7 +204,9 @@ fn failure(program: &Program, trace: &Trace, verdict: &Verdict) -> Option<Failur
     let violation = verdict.first_failure.as_ref()?;
     let step = |index: &usize| {
         let step = trace.steps.get(*index)?;
-        let text = print::line(program, step).trim().to_owned();
+        let line = print::line(program, step);
+        let text = line.split_once(" s  ").map_or(line.as_str(), |(_, what)| what);
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         Some(WitnessStep { step: *index, time: results::in_seconds(step.time), text })
     };
     let mut witness: Vec<WitnessStep> = violation.witness.iter().filter_map(step).collect();

@@ -83,7 +83,7 @@ pub struct SuiteInfo {
 /// A cross-product bin.
 #[derive(Clone, Debug, Serialize)]
 pub struct BinResult {
-    /// `human_robot."4 legs, bored"`
+    /// `human_robot.4 legs, bored`
     pub name: String,
     pub cross: String,
     pub bin: String,

@@ -102,7 +102,8 @@ fn accumulate(tests: &[&TestResult]) -> (Ratios, Vec<f64>) {
         ways.extend(file.branches.iter().map(|b| (file.file.as_str(), *b)));
     }
     let mut accumulated = Vec::new();
-    let mut ratios = Ratios { lines_total: count(all.len()), branches_total: count(ways.len()), ..Ratios::default() };
+    let mut ratios =
+        Ratios { lines_total: count(all.len()), branches_total: count(ways.len()), ..Ratios::default() };
     for test in tests {
         for file in &test.files {
             hit.extend(file.executed.iter().map(|l| (file.file.as_str(), *l)));
@@ -152,10 +153,7 @@ fn bins(
 fn unreachable(generated: &[Generated], bin: &str) -> Option<String> {
     let name = format!("bin {bin}");
     let goals = generated.iter().flat_map(|g| &g.goals);
-    goals
-        .filter(|g| g.goal == name && g.status == GoalStatus::Unreachable)
-        .map(|g| g.reason.clone())
-        .next()
+    goals.filter(|g| g.goal == name && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone()).next()
 }
 
 fn code(tests: &[TestResult], sources: &BTreeMap<String, String>) -> Vec<CodeFile> {

@@ -1,8 +1,6 @@
 //! The specification is executed: every block of code on its pages compiles, or fails as it says, and every link leads
 //! somewhere.
 
-#![allow(clippy::disallowed_methods, reason = "the tests of the documents read them")]
-
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -22,8 +22,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     suite: Vec<String>,
     /// How many concrete tests of each suite, instead of what the suite says.
-    #[arg(short = 'n', long = "tests", value_name = "N")]
-    tests: Option<u32>,
+    #[arg(short = 'n', long, value_name = "N")]
+    count: Option<u32>,
     /// Everything random comes from this.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -39,7 +39,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let has_errors = input::report(&compilation);
     let Some(program) = compilation.program.as_ref().filter(|_| !has_errors) else { return Ok(Exit::Errors) };
     for suite in chosen(program, &args.suite)? {
-        let generated = generate(program, suite, args.tests, args.seed)?;
+        let generated = generate(program, suite, args.count, args.seed)?;
         let path = save(&args.out, program, &generated)?;
         print!("{}", describe(&generated));
         println!("  written to {}", path.display());

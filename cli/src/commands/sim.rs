@@ -40,7 +40,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     suite: Vec<String>,
     /// How many concrete tests of each suite, instead of what the suite says.
-    #[arg(short = 'n', long = "count", value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N")]
     count: Option<u32>,
     /// Tests that run at once; by default as many as there are cores.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

@@ -1,5 +1,6 @@
 //! Running the real binary.
 #![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::disallowed_methods, reason = "tests start the binary")]
 
 use std::{
     path::{Path, PathBuf},

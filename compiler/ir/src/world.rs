@@ -155,7 +155,7 @@ pub enum BodyRef {
     Current(CurrentId),
 }
 
-/// `on trigger when guard { emit event(args) }`: what the world, playing environment actors, answers.
+/// `on trigger when guard emit event(args)`: what the world answers as an environment actor, or what it sees the system do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
     pub on: RuleOn,

@@ -1,5 +1,7 @@
 //! The nearest name: which declared name a misspelt one was meant to be.
 
+use std::cmp::Reverse;
+
 /// Costs of the edits. A slip of the keyboard most often swaps two letters; it more often adds or drops one than it exchanges it,
 /// which also decides between `m` and `mm` for `mx`, `ms` and `s` for `sm`.
 const INDEL: usize = 2;
@@ -29,8 +31,8 @@ pub fn distance(a: &str, b: &str) -> usize {
     last[b.len()]
 }
 
-/// The candidate nearest to `name`, if one is near enough to have been meant; the first of equals. A difference of case
-/// alone is always near.
+/// The candidate nearest to `name`, if one is near enough to have been meant; of equals the one that begins alike for
+/// longer, then the first. A difference of case alone is always near.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() * INDEL / 2).max(REPLACE);
     candidates
@@ -38,7 +40,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|c| *c != name)
         .map(|c| (if c.eq_ignore_ascii_case(name) { 1 } else { distance(name, c) }, c))
         .filter(|(d, _)| *d <= limit)
-        .min_by_key(|(d, _)| *d)
+        .min_by_key(|(d, c)| (*d, Reverse(name.chars().zip(c.chars()).take_while(|(a, b)| a == b).count())))
         .map(|(_, c)| c)
 }
 
@@ -52,6 +54,7 @@ mod tests {
         let units = ["s", "ms", "m", "cm", "mm", "min"];
         assert_eq!(nearest("mx", units), Some("m"));
         assert_eq!(nearest("sm", units), Some("ms"));
+        assert_eq!(nearest("dyx", ["dx", "dy"]), Some("dy"));
         assert_eq!(nearest("leg_reqeust", ["leg", "leg_request", "request"]), Some("leg_request"));
         assert_eq!(nearest("legx", ["leg1", "leg2", "leg"]), Some("leg"));
         assert_eq!(nearest("human", ["Human", "humane"]), Some("Human"));

@@ -64,6 +64,7 @@ codes! {
     NOT_PERCEIVED = 303 "an event that its receiver never perceives",
     UNBOUND_VARIABLE = 401 "a variable without a value",
     NO_PLAN = 402 "a goal that no plan achieves",
+    NOT_ADOPTED = 403 "a plan for a goal that nothing adopts",
     NO_INITIAL_LOCATION = 501 "an automaton without exactly one initial location",
     BAD_CLOCK_CONSTRAINT = 502 "a clock used other than in a bound",
     TWO_SENDS = 503 "an edge that sends twice",

@@ -3,9 +3,9 @@
 use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use crate::ast::{
-    AgentMember, AutomatonMember, AutomatonMemberKind, BinaryOp, Bin, Body, Call, CrossMember, Edge, EdgeAction, Expr,
-    ExprKind, ItemKind, Name, Param, Path, Range, Step, StimulusStep, SuiteMember, SystemMember, TestMember, Text,
-    UnaryOp, WorldMember,
+    AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
+    EdgeAction, Expr, ExprKind, ItemKind, Name, Param, Path, Range, Step, StimulusStep, SuiteMember,
+    SystemMember, TestMember, Text, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -215,10 +215,10 @@ impl<'t> Context<'t> {
 
     // ── Nodes whose parts come in any order ──
 
-    pub(crate) fn edge(&mut self, from: Name, to: Name, parts: Vec<Box<EdgePart>>) -> Edge {
+    pub(crate) fn edge(&mut self, from: Name, to: Name, parts: Vec<EdgePart>) -> Edge {
         let mut edge = Edge { from, to, selects: Vec::new(), guard: None, on: None, actions: Vec::new() };
         for part in parts {
-            match *part {
+            match part {
                 EdgePart::Select(mut params) => edge.selects.append(&mut params),
                 EdgePart::When(guard, span) => {
                     self.once(edge.guard.is_none(), "`when`", "an edge", span);
@@ -250,12 +250,12 @@ impl<'t> Context<'t> {
         shape: Name,
         sizes: Vec<Expr>,
         at: Expr,
-        parts: Vec<Box<BodyPart>>,
+        parts: Vec<BodyPart>,
     ) -> Body {
         let (rotated, mass, ghost, graspable) = (None, None, false, false);
         let mut body = Body { name, motion, shape, sizes, at, rotated, mass, ghost, graspable };
         for part in parts {
-            match *part {
+            match part {
                 BodyPart::Rotated(expr, span) => {
                     self.once(body.rotated.is_none(), "`rotated`", "a body", span);
                     body.rotated.get_or_insert(expr);

@@ -26,7 +26,9 @@ pub(crate) fn lex(file: FileId, text: &str) -> Lexed {
     };
     scan.run();
     let Scan { raw, docs, mut diagnostics, .. } = scan;
-    let tokens = Join { file, text, raw: &raw, out: Vec::with_capacity(raw.len()), diagnostics: &mut diagnostics }.run();
+    let tokens =
+        Join { file, text, raw: &raw, out: Vec::with_capacity(raw.len()), diagnostics: &mut diagnostics }
+            .run();
     Lexed { tokens, docs, diagnostics }
 }
 
@@ -134,8 +136,11 @@ impl Scan<'_> {
             c.to_string()
         };
         let span = Span::new(self.file, start, end);
-        let mut diagnostic =
-            Diagnostic::error(Code::BAD_CHARACTER, span, format!("the language does not use the character `{shown}`"));
+        let mut diagnostic = Diagnostic::error(
+            Code::BAD_CHARACTER,
+            span,
+            format!("the language does not use the character `{shown}`"),
+        );
         if let Some(help) = instead_of(c) {
             diagnostic = diagnostic.help(help);
         }
@@ -160,8 +165,12 @@ impl Scan<'_> {
         let word = &self.text[start..end];
         let span = Span::new(self.file, start, end);
         self.diagnostics.push(
-            Diagnostic::error(Code::BAD_CHARACTER, span, format!("`{word}` has letters that a name cannot have"))
-                .help("names are made of the letters a to z and A to Z, digits and `_`"),
+            Diagnostic::error(
+                Code::BAD_CHARACTER,
+                span,
+                format!("`{word}` has letters that a name cannot have"),
+            )
+            .help("names are made of the letters a to z and A to Z, digits and `_`"),
         );
         self.push(Kind::Error, start, end);
         end

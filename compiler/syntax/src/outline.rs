@@ -172,12 +172,9 @@ impl Splitter<'_> {
             Some(next) => next.is_word(),
             None => false,
         };
-        let head = self.current.map(|c| c.head);
         let belongs = match token.kind {
-            Kind::Var => head == Some(Kind::Automaton),
-            Kind::Part => {
-                matches!(head, Some(Kind::World | Kind::Part)) && self.kind(i + 2) != Some(Kind::LBrace)
-            }
+            Kind::Var => self.current.is_some_and(|c| c.sort == Sort::Unread || c.head == Kind::Automaton),
+            Kind::Part => self.kind(i + 2) != Some(Kind::LBrace),
             _ => false,
         };
         token.first && names_follow && !before.continues() && !belongs
@@ -281,10 +278,8 @@ impl Splitter<'_> {
                     self.too_deep(token, &format!("brackets are nested more than {MAX_NESTING} levels deep"));
                 }
             }
-            Kind::RParen => {
-                if self.brackets.last().is_some_and(|b| !b.brace) && self.brackets.len() > 1 {
-                    self.pop(token);
-                }
+            Kind::RParen if self.brackets.len() > 1 && self.brackets.last().is_some_and(|b| !b.brace) => {
+                self.pop(token);
             }
             Kind::RBrace => self.close(token),
             _ => {}
@@ -301,8 +296,8 @@ impl Splitter<'_> {
         }
         self.pop(token);
         self.braces -= 1;
-        let block = self.current.is_some_and(|c| c.sort == Sort::Item);
-        if self.braces == 0 && block && self.has_block() {
+        let block = self.current.is_some_and(|c| c.sort == Sort::Item && c.head.has_block());
+        if self.braces == 0 && block {
             self.finish();
         }
     }
@@ -314,24 +309,6 @@ impl Splitter<'_> {
             outer.child = outer.child.max(height);
         }
         self.limit(token);
-    }
-
-    /// Declarations that end with their closing brace.
-    fn has_block(&self) -> bool {
-        self.current.is_some_and(|c| {
-            matches!(
-                c.head,
-                Kind::Stimulus
-                    | Kind::Agent
-                    | Kind::Automaton
-                    | Kind::Cross
-                    | Kind::Suite
-                    | Kind::Part
-                    | Kind::World
-                    | Kind::System
-                    | Kind::Test
-            )
-        })
     }
 
     /// Puts in the closing braces that are missing before `next`, until `keep` braces are open.

@@ -81,7 +81,11 @@ fn scenario(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut 
     let name = run.get(1).filter(|t| t.kind.is_name());
     if name.is_none() || run.len() > 2 {
         let expected = if name.is_some() { "END" } else { "IDENT" };
-        let fault = Fault { at: if name.is_some() { 2 } else { 1 }, expected: vec![expected.to_owned()] };
+        let fault = Fault {
+            of: "declaration",
+            at: if name.is_some() { 2 } else { 1 },
+            expected: vec![expected.to_owned()],
+        };
         report(cx, &fault, run, tokens.get(chunk.end).copied());
     }
     let Some(name) = name else { return };
@@ -118,9 +122,16 @@ pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) 
     // The token that does not fit is the last that was taken.
     let at = taken.get().saturating_sub(1 + usize::from(start.is_some()));
     let expected = match error {
-        ParseError::UnrecognizedToken { expected, .. } | ParseError::UnrecognizedEof { expected, .. } => expected,
+        ParseError::UnrecognizedToken { expected, .. } | ParseError::UnrecognizedEof { expected, .. } => {
+            expected
+        }
         ParseError::InvalidToken { .. } | ParseError::ExtraToken { .. } => Vec::new(),
         ParseError::User { error } => match error {},
     };
-    Err(Fault { at, expected })
+    let of = match start {
+        None => "declaration",
+        Some(Kind::StartStep | Kind::StartStimulusStep) => "step",
+        Some(_) => "member",
+    };
+    Err(Fault { of, at, expected })
 }

@@ -8,9 +8,9 @@ use std::ops::Range;
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::ast::{
-    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind, Expr, ExprKind,
-    ItemKind, Plan, Step, StepKind, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind, SystemMember,
-    SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
+    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind, Expr,
+    ExprKind, ItemKind, Plan, Step, StepKind, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind,
+    SystemMember, SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
 };
 use crate::context::{Context, Unit};
 use crate::parse::run;
@@ -71,6 +71,9 @@ impl Recovery<'_, '_> {
 
     /// The braces of the declaration's block.
     fn block(&self, range: &Range<usize>) -> Option<(usize, usize)> {
+        if !self.tokens[range.start].kind.has_block() {
+            return None;
+        }
         let open = range.clone().find(|i| self.tokens[*i].kind == Kind::LBrace)?;
         let close = range.end - 1;
         (self.tokens[close].kind == Kind::RBrace && close > open).then_some((open, close))
@@ -123,10 +126,17 @@ impl Recovery<'_, '_> {
         shell
     }
 
-    /// Keeps the name of a constant or a requirement whose rest is broken: it is used elsewhere.
+    /// Keeps what is complete before the fault, and the name of a constant or requirement whose rest is broken: other
+    /// declarations use them.
     fn without_block(&mut self, range: &Range<usize>, fault: &Fault) -> ItemKind {
-        let run_ = &self.tokens[range.clone()];
-        match run_ {
+        if fault.complete()
+            && let Ok(Unit::Item(kind)) =
+                run(self.cx, None, &self.tokens[range.start..range.start + fault.at])
+        {
+            return kind;
+        }
+        let text = &self.tokens[range.clone()];
+        match text {
             [head, name, assign, ..]
                 if head.kind == Kind::Const && name.kind.is_name() && assign.kind == Kind::Assign =>
             {
@@ -141,7 +151,7 @@ impl Recovery<'_, '_> {
                 if fault.at < header {
                     return ItemKind::Error;
                 }
-                let mut shell = run_[..header].to_vec();
+                let mut shell = text[..header].to_vec();
                 let span = self.span(&(range.start + header..range.end));
                 shell.push(Lexeme { end: span.end, ..Lexeme::synthetic(Kind::Error, span.start) });
                 match run(self.cx, None, &shell) {
@@ -168,23 +178,40 @@ impl Recovery<'_, '_> {
                     members.extend(M::of(unit));
                     break;
                 }
-                Err(fault) => {
-                    let stop = at + fault.at;
-                    if stop > at
-                        && fault.complete()
-                        && let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop])
-                    {
-                        members.extend(M::of(unit));
-                        at = stop;
-                        continue;
-                    }
-                    let next = self.resume::<M>(at, stop, block.end);
-                    members.push(self.broken::<M>(at..next, block.end, &fault));
-                    at = next;
-                }
+                Err(fault) => at = self.part::<M>(at, block.end, fault, &mut members),
             }
         }
         members
+    }
+
+    /// Takes the member at `at`, which more text follows, and gives where the next one starts.
+    fn part<M: Member>(&mut self, at: usize, end: usize, mut fault: Fault, members: &mut Vec<M>) -> usize {
+        let stop = at + fault.at;
+        if stop > at && fault.complete() && self.can_start::<M>(stop) {
+            if let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop]) {
+                members.extend(M::of(unit));
+                return stop;
+            }
+        } else if stop > at + 1 && self.tokens[stop - 1].first && M::starts(self.tokens[stop - 1].kind) {
+            // A keyword on a new line was taken for a name that is missing before it, as in `emit` / `hold 5 s`.
+            match run(self.cx, Some(M::START), &self.tokens[at..stop - 1]) {
+                Ok(unit) => {
+                    members.extend(M::of(unit));
+                    return stop - 1;
+                }
+                Err(before) if at + before.at == stop - 1 => fault = before,
+                Err(_) => {}
+            }
+        }
+        let next = self.resume::<M>(at, at + fault.at, end);
+        members.push(self.broken::<M>(at..next, end, &fault));
+        next
+    }
+
+    /// After a complete member: a new one, or what was meant to be one.
+    fn can_start<M: Member>(&self, at: usize) -> bool {
+        self.tokens[at - 1].kind == Kind::Semi
+            || self.tokens.get(at).is_some_and(|t| t.first || t.kind == Kind::Semi || M::starts(t.kind))
     }
 
     /// Where the next member starts after a broken one that starts at `at` and stops to fit at `stop`.
@@ -231,11 +258,11 @@ impl Recovery<'_, '_> {
     fn report_member<M: Member>(&mut self, fault: &Fault, range: &Range<usize>, next: Option<Lexeme>) {
         let said = self.cx.diagnostics.len();
         report(self.cx, fault, &self.tokens[range.clone()], next);
-        let start = self.tokens[range.start];
         let helpless = self.cx.diagnostics.get(said).is_some_and(|d| d.help.is_none());
-        let line = self.tokens[..range.start].iter().rposition(|t| t.first).unwrap_or(0);
-        let acts = self.tokens[line..range.start].iter().any(|t| t.kind == Kind::Do);
-        if M::START == Kind::StartAutomatonMember && acts && fault.at == 0 && !start.first && helpless {
+        let at = (range.start + fault.at).min(range.end);
+        let acts = self.tokens[range.start..at].iter().any(|t| t.kind == Kind::Do);
+        let name = self.tokens.get(at).is_some_and(|t| t.kind.is_name());
+        if M::START == Kind::StartAutomatonMember && acts && name && helpless {
             self.cx.diagnostics[said].help = Some("put `;` between two actions of an edge".to_owned());
         }
     }
@@ -305,7 +332,9 @@ impl Recovery<'_, '_> {
                     let stop = at + fault.at;
                     if stop > at
                         && fault.complete()
-                        && let Ok(Unit::Step(step)) = run(self.cx, Some(Kind::StartStep), &self.tokens[at..stop])
+                        && starts_step(self.tokens[stop.min(end - 1)].kind)
+                        && let Ok(Unit::Step(step)) =
+                            run(self.cx, Some(Kind::StartStep), &self.tokens[at..stop])
                     {
                         steps.push(step);
                         self.missing_semicolon(stop);
@@ -380,7 +409,9 @@ impl Recovery<'_, '_> {
         let second = if both { bodies.pop().unwrap_or_default() } else { Vec::new() };
         let first = bodies.pop().unwrap_or_default();
         match unit {
-            Some(Unit::StimulusStep(StimulusStep { kind: StimulusStepKind::If { condition, .. }, .. })) => {
+            Some(Unit::StimulusStep(StimulusStep {
+                kind: StimulusStepKind::If { condition, .. }, ..
+            })) => {
                 let kind = StimulusStepKind::If { condition, then: first, otherwise: second };
                 let span = self.span(&(range.start..last.1 + 1));
                 Some(Unit::StimulusStep(StimulusStep { kind, span }))
@@ -388,6 +419,21 @@ impl Recovery<'_, '_> {
             _ => None,
         }
     }
+}
+
+/// A token that starts a step of a plan.
+fn starts_step(kind: Kind) -> bool {
+    kind.is_name()
+        || matches!(
+            kind,
+            Kind::Await
+                | Kind::Bang
+                | Kind::BangBang
+                | Kind::Question
+                | Kind::Plus
+                | Kind::Minus
+                | Kind::MinusPlus
+        )
 }
 
 macro_rules! members {

@@ -8,6 +8,8 @@ use crate::token::{Class, KEYWORDS, Kind, Lexeme};
 /// Where a run stopped fitting the grammar.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
+    /// What was being read.
+    pub of: &'static str,
     /// The index of the token; that of the end, if it was the end that did not fit.
     pub at: usize,
     /// The terminals that would have fitted, as the grammar calls them.
@@ -28,13 +30,14 @@ impl Fault {
 /// The diagnostic of a fault in these tokens, which `next` follows; none if the lexer has made it.
 pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], next: Option<Lexeme>) {
     let token = tokens.get(fault.at).copied().or(next);
-    if token.is_some_and(|t| t.kind == Kind::Error) {
+    let before = fault.at.checked_sub(1).and_then(|i| tokens.get(i)).copied();
+    if [token, before].iter().flatten().any(|t| t.kind == Kind::Error) {
         return;
     }
     let end = tokens.last().map_or(0, |t| t.end);
     let span = token.map_or(cx.span(end, end), |t| cx.span_of(t));
     let what = token.map_or("the end of the file".to_owned(), |t| found(t, cx.text));
-    let wanted = describe(&fault.expected);
+    let wanted = describe(fault, token.is_some_and(|t| t.first));
     let message = if wanted.is_empty() {
         format!("{what} does not fit here")
     } else {
@@ -44,8 +47,8 @@ pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], nex
     if let Some(open) = unclosed(fault, tokens) {
         diagnostic = diagnostic.label(cx.span_of(open), "this `(` is not closed");
     }
-    let before = fault.at.checked_sub(1).and_then(|i| tokens.get(i)).copied();
-    if let Some(help) = token.and_then(|t| help(cx, fault, before, t)) {
+    let after = tokens.get(fault.at + 1).copied().or(next);
+    if let Some(help) = token.and_then(|t| help(cx, fault, [before, after], t)) {
         diagnostic = diagnostic.help(help);
     }
     cx.diagnostics.push(diagnostic);
@@ -127,7 +130,8 @@ const GROUPS: &[Group] = &[
         if_none: &["IDENT"],
         names: false,
         covers: &[
-            "choose", "explore", "tests", "horizon", "patience", "reach", "stimuli", "await", "length", "pause",
+            "choose", "explore", "tests", "horizon", "patience", "reach", "stimuli", "await", "length",
+            "pause",
         ],
         says: &["a line such as `choose` or `tests`"],
     },
@@ -139,25 +143,40 @@ const GROUPS: &[Group] = &[
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
     Group {
-        if_all: &["after", "never", "IDENT", "("],
+        if_all: &["after", "never", "ERROR", "("],
         if_none: &["-"],
         names: true,
         covers: &["ERROR", "(", "after", "never", "globally"],
         says: &["a pattern such as `after` or `globally`"],
     },
-    Group { if_all: &["INT", "-", "not"], if_none: &[], names: true, covers: EXPRESSION, says: &["an expression"] },
+    Group {
+        if_all: &["+", "-", "on"],
+        if_none: &["*"],
+        names: false,
+        covers: &["+", "-", "on"],
+        says: &["a trigger such as `+!goal` or `on event`"],
+    },
+    Group {
+        if_all: &["INT", "-", "not"],
+        if_none: &[],
+        names: true,
+        covers: EXPRESSION,
+        says: &["an expression"],
+    },
     Group { if_all: &["INT", "-", "("], if_none: &[], names: true, covers: EXPRESSION, says: &["a value"] },
     Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "("], says: &[] },
 ];
 
-fn describe(expected: &[String]) -> Vec<String> {
-    let mut left: Vec<&str> = expected.iter().map(|e| e.trim_matches('"')).collect();
+/// The words for what would have fitted, where the token that did not is the first of its line or not.
+fn describe(fault: &Fault, first: bool) -> Vec<String> {
+    let mut left: Vec<&str> = fault.expected.iter().map(|e| e.trim_matches('"')).collect();
     let mut said = Vec::new();
     for group in GROUPS {
-        let fits = group.if_all.iter().all(|t| left.contains(t)) && !group.if_none.iter().any(|t| left.contains(t));
+        let fits =
+            group.if_all.iter().all(|t| left.contains(t)) && !group.if_none.iter().any(|t| left.contains(t));
         if fits {
             said.extend(group.says.iter().map(|s| (*s).to_owned()));
-            left.retain(|t| !group.covers.contains(t) && !(group.names && is_name(t)));
+            left.retain(|t| !(group.covers.contains(t) || group.names && is_name(t)));
         }
     }
     if left.contains(&"IDENT") {
@@ -168,7 +187,12 @@ fn describe(expected: &[String]) -> Vec<String> {
         said.push("an operator".to_owned());
         left.retain(|t| !OPERATORS.contains(t));
     }
-    said.extend(left.iter().filter_map(|t| terminal(t)));
+    said.extend(left.iter().filter(|t| **t != "END").filter_map(|t| terminal(t)));
+    // Members may end anywhere: that goes without saying, unless nothing else fits.
+    if left.contains(&"END") && (said.is_empty() || fault.of == "declaration") {
+        said.truncate(4);
+        said.push(if first { format!("a new {}", fault.of) } else { format!("the end of the {}", fault.of) });
+    }
     said
 }
 
@@ -185,8 +209,7 @@ fn terminal(name: &str) -> Option<String> {
         "ORIGIN" => "a name".to_owned(),
         "INT" => "a number".to_owned(),
         "STRING" => "a text in quotes".to_owned(),
-        "END" => "the end of this".to_owned(),
-        "ERROR" | "FLOAT" | "QUANTITY" => return None,
+        "END" | "ERROR" | "FLOAT" | "QUANTITY" => return None,
         start if start.starts_with("START_") => return None,
         other => format!("`{other}`"),
     })
@@ -211,18 +234,37 @@ fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
     None
 }
 
-fn help(cx: &Context<'_>, fault: &Fault, before: Option<Lexeme>, token: Lexeme) -> Option<String> {
+fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lexeme) -> Option<String> {
     let word = cx.text_of(token);
-    if token.kind == Kind::Ident {
+    if token.kind.is_word() {
         let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
         if let Some(near) = nearest(word, keywords) {
             return Some(format!("did you mean `{near}`?"));
         }
     }
-    if matches!(token.kind.class(), Some(Class::Head | Class::Hard)) && fault.has("IDENT") && !fault.has("INT") {
+    let [before, after] = around.map(|t| t.map(|t| t.kind));
+    let named = matches!(
+        after,
+        Some(
+            Kind::Colon
+                | Kind::Assign
+                | Kind::LParen
+                | Kind::RParen
+                | Kind::Comma
+                | Kind::Semi
+                | Kind::Arrow
+                | Kind::FromWord
+                | Kind::Plays
+                | Kind::By
+        )
+    );
+    if matches!(token.kind.class(), Some(Class::Head | Class::Hard))
+        && fault.has("IDENT")
+        && !token.first
+        && named
+    {
         return Some(format!("`{word}` is a keyword and cannot be a name; `{word}_` can"));
     }
-    let before = before.map(|t| t.kind);
     let text = match token.kind {
         Kind::Assign if fault.has("==") => "to compare, write `==`",
         Kind::Eq if fault.has("=") => "to set a value, write `=`",
@@ -232,6 +274,9 @@ fn help(cx: &Context<'_>, fault: &Fault, before: Option<Lexeme>, token: Lexeme) 
         Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
         Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
         Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
+        kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
+            "texts are written between `\"` and `\"`"
+        }
         Kind::Comma if fault.has("from") => "each event has a line of its own, which starts with `event`",
         Kind::If if before == Some(Kind::Else) => "write `else { if … }`",
         Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",

@@ -234,6 +234,22 @@ impl Kind {
         self.class() == Some(Class::Head)
     }
 
+    /// Starts a declaration that ends with its closing brace.
+    pub(crate) fn has_block(self) -> bool {
+        matches!(
+            self,
+            Self::Stimulus
+                | Self::Agent
+                | Self::Automaton
+                | Self::Cross
+                | Self::Suite
+                | Self::Part
+                | Self::World
+                | Self::System
+                | Self::Test
+        )
+    }
+
     /// May be a name somewhere: an identifier or a soft keyword.
     pub(crate) fn is_name(self) -> bool {
         self == Self::Ident || self.class() == Some(Class::Soft)

@@ -26,7 +26,9 @@ fn show(value: &Value) -> String {
             let named: Vec<_> = map.iter().filter(|(key, _)| *key != "span").collect();
             match named.as_slice() {
                 [(key, text)] if *key == "text" || *key == "kind" => show(text),
-                [(key, Value::Array(names))] if *key == "names" => names.iter().map(show).collect::<Vec<_>>().join("."),
+                [(key, Value::Array(names))] if *key == "names" => {
+                    names.iter().map(show).collect::<Vec<_>>().join(".")
+                }
                 [(key, inner)] => format!("({key} {})", show(inner)),
                 several => {
                     let parts = several.iter().filter(|(key, value)| *key != "doc" || *value != "");
@@ -187,7 +189,8 @@ fn collect(value: &Value, text: &str, spans: &mut Vec<String>) {
     match value {
         Value::Object(map) => {
             if let Some(span) = map.get("span") {
-                let at = |key: &str| span[key].as_u64().and_then(|n| usize::try_from(n).ok()).expect("a number");
+                let at =
+                    |key: &str| span[key].as_u64().and_then(|n| usize::try_from(n).ok()).expect("a number");
                 spans.push(format!("[{}]", &text[at("start")..at("end")]));
             }
             map.values().for_each(|v| collect(v, text, spans));

@@ -99,7 +99,7 @@ fn a_test_can_fall_into_several_bins() {
     let covered = collect(vec![ask(0), ask(1), ask(2), ask(3), decided(4, true)]);
     assert_eq!(covered.points, [vec![1, 2], vec![1]]);
     let names = covered.cross_names(&declared());
-    assert_eq!(names, ["human_robot.\"4 legs, ready at least once\"", "human_robot.some"]);
+    assert_eq!(names, ["human_robot.4 legs, ready at least once", "human_robot.some"]);
 }
 
 #[test]
@@ -140,9 +140,9 @@ fn foreign_coverage_is_refused_whole() {
 #[test]
 fn names_of_bins_are_stable() {
     assert_eq!(name::bin("legs", "four"), "legs.four");
-    assert_eq!(name::bin("legs", "4"), "legs.\"4\"");
-    assert_eq!(name::bin("c", "a \"b\"\n\\"), r#"c."a \"b\"\n\\""#);
-    for bad in ["legs", "legs.4", "legs.\"4", "legs.\"a\"b\"", r#"legs."\x""#, r#"legs."\""#, "legs."] {
+    assert_eq!(name::bin("legs", "4 legs, \"ready\""), "legs.4 legs, \"ready\"");
+    assert_eq!(name::bin("c", "a\nb\tc"), "c.a b c");
+    for bad in ["legs", "legs.", ".four", ""] {
         assert_eq!(name::split(bad), None, "{bad}");
     }
 }
@@ -216,10 +216,10 @@ proptest! {
     }
 
     #[test]
-    fn a_bins_name_can_be_read_back(owner in "[a-z_][a-z_.0-9]{0,8}[a-z]", bin in "[ -~\n\"\\\\äλ]{0,12}") {
+    fn a_bins_name_can_be_read_back(owner in "[a-z_][a-z_0-9]{0,8}", bin in "[ -~äλ]{1,12}") {
         let name = name::bin(&owner, &bin);
         prop_assert!(!name.contains('\n'));
-        prop_assert_eq!(name::split(&name), Some((owner.as_str(), bin)));
+        prop_assert_eq!(name::split(&name), Some((owner.as_str(), bin.as_str())));
     }
 
     /// Against all windows of the whole list.

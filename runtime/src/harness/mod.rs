@@ -202,7 +202,8 @@ impl<'p> Harness<'p> {
         act: impl FnOnce(&mut dyn Player, &mut Context<'_>) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let mut out = Vec::new();
-        let mut cx = Context { now: self.now, expire: self.expire, out: &mut out, stage: self.stage.as_mut() };
+        let mut cx =
+            Context { now: self.now, expire: self.expire, out: &mut out, stage: self.stage.as_mut() };
         let result = act(self.players[index].as_mut(), &mut cx);
         for message in out {
             self.accept(Some(index), message)?;

@@ -46,8 +46,14 @@ enum Waits {
     /// Nothing: it is the program's turn.
     No,
     Time(Nanos),
-    Events { events: Vec<EventId>, until: Option<Nanos> },
-    Command { id: CommandId, confirm: Option<Confirm> },
+    Events {
+        events: Vec<EventId>,
+        until: Option<Nanos>,
+    },
+    Command {
+        id: CommandId,
+        confirm: Option<Confirm>,
+    },
     /// It has come to its end.
     Ended,
 }
@@ -176,11 +182,7 @@ impl<'p, 'r> ProgramPlayer<'p, 'r> {
     }
 
     /// The event and its arguments in order, if the program may make it.
-    fn emission(
-        &self,
-        name: &str,
-        args: &BTreeMap<String, Value>,
-    ) -> Result<(EventId, Vec<Value>), Answer> {
+    fn emission(&self, name: &str, args: &BTreeMap<String, Value>) -> Result<(EventId, Vec<Value>), Answer> {
         let own = |e: &&hrdsl_ir::Event| e.from == self.actors[0] && !e.is_stimulus();
         let id = self.program.event_named(name).filter(|id| own(&self.program.event(*id)));
         let Some(id) = id else {

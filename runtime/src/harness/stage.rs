@@ -18,6 +18,8 @@ pub struct Stage {
     /// The signals that are recorded, with what was last recorded of each.
     recorded: Vec<(SignalId, Option<Value>)>,
     sample: Nanos,
+    /// The period in which the signals were last sampled by the clock.
+    sampled: Nanos,
     /// Commands that ended and that their maker has not yet been told of.
     finished: Vec<(CommandId, Result<(), CommandError>)>,
     /// Events set off by commands.
@@ -39,6 +41,7 @@ impl Stage {
             rules: world.rules.clone(),
             recorded,
             sample: world.sample.max(1),
+            sampled: 0,
             finished: Vec::new(),
             answers: Vec::new(),
         }))
@@ -54,7 +57,9 @@ impl Stage {
     pub fn advance(&mut self, to: Nanos, trace: &mut Trace) {
         self.sim.advance(to);
         self.finished.extend(self.sim.finished());
-        if to % self.sample == 0 {
+        // The physics steps from when the world was last stirred: not on the sampling period's grid.
+        if to / self.sample > self.sampled {
+            self.sampled = to / self.sample;
             self.sample(to, trace);
         }
     }
@@ -62,7 +67,7 @@ impl Stage {
     /// Records the signals that have changed.
     pub fn sample(&mut self, now: Nanos, trace: &mut Trace) {
         for (signal, last) in &mut self.recorded {
-            let value = self.sim.read(*signal);
+            let value = on_grid(self.sim.read(*signal));
             if last.is_none_or(|last| last.key() != value.key()) {
                 *last = Some(value);
                 trace.steps.push(Step { time: now, what: What::Sample { signal: *signal, value } });
@@ -146,6 +151,15 @@ impl Stage {
             }
         }
         out
+    }
+}
+
+/// Recorded floats lie on a grid of 10⁻⁶ of their SI unit: below what the physics is good for.
+fn on_grid(value: Value) -> Value {
+    match value {
+        // Adding zero makes a negative zero positive.
+        Value::Float(x) if x.abs() < 1e9 => Value::Float((x * 1e6).round() / 1e6 + 0.0),
+        Value::Float(_) | Value::Bool(_) | Value::Int(_) => value,
     }
 }
 

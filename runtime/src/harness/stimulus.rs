@@ -49,7 +49,9 @@ pub fn draw_samples(
 
 fn draw(ty: Type, lo: Value, hi: Value, rng: &mut ChaCha8Rng) -> Value {
     match (ty, lo, hi) {
-        (Type::Int { .. }, Value::Int(lo), Value::Int(hi)) if lo < hi => Value::Int(rng.random_range(lo..=hi)),
+        (Type::Int { .. }, Value::Int(lo), Value::Int(hi)) if lo < hi => {
+            Value::Int(rng.random_range(lo..=hi))
+        }
         (Type::Float(_) | Type::Int { .. } | Type::Bool, lo, hi) => match (lo.as_f64(), hi.as_f64()) {
             // Micrometres, microradians: what a generated test's text says is exactly what runs.
             (Some(lo), Some(hi)) if lo < hi => Value::Float(on_grid(rng.random_range(lo..hi)).clamp(lo, hi)),

@@ -190,7 +190,7 @@ fn test(s: usize, i: usize) -> TestResult {
 }
 
 fn bin_name(b: usize) -> String {
-    format!("human_robot.\"{}\"", BINS[b])
+    format!("human_robot.{}", BINS[b])
 }
 
 fn because(s: usize, i: usize) -> Vec<String> {
@@ -380,7 +380,7 @@ fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
     let mut goals = Vec::new();
     if method == "search" {
         goals.extend(BINS[..13].iter().zip(0..13).map(|(b, i)| {
-            let name = format!("bin human_robot.\"{b}\"");
+            let name = format!("bin human_robot.{b}");
             if i == 11 {
                 goal(
                     name,
@@ -413,7 +413,7 @@ fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
 }
 
 fn bin(bin: &str, tests: &[TestResult]) -> BinResult {
-    let name = format!("human_robot.\"{bin}\"");
+    let name = format!("human_robot.{bin}");
     let number = |has: &dyn Fn(&TestResult) -> bool| -> Vec<u32> {
         let of =
             |(suite, _): &(&str, &str)| tests.iter().filter(|t| t.suite == *suite && has(t)).count() as u32;

@@ -54,7 +54,9 @@ pub fn harvest(
         }
     }
     if left_out > 0 {
-        harvest.notes.push(format!("{left_out} belief sets led to a run that breaks an assumption and were left out"));
+        harvest
+            .notes
+            .push(format!("{left_out} belief sets led to a run that breaks an assumption and were left out"));
     }
     harvest.notes.push(format!("{} of {} belief sets were run", explored.sets.len(), explored.space));
     if explored.cut {

@@ -18,7 +18,14 @@ use hrdsl_trace::{Trace, What};
 
 /// The groups of events that an actor's model waits for at once.
 pub struct Awaits {
-    groups: Vec<(ActorId, Vec<EventPattern>)>,
+    groups: Vec<Group>,
+}
+
+struct Group {
+    actor: ActorId,
+    events: Vec<EventPattern>,
+    /// How long the model waits, if it says so.
+    within: Option<Nanos>,
 }
 
 impl Awaits {
@@ -32,41 +39,42 @@ impl Awaits {
                     let agent = &program.agents[id.0 as usize];
                     let steps = agent.plans.iter().flat_map(|p| &p.body);
                     let awaits = steps.filter_map(|s| match &s.kind {
-                        StepKind::Await { events, .. } => Some(events.clone()),
+                        StepKind::Await { events, within } => Some((events.clone(), *within)),
                         _ => None,
                     });
                     let perceived = agent.plans.iter().filter_map(|p| match p.trigger.on {
-                        TriggerOn::Perceived(event) => Some(vec![any(program, event)]),
+                        TriggerOn::Perceived(event) => Some((vec![any(program, event)], None)),
                         _ => None,
                     });
-                    groups.extend(awaits.chain(perceived).map(|g| (agent.actor, g)));
+                    let actor = agent.actor;
+                    groups.extend(awaits.chain(perceived).map(|(events, within)| Group {
+                        actor,
+                        events,
+                        within,
+                    }));
                 }
                 PlayerRef::Automaton(id) => {
                     let automaton = &program.automata[id.0 as usize];
                     for location in 0..automaton.locations.len() {
                         let edges = automaton.edges.iter().filter(|e| e.from.0 as usize == location);
-                        let group: Vec<EventPattern> = edges.filter_map(|e| received(&e.sync)).collect();
-                        if !group.is_empty() {
-                            groups.push((automaton.actor, group));
-                        }
+                        let events: Vec<EventPattern> = edges.filter_map(|e| received(&e.sync)).collect();
+                        groups.push(Group { actor: automaton.actor, events, within: None });
                     }
                 }
             }
         }
-        groups.retain_mut(|(actor, group)| {
-            group.retain(|p| program.actor(program.event(p.event).from).role == Role::System);
-            !group.is_empty() && program.actor(*actor).role == Role::Environment
+        groups.retain_mut(|group| {
+            group.events.retain(|p| program.actor(program.event(p.event).from).role == Role::System);
+            !group.events.is_empty() && program.actor(group.actor).role == Role::Environment
         });
         Self { groups }
     }
 
     /// The first group of this actor that waits for such an event.
-    fn group(&self, actor: ActorId, what: &What) -> Option<&[EventPattern]> {
+    fn group(&self, actor: ActorId, what: &What) -> Option<&Group> {
         let What::Event { event, args } = what else { return None };
-        let waits = |(a, group): &&(ActorId, Vec<EventPattern>)| {
-            *a == actor && group.iter().any(|p| p.matches(*event, args))
-        };
-        self.groups.iter().find(waits).map(|(_, group)| group.as_slice())
+        let waits = |g: &&Group| g.actor == actor && g.events.iter().any(|p| p.matches(*event, args));
+        self.groups.iter().find(waits)
     }
 }
 
@@ -87,7 +95,7 @@ fn received(sync: &Sync) -> Option<EventPattern> {
     }
 }
 
-/// The test that stimulates what the trace shows. `patience` bounds each await.
+/// The test that stimulates what the trace shows. `patience` bounds each await for which the model gives no time.
 #[must_use]
 pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos) -> Vec<TestStep> {
     let mut out = Vec::new();
@@ -103,7 +111,8 @@ pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos)
         let between = trace.steps[looked..index].iter().rev();
         let awaited = between.filter_map(|s| Some((s.time, awaits.group(declared.from, &s.what)?))).next();
         if let Some((time, group)) = awaited {
-            out.push(TestStep::Await { events: group.to_vec(), within: patience });
+            let within = group.within.unwrap_or(patience);
+            out.push(TestStep::Await { events: group.events.clone(), within });
             free = free.max(time);
             looked = index;
         }
@@ -121,7 +130,9 @@ fn duration(program: &Program, event: hrdsl_ir::EventId, args: &[hrdsl_ir::Value
     use hrdsl_ir::event::StimulusStep;
     fn sum(steps: &[StimulusStep], eval: &dyn Fn(&Expr) -> Option<hrdsl_ir::Value>) -> Nanos {
         let of = |step: &StimulusStep| match step {
-            StimulusStep::Hold { seconds } => nanos(eval(seconds).and_then(|v| v.as_f64()).unwrap_or(0.0).max(0.0)),
+            StimulusStep::Hold { seconds } => {
+                nanos(eval(seconds).and_then(|v| v.as_f64()).unwrap_or(0.0).max(0.0))
+            }
             StimulusStep::If { condition, then, otherwise } => {
                 let holds = eval(condition).and_then(|v| v.as_bool()) == Some(true);
                 sum(if holds { then } else { otherwise }, eval)

@@ -34,7 +34,7 @@ pub struct AbstractTest {
 /// What became of one goal of a suite by search.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct GoalReport {
-    /// `bin human_robot."4 legs, bored"`, `edge Robot: sense -> decide`
+    /// `bin human_robot.4 legs, bored`, `edge Robot: sense -> decide`
     pub goal: String,
     pub status: GoalStatus,
     /// For an unreachable goal, why; for an open one, which budget ran out.
@@ -75,7 +75,12 @@ pub struct Harvest {
 ///
 /// # Errors
 /// A model that cannot be run, with the place.
-pub fn generate(program: &Program, suite: &Suite, count: Option<u32>, seed: u64) -> Result<Generated, String> {
+pub fn generate(
+    program: &Program,
+    suite: &Suite,
+    count: Option<u32>,
+    seed: u64,
+) -> Result<Generated, String> {
     let count = count.unwrap_or(suite.tests);
     let (method, mut harvest) = match &suite.method {
         Method::Agents { players, choose, explore } => {

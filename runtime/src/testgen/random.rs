@@ -24,9 +24,8 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
     for event in stimuli {
         choices.extend(instances(program, *event)?);
     }
-    choices.extend(
-        awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.patience }),
-    );
+    choices
+        .extend(awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.patience }));
     if choices.is_empty() {
         return Err(format!("suite `{}` has no stimuli to draw from", suite.name));
     }
@@ -71,7 +70,8 @@ impl Draw<'_> {
     fn step(&mut self, step: &TestStep) {
         if let TestStep::Do { event, args, .. } = step {
             let made = makes(self.program, *event, args);
-            let breaks = |(e, a): &(EventId, Vec<Value>)| self.assumptions.would_violate(self.time, *e, a).is_some();
+            let breaks =
+                |(e, a): &(EventId, Vec<Value>)| self.assumptions.would_violate(self.time, *e, a).is_some();
             if made.iter().any(breaks) {
                 return;
             }
@@ -89,7 +89,10 @@ fn instances(program: &Program, event: EventId) -> Result<Vec<TestStep>, String>
     let mut tuples: Vec<Vec<Value>> = vec![Vec::new()];
     for param in &declared.params {
         let Some(domain) = Type::domain(param.ty) else {
-            return Err(format!("stimulus `{}`: values of `{}` cannot be enumerated", declared.name, param.name));
+            return Err(format!(
+                "stimulus `{}`: values of `{}` cannot be enumerated",
+                declared.name, param.name
+            ));
         };
         let extend = |tuple: &Vec<Value>| {
             let tuple = tuple.clone();

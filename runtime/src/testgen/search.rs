@@ -35,9 +35,15 @@ pub fn harvest(
         .ok_or_else(|| format!("suite `{}` names no network", suite.name))?;
     let named: Vec<Named> = goals.iter().flat_map(|goal| expand(program, network, goal)).collect();
     let questions: Vec<Goal> = named.iter().map(|n| n.goal.clone()).collect();
-    let report =
-        hrdsl_ta::check(program, network, &questions, &counters(program), &limits(program), Budget::default())
-            .map_err(|e| format!("network `{}`: {e}", network.name))?;
+    let report = hrdsl_ta::check(
+        program,
+        network,
+        &questions,
+        &counters(program),
+        &limits(program),
+        Budget::default(),
+    )
+    .map_err(|e| format!("network `{}`: {e}", network.name))?;
     let mut harvest = Harvest::default();
     harvest.notes.extend(windowed_assumptions(program));
     harvest.notes.push(format!(
@@ -121,15 +127,14 @@ fn expand(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<Named>
         SearchGoal::Edges => each_automaton(program, network, |index, automaton| {
             let name = |id: LocationId| automaton.locations[id.0 as usize].name.as_str();
             let declared = automaton.edges.iter().enumerate().filter(|(_, e)| !is_generated(name(e.from)));
-            let named = declared.map(|(edge, e)| {
+            let named = declared.zip(1..).map(|((edge, e), number): (_, usize)| {
                 let to = final_target(automaton, e.to);
                 Named {
                     name: format!(
-                        "edge {}: {} -> {} (edge {})",
+                        "edge {}: {} -> {} (edge {number})",
                         automaton.name,
                         name(e.from),
-                        name(to),
-                        edge + 1
+                        name(to)
                     ),
                     goal: Goal { what: GoalKind::Edge { automaton: index, edge }, settled: false },
                 }

@@ -169,7 +169,7 @@ fn four_legs_to_four_people() {
     let order: Vec<&str> = harness.emitted.iter().map(|(_, name, _)| name.as_str()).collect();
     let leg = |end| ["handover_offered", "sense", "decided", end];
     let expected = [leg("released"), leg("discarded"), leg("released")].concat();
-    assert_eq!(order, [expected, vec!["handover_offered", "discarded"]].concat());
+    assert_eq!(order, [expected, vec!["handover_offered", "timed_out", "discarded"]].concat());
     let ready: Vec<Value> =
         harness.emitted.iter().filter_map(|(.., args)| args.get("ready").copied()).collect();
     assert_eq!(ready, [true, false, true].map(Value::Bool));

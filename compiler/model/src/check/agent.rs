@@ -1,13 +1,16 @@
 //! Agents: beliefs, goals, and what holds at the start.
 
-use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, TriggerKind};
+use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, StepKind, TriggerKind};
 use indexmap::IndexMap;
 
 use super::{Checker, Env, table::Table};
 use crate::{
     AgentId, Belief, BeliefId, Context, Goal, GoalId, Kind, Param, Value,
     noun::Noun,
-    report::{agents::no_plan, names, types},
+    report::{
+        agents::{no_plan, not_adopted},
+        names, types,
+    },
 };
 
 /// The names of one agent.
@@ -64,6 +67,42 @@ impl Checker<'_> {
                     self.s.agents[index].plans.extend(plan);
                 }
                 Member::Error => {}
+            }
+        }
+        self.unadopted(&scope, agent);
+    }
+
+    /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
+    fn unadopted(&mut self, scope: &Scope, agent: &ast::Agent) {
+        let mut adopted: Vec<&str> = Vec::new();
+        for member in &agent.members {
+            match &member.kind {
+                Member::Goal(call) => adopted.push(&call.name.text),
+                Member::Plan(plan) => {
+                    for step in &plan.body {
+                        match &step.kind {
+                            StepKind::Achieve(call) | StepKind::Spawn(call) => adopted.push(&call.name.text),
+                            // It may have been an adoption.
+                            StepKind::Error => return,
+                            _ => {}
+                        }
+                    }
+                }
+                Member::Belief { .. } => {}
+                Member::Error => return,
+            }
+        }
+        if adopted.iter().any(|goal| !scope.goals.contains_key(*goal)) {
+            // An adoption is misspelt, and has its diagnostic: it may be the one that is missing.
+            return;
+        }
+        for member in &agent.members {
+            if let Member::Plan(plan) = &member.kind
+                && plan.trigger.kind == TriggerKind::Achieve
+                && !adopted.contains(&plan.trigger.call.name.text.as_str())
+            {
+                let name = &plan.trigger.call.name;
+                self.report(not_adopted(&name.text, name.span, adopted.iter().copied()));
             }
         }
     }

@@ -73,9 +73,9 @@ impl Checker<'_> {
         let mut resolved = Vec::new();
         for select in selects {
             let ty = self.ty(&select.ty).filter(|ty| self.finite(*ty, "a select", select.name.span));
-            let ty = ty.unwrap_or(Type::Bool);
-            self.add_local(env, &select.name, Noun::Variable, ty);
-            resolved.push(Param { name: select.name.text.clone(), ty });
+            self.check_free(env, Noun::Variable, &select.name);
+            env.push_local(&select.name.text, Noun::Variable, ty.map_or(Kind::Unknown, Type::kind));
+            resolved.push(Param { name: select.name.text.clone(), ty: ty.unwrap_or(Type::Bool) });
         }
         resolved
     }
@@ -83,7 +83,10 @@ impl Checker<'_> {
     /// `on e(…)`: a lower-case name that means nothing yet is bound; a variable's value is compared by the guard.
     fn receive(&mut self, scope: &Scope, call: &Call, env: &mut Env, equal: &mut Vec<Expr>) -> Option<Sync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
-        let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
+        let Some(event) = self.event(Noun::EventOrStimulus, &call.name, local) else {
+            self.bind_unknown(call, env);
+            return None;
+        };
         self.perceives(scope.actor, event, call.name.span, true);
         let params = self.params_of(event);
         let Some(args) = &call.args else {
@@ -98,6 +101,18 @@ impl Checker<'_> {
             received.push(self.received(arg, param, env, equal));
         }
         Some(Sync::Receive { event, args: received })
+    }
+
+    /// What an unknown event would bind is known, but not its types.
+    fn bind_unknown(&mut self, call: &Call, env: &mut Env) {
+        for arg in call.args.iter().flatten() {
+            if let Syntax::Path(path) = &arg.kind
+                && let [name] = path.names.as_slice()
+                && env.find(&name.text).is_none()
+            {
+                env.push_local(&name.text, Noun::Variable, Kind::Unknown);
+            }
+        }
     }
 
     fn received(

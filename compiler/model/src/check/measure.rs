@@ -169,6 +169,9 @@ impl Checker<'_> {
                 self.unknown(Noun::PartInstance, name, &near, is);
                 return None;
             }
+            if self.in_world.broken.contains(&full) {
+                return None;
+            }
             base = format!("{full}.");
         }
         let last = &names[names.len() - 1];

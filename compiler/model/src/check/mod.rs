@@ -89,6 +89,9 @@ struct ConstEntry<'a> {
     state: ConstState,
 }
 
+/// Stands for an actor whose name is unknown, so that nothing else is said about it.
+const NOBODY: ActorId = ActorId(u16::MAX);
+
 pub(crate) struct Checker<'a> {
     s: Scenario,
     issues: Vec<Diagnostic>,
@@ -251,11 +254,11 @@ impl<'a> Checker<'a> {
     }
 
     fn role_of(&self, actor: ActorId) -> Role {
-        self.s.actors[usize::from(actor.0)].role
+        self.s.actors.get(usize::from(actor.0)).map_or(Role::Environment, |a| a.role)
     }
 
     fn actor_name(&self, actor: ActorId) -> &str {
-        &self.s.actors[usize::from(actor.0)].name
+        self.s.actors.get(usize::from(actor.0)).map_or("?", |a| a.name.as_str())
     }
 }
 

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{
     self, BinaryOp, Call, ExprKind as Syntax, StepKind as SyntaxStep, TriggerKind, UnaryOp,
 };
 
-use super::{Checker, Env, agent::Scope, expr::FUNCTIONS, is_variable_name};
+use super::{Checker, Env, NOBODY, agent::Scope, expr::FUNCTIONS, is_variable_name};
 use crate::{
     ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Param, Plan, Role, Step, StepKind,
     TriggerOn, Type,
@@ -84,6 +84,9 @@ impl Checker<'_> {
     /// also hear each other.
     pub(super) fn perceives(&mut self, actor: ActorId, event: EventId, span: Span, own_too: bool) {
         let e = &self.s.events[usize::from(event.0)];
+        if actor == NOBODY || e.from == NOBODY {
+            return;
+        }
         let who = self.actor_name(actor);
         let noun = if e.stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
         let issue = if e.from == actor {
@@ -191,10 +194,8 @@ impl Checker<'_> {
                 let call = Call { name: path.names[0].clone(), args: None, span: e.span };
                 self.literal(scope, &call, env)
             }
-            _ => {
-                self.beliefs_in_test(scope, e);
-                Context::Test(self.expr_of(e, Kind::Bool, env))
-            }
+            _ if self.belief_in_test(scope, e) => Context::True,
+            _ => Context::Test(self.expr_of(e, Kind::Bool, env)),
         }
     }
 
@@ -232,19 +233,20 @@ impl Checker<'_> {
     }
 
     /// A belief inside of a comparison is a frequent slip.
-    fn beliefs_in_test(&mut self, scope: &Scope, e: &ast::Expr) {
-        if let Syntax::Binary { left, right, .. } = &e.kind {
-            for side in [left, right] {
-                if let Syntax::Call { callee, .. } = &side.kind
-                    && callee.names.len() == 1
-                    && self.kind_in_agent(scope, &callee.names[0].text) == Some(Noun::Belief)
-                {
-                    let name = &callee.names[0];
-                    let issue = names::wrong_kind(Noun::Function, Noun::Belief, &name.text, name.span, []);
-                    self.report(issue.help(format!("bind its value first: `{}(X) && X …`", name.text)));
-                }
+    fn belief_in_test(&mut self, scope: &Scope, e: &ast::Expr) -> bool {
+        let Syntax::Binary { left, right, .. } = &e.kind else { return false };
+        for side in [left, right] {
+            if let Syntax::Call { callee, .. } = &side.kind
+                && callee.names.len() == 1
+                && self.kind_in_agent(scope, &callee.names[0].text) == Some(Noun::Belief)
+            {
+                let name = &callee.names[0];
+                let issue = names::wrong_kind(Noun::Function, Noun::Belief, &name.text, name.span, []);
+                self.report(issue.help(format!("bind its value first: `{}(X) && X …`", name.text)));
+                return true;
             }
         }
+        false
     }
 
     // ── body ──
@@ -310,7 +312,7 @@ impl Checker<'_> {
     /// Only the events of the actor that is played can be made.
     pub(super) fn owns(&mut self, actor: ActorId, event: EventId, call: &Call) {
         let from = self.s.events[usize::from(event.0)].from;
-        if from != actor {
+        if from != actor && from != NOBODY && actor != NOBODY {
             let (owner, player) = (self.actor_name(from), self.actor_name(actor));
             let issue = roles::not_its_event(&call.name.text, owner, player, call.name.span);
             self.report(issue);

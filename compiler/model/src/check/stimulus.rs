@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, SampleRange, StimulusStepKind as Step};
 
-use super::{Checker, Env, measure::text};
+use super::{Checker, Env, NOBODY, measure::text};
 use crate::{
     ActorId, Dim, EventId, Expr, GripperId, Kind, Sample, Stimulus, StimulusStep, Type, Value,
     noun::Noun,
@@ -140,7 +140,7 @@ impl Checker<'_> {
     fn emit(&mut self, call: &ast::Call, by: ActorId, env: &mut Env) -> Option<StimulusStep> {
         let event: EventId = self.event(Noun::Event, &call.name, None)?;
         let from = self.s.events[usize::from(event.0)].from;
-        if from != by {
+        if from != by && from != NOBODY && by != NOBODY {
             let (owner, actor) = (self.actor_name(from), self.actor_name(by));
             let issue = roles::emits_for_other(&call.name.text, owner, actor, call.name.span);
             let own: Vec<&str> = self

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{
     self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
 };
 
-use super::{Checker, Env};
+use super::{Checker, Env, NOBODY};
 use crate::{
     Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, NetworkId, Player, Role,
     SearchGoal, Suite, Value,
@@ -102,7 +102,7 @@ impl Checker<'_> {
                 Player::Agent(a) => self.s.agents[usize::from(a.0)].actor,
                 Player::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
             };
-            if let Some((_, first)) = actors.iter().find(|(a, _)| *a == actor) {
+            if let Some((_, first)) = actors.iter().find(|(a, _)| *a == actor && actor != NOBODY) {
                 let message = format!("`{}` plays `{}` a second time", name.text, self.actor_name(actor));
                 let issue = bad_suite(name.span, message, "an actor is played by at most one");
                 self.report(issue.label(*first, "this plays it already"));

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, Name, Param as SyntaxParam, TypeExpr};
 
-use super::{Checker, ConstEntry, ConstState, Env, table::Table};
+use super::{Checker, ConstEntry, ConstState, Env, NOBODY, table::Table};
 use crate::{
     Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Kind, LocationId, Param, Player, Role,
     Stimulus, Type, Value, Var,
@@ -106,7 +106,7 @@ impl<'a> Checker<'a> {
         let noun = if stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
         if Self::declare(&mut self.issues, &mut self.events, noun, name).is_some() {
             // Without its actor, which has a diagnostic, the event still is a name.
-            let from = from.unwrap_or(ActorId(0));
+            let from = from.unwrap_or(NOBODY);
             let body = stimulus.map(|_| Stimulus::default());
             self.s.events.push(Event { name: name.text.clone(), params, from, to, stimulus: body, span });
             self.bodies.push(stimulus);
@@ -114,7 +114,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_agent(&mut self, agent: &'a ast::Agent, span: Span) {
-        let actor = self.actor(&agent.plays).unwrap_or(ActorId(0));
+        let actor = self.actor(&agent.plays).unwrap_or(NOBODY);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, &agent.name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Agent(id));
@@ -134,7 +134,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_automaton(&mut self, automaton: &'a ast::Automaton, span: Span) {
-        let actor = self.actor(&automaton.plays).unwrap_or(ActorId(0));
+        let actor = self.actor(&automaton.plays).unwrap_or(NOBODY);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, &automaton.name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Automaton(id));

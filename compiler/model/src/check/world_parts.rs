@@ -26,6 +26,8 @@ pub(crate) struct WorldNames {
     pub signals: Table,
     /// The parts that have been used.
     pub used: Vec<String>,
+    /// Instances of unknown parts: nothing is said about what they have.
+    pub broken: Vec<String>,
 }
 
 impl WorldNames {
@@ -98,7 +100,10 @@ impl<'a> Checker<'a> {
                     let instances = &mut self.in_world.instances;
                     let noun = Noun::PartInstance;
                     let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
-                    let Some(part) = self.part(of, depth) else { continue };
+                    let Some(part) = self.part(of, depth) else {
+                        self.in_world.broken.push(full);
+                        continue;
+                    };
                     if new {
                         let frame = compose(frame, inner);
                         all.extend(self.flatten(&part.members, &format!("{full}."), frame, depth + 1));

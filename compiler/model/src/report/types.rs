@@ -9,7 +9,13 @@ use crate::{
 /// HR0202
 pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
     let error = Diagnostic::error(Code::UNKNOWN_UNIT, span, format!("no unit is called `{text}`"));
-    with_nearest(error, Noun::Unit, text, UNITS.iter().map(|u| u.symbol))
+    let error = with_nearest(error, Noun::Unit, text, UNITS.iter().map(|u| u.symbol));
+    // `sec`, `meters`: a unit written out
+    let start = UNITS.iter().map(|u| u.symbol).filter(|u| text.starts_with(u)).max_by_key(|u| u.len());
+    match (&error.help, start) {
+        (None, Some(unit)) => error.help(format!("did you mean `{unit}`?")),
+        (Some(_), _) | (None, None) => error,
+    }
 }
 
 /// HR0201, HR0203 or the bare number: `want` is needed and `got` is there.

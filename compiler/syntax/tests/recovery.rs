@@ -1,0 +1,179 @@
+//! A fault costs the declaration, member or step that it is in, and nothing else.
+
+use hrdsl_source::FileId;
+use hrdsl_syntax::ast::{
+    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, ItemKind, PatternKind, StepKind,
+    StimulusStepKind, TestMemberKind, WorldMemberKind,
+};
+use hrdsl_syntax::parse;
+
+const SCENARIO: &str = include_str!("../../../examples/handover/scenario.hri");
+
+/// The scenario with one replacement, and how many diagnostics it has.
+fn with(from: &str, to: &str) -> (File, usize) {
+    assert!(SCENARIO.contains(from), "{from}");
+    let (file, diagnostics) = parse(FileId(0), &SCENARIO.replacen(from, to, 1));
+    assert!(!diagnostics.is_empty());
+    (file, diagnostics.len())
+}
+
+fn errors(file: &File) -> usize {
+    file.items.iter().filter(|i| i.kind == ItemKind::Error).count()
+}
+
+fn whole() -> File {
+    parse(FileId(0), SCENARIO).0
+}
+
+fn agent<'f>(file: &'f File, name: &str) -> &'f Agent {
+    let found = file.items.iter().find_map(|i| match &i.kind {
+        ItemKind::Agent(a) if a.name.text == name => Some(a),
+        _ => None,
+    });
+    found.expect("the agent is there")
+}
+
+fn automaton<'f>(file: &'f File, name: &str) -> &'f Automaton {
+    let found = file.items.iter().find_map(|i| match &i.kind {
+        ItemKind::Automaton(a) if a.name.text == name => Some(a),
+        _ => None,
+    });
+    found.expect("the automaton is there")
+}
+
+#[test]
+fn a_broken_step_costs_that_step() {
+    let (file, n) = with(
+        "look(G); reach(X); grip(P); say_ready; !settle }",
+        "look(G); reach(; grip(P); say_ready; !settle }",
+    );
+    assert_eq!((n, errors(&file), file.items.len()), (1, 0, whole().items.len()));
+    let (all, reference) = (whole(), agent(&file, "Human"));
+    assert_eq!(reference.members.len(), agent(&all, "Human").members.len());
+    let bodies: Vec<_> = reference
+        .members
+        .iter()
+        .filter_map(|m| match &m.kind {
+            AgentMemberKind::Plan(plan) => Some(&plan.body),
+            AgentMemberKind::Belief { .. } | AgentMemberKind::Goal(_) | AgentMemberKind::Error => None,
+        })
+        .collect();
+    let broken: Vec<_> = bodies.iter().filter(|b| b.iter().any(|s| s.kind == StepKind::Error)).collect();
+    assert_eq!(broken.len(), 1);
+    assert_eq!(broken[0].len(), 5, "the four other steps are there");
+}
+
+#[test]
+fn a_missing_semicolon_costs_nothing() {
+    let (file, n) = with(
+        "look(G); reach(X); grip(P); say_ready; !settle }",
+        "look(G) reach(X); grip(P) say_ready; !settle }",
+    );
+    assert_eq!(n, 2);
+    let names = |a: &Agent| format!("{a:?}").matches("Step {").count();
+    assert_eq!(names(agent(&file, "Human")), names(agent(&whole(), "Human")));
+}
+
+#[test]
+fn a_broken_member_costs_that_member() {
+    let (file, n) = with("  clock t\n", "  clck t\n");
+    assert_eq!(n, 1);
+    let broken = automaton(&file, "Person");
+    assert_eq!(broken.members.len(), automaton(&whole(), "Person").members.len());
+    assert_eq!(broken.members.iter().filter(|m| m.kind == AutomatonMemberKind::Error).count(), 1);
+}
+
+#[test]
+fn a_broken_edge_costs_that_edge() {
+    let (file, n) = with("offered -> waiting do t = 0", "offered -> waiting when t = 0 do t = 0; x = 1");
+    assert_eq!(n, 1);
+    let broken = automaton(&file, "Person");
+    assert_eq!(broken.members.len(), automaton(&whole(), "Person").members.len());
+}
+
+#[test]
+fn a_broken_header_costs_the_declaration() {
+    let (file, n) = with("agent Human plays person {", "agent Human person {");
+    assert_eq!((n, errors(&file), file.items.len()), (1, 1, whole().items.len()));
+}
+
+#[test]
+fn a_missing_brace_is_put_in() {
+    for (from, to) in [
+        ("  plan -!leg(_) { leave }", "  plan -!leg(_) { leave"),
+        ("  goal !table", "  goal !table }"),
+        ("location shown { invariant t <= 2 s }", "location shown { invariant t <= 2 s"),
+        ("  tests 160\n}\nsuite ta", "  tests 160\nsuite ta"),
+    ] {
+        let (file, n) = with(from, to);
+        assert!(n <= 2, "{to}: {n}");
+        assert!(file.items.len() >= whole().items.len(), "{to}");
+        assert!(agent(&file, "Sensors").members.len() > 8, "{to}");
+    }
+}
+
+#[test]
+fn a_misspelt_keyword_is_understood() {
+    let (file, n) = with("agent Human plays", "agnet Human plays");
+    assert_eq!((n, errors(&file)), (1, 0));
+    assert!(agent(&file, "Human").members.len() > 10);
+}
+
+#[test]
+fn names_survive_their_broken_values() {
+    let (file, _) = with("const LEGS     = 4", "const LEGS = 4 +");
+    assert!(file.items.iter().any(|i| matches!(&i.kind,
+        ItemKind::Const { name, value } if name.text == "LEGS" && value.kind == ExprKind::Error)));
+    let (file, _) =
+        with("sensed(true, true, true) causes released", "sensed(true, true, true) cause released");
+    assert!(file.items.iter().any(|i| matches!(&i.kind,
+        ItemKind::Require(r) if r.name.text == "R2" && r.title.is_some() && r.pattern.kind == PatternKind::Error)));
+}
+
+#[test]
+fn a_missing_keyword_costs_its_own_declaration() {
+    let (file, n) = with("event bored ", "bored ");
+    assert_eq!((n, errors(&file), file.items.len()), (1, 0, whole().items.len() - 1));
+}
+
+#[test]
+fn every_sort_of_block_recovers() {
+    let text = r#"
+stimulus s by p { emit a; hold; emit b; if x { emit; emit c } else { hold 1 s } emit d }
+cross c = a * b { bin "a" when; bin "b" when x ignore y ignore when z }
+suite u by random { tests; length 1..2; paus 3 s horizon 4 s }
+test t { seed 1 look(; wait 3 s
+  await; ask }
+world { step 1 ms
+  body a fixed
+  body b: fixed box(1 m) at x mass
+  on close emit
+  sample 2 ms }
+system r { run x limit 3 s }
+"#;
+    let (file, diagnostics) = parse(FileId(0), text);
+    assert_eq!(errors(&file), 0, "{diagnostics:#?}");
+    assert_eq!(file.items.len(), 6);
+    for item in &file.items {
+        match &item.kind {
+            ItemKind::Stimulus(s) => {
+                assert_eq!(s.body.len(), 5);
+                assert!(s.body[1].kind == StimulusStepKind::Error, "hold");
+                assert!(matches!(&s.body[3].kind,
+                    StimulusStepKind::If { then, otherwise, .. } if then.len() == 2 && otherwise.len() == 1));
+            }
+            ItemKind::Cross(c) => assert_eq!(c.members.len(), 4),
+            ItemKind::Suite(s) => assert_eq!(s.members.len(), 4),
+            ItemKind::Test(t) => {
+                assert_eq!(t.members.len(), 5);
+                assert_eq!(t.members.iter().filter(|m| m.kind == TestMemberKind::Error).count(), 2);
+            }
+            ItemKind::World(w) => {
+                assert_eq!(w.members.len(), 5);
+                assert!(matches!(w.members[4].kind, WorldMemberKind::Sample(_)));
+            }
+            ItemKind::System(s) => assert_eq!(s.members.len(), 2),
+            other => panic!("{other:?}"),
+        }
+    }
+}

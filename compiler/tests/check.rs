@@ -1,0 +1,93 @@
+//! The fixtures in `check/`: scenarios with the diagnostics they must give, each named at its place.
+//!
+//! `//~ HR0101 "leg_requst" help "leg_request"` on a line means: an error with this code, at exactly this text of the line,
+//! whose help contains that text (quotes in the text are written as backquotes); `help` may be absent. Several expectations follow each other, each after its own `//~`.
+//! Every diagnostic must be expected, and every expectation met. In `NAME.tests.hri` are tests for `NAME.hri`.
+
+#![allow(clippy::disallowed_methods, reason = "the runner reads its fixtures")]
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use hrdsl_compiler::{Compilation, Input, compile};
+
+#[derive(Clone, Debug, PartialEq)]
+struct Expected {
+    file: u16,
+    line: u32,
+    code: String,
+    text: String,
+    help: String,
+}
+
+fn quoted(text: &str) -> Option<(String, &str)> {
+    let (inner, rest) = text.trim_start().strip_prefix('"')?.split_once('"')?;
+    Some((inner.to_owned(), rest))
+}
+
+fn expectations(file: u16, text: &str) -> Vec<Expected> {
+    let mut all = Vec::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        for note in text.split("//~").skip(1) {
+            let (code, rest) = note.trim_start().split_once(' ').unwrap_or((note.trim(), ""));
+            let (at, rest) = quoted(rest).unwrap_or_else(|| panic!("line {line}: no text after {code}"));
+            let help = rest.trim_start().strip_prefix("help").and_then(quoted).map_or(String::new(), |q| q.0);
+            all.push(Expected { file, line, code: code.to_owned(), text: at, help });
+        }
+    }
+    all
+}
+
+/// What is wrong between what was expected and what was said.
+fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
+    let mut faults = Vec::new();
+    for d in &c.diagnostics {
+        let (line, text) = (c.files.position(d.span()).line, c.files.text(d.span()));
+        let help = d.help.as_deref().unwrap_or("");
+        let met = |e: &Expected| {
+            (e.file, e.line, e.code.as_str()) == (d.span().file.0, line, d.code.to_string().as_str())
+                && e.text == text.split_whitespace().collect::<Vec<_>>().join(" ").replace('"', "`")
+                && help.contains(&e.help)
+        };
+        match expected.iter().position(met) {
+            Some(at) => drop(expected.remove(at)),
+            None => faults.push(format!(
+                "not expected: {} {} \"{text}\": {} (help: {help})",
+                c.files.place(d.span()),
+                d.code,
+                d.message
+            )),
+        }
+    }
+    faults.extend(expected.iter().map(|e| format!("expected, but not said: {e:?}")));
+    faults
+}
+
+#[test]
+fn every_fixture_gives_what_it_says() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check");
+    let mut fixtures: BTreeMap<String, String> = BTreeMap::new();
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        fixtures.insert(name, fs::read_to_string(path).unwrap());
+    }
+    let mut all = Vec::new();
+    for (name, text) in fixtures.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
+        let tests_name = name.replace(".hri", ".tests.hri");
+        let tests: Vec<Input<'_>> =
+            fixtures.get(&tests_name).map(|text| Input { name: &tests_name, text }).into_iter().collect();
+        let c = compile(Input { name, text }, &tests);
+        let mut expected = expectations(0, text);
+        expected.extend(tests.iter().flat_map(|t| expectations(1, t.text)));
+        all.extend(faults(&c, expected));
+        let errors = c.diagnostics.iter().any(hrdsl_source::Diagnostic::is_error);
+        assert_eq!(
+            c.program.is_none(),
+            errors,
+            "{name}: there is a program if and only if there are no errors"
+        );
+        assert!(c.diagnostics.is_sorted_by_key(|d| d.span()), "{name}: not in the order of the text");
+    }
+    assert!(fixtures.len() >= 10, "the fixtures are not found");
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}

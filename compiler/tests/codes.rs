@@ -1,0 +1,58 @@
+//! The pages of the diagnostic codes: each code of the registry has one, whose first example gives just this code, and
+//! whose second is mended.
+
+#![allow(clippy::disallowed_methods, reason = "the test reads the pages")]
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use hrdsl_compiler::{Input, compile};
+use hrdsl_source::REGISTRY;
+
+/// The fenced blocks: what follows the fence, and the text.
+fn blocks(page: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if let Some(info) = line.strip_prefix("```") {
+            let text: Vec<&str> = lines.by_ref().take_while(|l| !l.starts_with("```")).collect();
+            blocks.push((info.to_owned(), text.join("\n")));
+        }
+    }
+    blocks
+}
+
+/// The codes of a text's diagnostics, and whether it compiles.
+fn said(text: &str) -> (BTreeSet<String>, bool) {
+    let c = compile(Input { name: "page.hri", text }, &[]);
+    (c.diagnostics.iter().map(|d| d.code.to_string()).collect(), c.program.is_some())
+}
+
+#[test]
+fn every_code_has_a_page_with_an_example_that_fails_and_one_that_does_not() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/codes");
+    for info in REGISTRY {
+        let code = info.code.to_string();
+        let page = fs::read_to_string(folder.join(format!("{code}.md"))).unwrap_or_default();
+        assert!(
+            page.starts_with(&format!("# {code}: {}\n", info.title)),
+            "{code}: no page, or another title"
+        );
+        let blocks = blocks(&page);
+        let [(wrong, failing), (right, mended)] = blocks.as_slice() else {
+            panic!("{code}: two blocks are needed, and there are {}", blocks.len())
+        };
+        let (codes, compiles) = said(failing);
+        match wrong.split_once(',') {
+            Some(("hri", rule)) if rule == format!("fails={code}") => {
+                assert!(!compiles, "{code} does not fail")
+            }
+            Some(("hri", rule)) if rule == format!("warns={code}") => assert!(compiles, "{code} fails"),
+            _ => panic!("{code}: the fence `{wrong}` means nothing"),
+        }
+        assert_eq!(codes, BTreeSet::from([code.clone()]), "{code}: the failing example");
+        assert_eq!(right, "hri");
+        assert_eq!(said(mended), (BTreeSet::new(), true), "{code}: the mended example");
+    }
+    let pages = fs::read_dir(&folder).unwrap().count();
+    assert_eq!(pages, REGISTRY.len(), "pages without a code");
+}

@@ -1,0 +1,457 @@
+//! What small scenarios become, concern by concern.
+
+use hrdsl_compiler::{Input, compile};
+use hrdsl_ir::{
+    ActorId, ArgPattern, EventId, EventPattern, Expr, Program, Type, Unit, Value,
+    bdi::{BeliefId, Context, Fact, GoalId, StepKind, Term, TriggerOn},
+    coverage::{Condition, PointId},
+    event::StimulusStep,
+    expr::{BinaryOp, Function, UnaryOp},
+    monitor::{Effect, On},
+    suite::{ChoiceKind, Explore, Method, SearchGoal},
+    ta::{ClockOp, LocationKind, ReceiveArg, Sync, Update},
+    test::TestStep,
+    value::SECOND,
+    world::{
+        Axis, BodyId, BodyRef, CurrentId, GripperId, RuleOn, Shape, SignalId, Term as Measure, WorldAction,
+    },
+};
+
+const ACTORS: &str = "actor person : environment\nactor robot : system\n";
+
+fn program(text: &str) -> Program {
+    let text = format!("scenario small\n{ACTORS}{text}");
+    let c = compile(Input { name: "small.hri", text: &text }, &[]);
+    let said: Vec<String> =
+        c.diagnostics.iter().map(|d| format!("{} {}", c.files.place(d.span()), d.message)).collect();
+    assert_eq!(said, Vec::<String>::new());
+    c.program.unwrap()
+}
+
+fn op(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+    Expr::binary(op, a, b)
+}
+
+fn not(e: Expr) -> Expr {
+    Expr::Unary(UnaryOp::Not, Box::new(e))
+}
+
+fn pattern(event: u16, args: &[ArgPattern]) -> EventPattern {
+    EventPattern { event: EventId(event), args: args.to_vec() }
+}
+
+const TRUE: ArgPattern = ArgPattern::Is(Value::Bool(true));
+
+#[test]
+fn vocabulary_with_units_and_constants() {
+    let p = program(
+        "const N = 2 * 3\nconst D = N * 10 cm\nevent e(n: 0..N, d: length, ok: bool) from robot to person\n\
+         stimulus s(ok: bool) by person {\n  sample a in if ok { 10 cm .. D } else { 0 m .. 1 m }\n  sample n in 1 .. 4\n\
+           emit t(ok, a)\n  hold n * 1 s\n  if ok { hold 500 ms }\n}\nevent t(ok: bool, d: length) from person",
+    );
+    assert_eq!((p.name.as_str(), p.actors.len()), ("small", 2));
+    let types: Vec<Type> = p.events[0].params.iter().map(|p| p.ty).collect();
+    assert_eq!(types, [Type::Int { lo: 0, hi: 6 }, Type::Float(Unit::Metre), Type::Bool]);
+    assert_eq!((p.events[0].from, p.events[0].to.clone()), (ActorId(1), vec![ActorId(0)]));
+    let s = p.event(p.event_named("s").unwrap()).stimulus.clone().unwrap();
+    // Parameter 0, then the samples 1 and 2.
+    assert_eq!(
+        s.samples[0].lo,
+        Expr::If(Expr::Var(0).into(), Expr::float(0.1).into(), Expr::float(0.0).into())
+    );
+    assert_eq!(s.samples[0].ty, Type::Float(Unit::Metre));
+    let Expr::If(_, hi, _) = &s.samples[0].hi else { panic!() };
+    assert!((hi.eval(&|_| None).unwrap().as_f64().unwrap() - 0.6).abs() < 1e-12);
+    assert_eq!(s.samples[1].ty, Type::Int { lo: 1, hi: 4 });
+    let emit = StimulusStep::Emit { event: EventId(2), args: vec![Expr::Var(0), Expr::Var(1)] };
+    let hold = StimulusStep::Hold { seconds: op(BinaryOp::Mul, Expr::Var(2), Expr::float(1.0)) };
+    let half = vec![StimulusStep::Hold { seconds: Expr::float(0.5) }];
+    let choice = StimulusStep::If { condition: Expr::Var(0), then: half, otherwise: Vec::new() };
+    assert_eq!(s.steps, [emit, hold, choice]);
+}
+
+#[test]
+fn agents_number_variables_in_the_order_of_their_places() {
+    let p = program(
+        "event asked(ok: bool) from robot\nstimulus s(n: 0..9) by person { hold 1 s }\n\
+         agent A plays person {\n  belief had(n: 0..4) = had(0)\n  belief wants(n: 0..4)\n  belief away\n  goal !go(3)\n\
+           plan +!go(L) when had(N) && not away && (wants(L) || wants(3)) && N < L { s(N + L); !go(N); ?wants(M); -had(_); -+had(M) }\n\
+           plan @no -!go(_) { await asked(true) | asked within 2 s; wait 500 ms; !!go(1) }\n\
+           plan on asked(X) when X { +away }\n}",
+    );
+    let a = &p.agents[0];
+    assert_eq!(a.initial_beliefs, [Fact { belief: BeliefId(0), args: vec![Value::Int(0)] }]);
+    assert_eq!(a.initial_goals, [(GoalId(0), vec![Value::Int(3)])]);
+    let go = &a.plans[0];
+    assert_eq!((go.label.as_str(), go.trigger.on), ("go#1", TriggerOn::GoalAdded(GoalId(0))));
+    assert_eq!(go.vars, ["L", "N", "M"]);
+    assert_eq!(go.trigger.args, [Term::Var(0)]);
+    let belief = |b, arg| Context::Belief { belief: BeliefId(b), args: vec![arg] };
+    let away = Context::Belief { belief: BeliefId(2), args: vec![] };
+    let either = Context::Or(vec![belief(1, Term::Var(0)), belief(1, Term::Expr(Expr::int(3)))]);
+    let less = Context::Test(op(BinaryOp::Lt, Expr::Var(1), Expr::Var(0)));
+    assert_eq!(
+        go.context,
+        Context::And(vec![belief(0, Term::Var(1)), Context::Not(Box::new(away)), either, less])
+    );
+    let steps: Vec<&StepKind> = go.body.iter().map(|s| &s.kind).collect();
+    let sum = op(BinaryOp::Add, Expr::Var(1), Expr::Var(0));
+    assert_eq!(steps[0], &StepKind::Do { event: EventId(1), args: vec![sum] });
+    assert_eq!(steps[1], &StepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)] });
+    assert_eq!(steps[2], &StepKind::Query { belief: BeliefId(1), args: vec![Term::Var(2)] });
+    assert_eq!(steps[3], &StepKind::Remove { belief: BeliefId(0), args: vec![Term::Any] });
+    assert_eq!(steps[4], &StepKind::Replace { belief: BeliefId(0), args: vec![Expr::Var(2)] });
+    let no = &a.plans[1];
+    assert_eq!((no.label.as_str(), no.trigger.on), ("no", TriggerOn::GoalFailed(GoalId(0))));
+    let events = vec![pattern(0, &[TRUE]), pattern(0, &[ArgPattern::Any])];
+    assert_eq!(no.body[0].kind, StepKind::Await { events, within: Some(2 * SECOND) });
+    assert_eq!(no.body[1].kind, StepKind::Wait { seconds: Expr::float(0.5) });
+    assert_eq!(no.body[2].kind, StepKind::Spawn { goal: GoalId(0), args: vec![Expr::int(1)] });
+    assert_eq!(a.plans[2].trigger.on, TriggerOn::Perceived(EventId(0)));
+    assert_eq!(a.plans[2].context, Context::Test(Expr::Var(0)));
+}
+
+#[test]
+fn automata_count_slots_from_shared_to_binders() {
+    let p = program(
+        "event got(n: 0..3, ok: bool) from robot\nvar s: bool = true\nvar r: -2..-1\n\
+         automaton A plays person {\n  clock x, y\n  var v: 0..3 = 1\n  location a { invariant x <= 3 s && 4 s > y }\n\
+           init urgent location b\n  a -> b select k: 0..5 when x >= 1 s && v < k && x - y < 2 s && s && 2 s == y on got(n, true) do v = n + k; s = false; x = 0\n\
+           b -> a on got(v, _) do v -= 1\n}\n\
+         automaton R plays robot { init committed location a\n a -> a do got(2, false) }\nnetwork n = A | R",
+    );
+    assert_eq!((p.shared[0].is_bool, p.shared[0].init, p.shared[1].init), (true, 1, -1));
+    let a = &p.automata[0];
+    assert_eq!((a.initial.0, a.locations[1].kind), (1, LocationKind::Urgent));
+    let bound = |c: &hrdsl_ir::ta::ClockConstraint| (c.clock.0, c.minus.map(|m| m.0), c.op, c.bound / SECOND);
+    let invariant: Vec<_> = a.locations[0].invariant.iter().map(bound).collect();
+    assert_eq!(invariant, [(0, None, ClockOp::Le, 3), (1, None, ClockOp::Lt, 4)]);
+    let e = &a.edges[0];
+    let guard: Vec<_> = e.clock_guard.iter().map(bound).collect();
+    assert_eq!(guard, [(0, None, ClockOp::Ge, 1), (0, Some(1), ClockOp::Lt, 2), (1, None, ClockOp::Eq, 2)]);
+    // s 0, r 1, v 2, k 3, n 4
+    let less = op(BinaryOp::Lt, Expr::Var(2), Expr::Var(3));
+    assert_eq!(e.guard, Some(op(BinaryOp::And, less, Expr::Var(0))));
+    assert_eq!((e.selects[0].lo, e.selects[0].hi, e.selects[0].is_bool), (0, 5, false));
+    assert_eq!(
+        e.sync,
+        Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, ReceiveArg::Match(TRUE)] }
+    );
+    let sum = op(BinaryOp::Add, Expr::Var(4), Expr::Var(3));
+    assert_eq!(e.updates[0], Update::Assign { slot: 2, value: sum });
+    assert_eq!(e.updates[1], Update::Assign { slot: 0, value: Expr::bool(false) });
+    assert!(matches!(e.updates[2], Update::Reset { clock } if clock.0 == 0));
+    // A variable in `on` is compared.
+    let e = &a.edges[1];
+    let any = ReceiveArg::Match(ArgPattern::Any);
+    assert_eq!(e.sync, Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, any] });
+    assert_eq!(e.guard, Some(op(BinaryOp::Eq, Expr::Var(3), Expr::Var(2))));
+    assert_eq!(e.updates, [Update::Assign { slot: 2, value: op(BinaryOp::Sub, Expr::Var(2), Expr::int(1)) }]);
+    let send = Sync::Send { event: EventId(0), args: vec![Expr::int(2), Expr::bool(false)] };
+    assert_eq!(p.automata[1].edges[0].sync, send);
+    assert_eq!(p.networks[0].automata.len(), 2);
+}
+
+#[test]
+fn what_a_stimulus_emits_follows_through_committed_locations() {
+    let p = program(
+        "event e from person\nevent f(ok: bool, n: 0..3) from person\nstimulus plain by person { hold 1 s }\n\
+         stimulus one by person { hold 1 s; emit e }\n\
+         stimulus two(ok: bool) by person { emit e; if ok { emit f(ok, 2) } else { hold 1 s } }\n\
+         automaton A plays person {\n  clock x\n  var v: 0..3\n  init location a\n  location b\n\
+           a -> b when x >= 1 s do plain; x = 0\n  a -> b when x >= 1 s do one; x = 0\n  a -> a do two(true)\n\
+           a -> b do two(false)\n  b -> a select k: bool do two(k); v = 3\n}",
+    );
+    let a = &p.automata[0];
+    let names: Vec<&str> = a.locations.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["a", "b", "a.b~1", "a.a~1", "a.a~2", "a.b~2", "b.a~1", "b.a~2"]);
+    assert!(a.locations[2..].iter().all(|l| l.kind == LocationKind::Committed));
+    let edge = |i: usize| {
+        let e = &a.edges[i];
+        let event = match &e.sync {
+            Sync::Send { event, .. } => p.event(*event).name.as_str(),
+            Sync::Internal | Sync::Receive { .. } => "-",
+        };
+        (e.from.0, event, e.to.0, e.clock_guard.len(), e.updates.len())
+    };
+    assert_eq!(edge(0), (0, "plain", 1, 1, 1));
+    // Guard and updates are on the first edge.
+    assert_eq!([edge(1), edge(2)], [(0, "one", 2, 1, 1), (2, "e", 1, 0, 0)]);
+    assert_eq!([edge(3), edge(4), edge(5)], [(0, "two", 3, 0, 0), (3, "e", 4, 0, 0), (4, "f", 0, 0, 0)]);
+    // `two(false)` does not emit `f`.
+    assert_eq!([edge(6), edge(7)], [(0, "two", 5, 0, 0), (5, "e", 1, 0, 0)]);
+    // `two(k)`: the argument is kept until the end of the chain; v 0, kept 1, k 2.
+    assert_eq!(a.vars.len(), 2);
+    assert!(a.vars[1].is_bool && a.vars[1].name.contains('~'));
+    assert_eq!([edge(8), edge(9)], [(1, "two", 6, 0, 2), (6, "e", 7, 0, 0)]);
+    assert_eq!([edge(10), edge(11)], [(7, "f", 0, 0, 1), (7, "-", 0, 0, 1)]);
+    assert_eq!(a.edges[8].updates[0], Update::Assign { slot: 1, value: Expr::Var(2) });
+    assert_eq!(a.edges[10].guard, Some(Expr::Var(1)));
+    assert_eq!(a.edges[11].guard, Some(not(Expr::Var(1))));
+    assert_eq!(a.edges[10].updates, [Update::Assign { slot: 1, value: Expr::bool(false) }]);
+    let sent = Sync::Send { event: EventId(1), args: vec![Expr::Var(1), Expr::int(2)] };
+    assert_eq!(a.edges[10].sync, sent);
+}
+
+const WORLD: &str = "part hands {\n  body palm: kinematic box(1 cm, 2 cm, 3 cm) at (1 m, 0 m, 0 m) rotated (0 deg, 90 deg, 0 deg)\n\
+    body tip: dynamic capsule(1 cm, 5 cm) at (2 m, 0 m, 0 m) mass 100 g\n\
+    joint j: palm -> tip at (1 m, 1 m, 0 m) axis (0, 2, 0) limits -90 deg .. 90 deg\n\
+    arm reach_: j tip tip tool (1 cm, 0 m, 0 m) speed 1 rad/s\n  gripper grip: palm tool (0 m, 0 m, 0 m) reach 4 cm delay 500 ms\n}\n\
+  world {\n  part robot = hands at (0 m, 0 m, 1 m) rotated (0 deg, 0 deg, 90 deg)\n\
+    body cup: dynamic sphere(5 cm) at (0 m, 0 m, 0 m) mass 1 kg graspable\n  body mug: dynamic sphere(5 cm) at (1 m, 0 m, 0 m) mass 1 kg graspable\n\
+    current drink in cup, mug by robot.grip\n\
+    signal near: bool to robot = distance(robot.palm, drink) < 5 cm && abs(drink.z) < 1 m\n\
+    signal close: bool to robot = near && holds(robot.grip)\n  signal high: length to robot = cup.z\n\
+    on read when range(robot.palm, cup) < 2 m && near emit said(close, high)\n  on close robot.grip emit closed\n}\n\
+  event read from robot\nevent said(ok: bool, z: length) from person\nevent closed from robot\n";
+
+#[test]
+fn worlds_have_their_parts_in_place() {
+    let p = program(&format!(
+        "{WORLD}stimulus s(d: length) by person {{\n  robot.palm.move_to(drink + (d, 0 m, 1 cm), 2 s)\n\
+           robot.palm.move_to((1 m, 0 m, d), 1 s)\n  robot.palm.move_to(cup, 1 s)\n\
+           robot.palm.look_at(drink, 1 cm, d, 90 deg)\n  robot.grip.grasp()\n  robot.grip.let_go()\n}}"
+    ));
+    let w = p.world.as_ref().unwrap();
+    assert_eq!((w.step, w.sample, w.gravity), (SECOND / 100, SECOND / 20, [0.0, 0.0, -9.81]));
+    let palm = &w.bodies[0];
+    assert_eq!((palm.name.as_str(), palm.position), ("robot.palm", [0.0, 1.0, 1.0]));
+    let quarter = std::f64::consts::FRAC_PI_2;
+    assert_eq!(palm.rotation, [0.0, quarter, quarter]);
+    assert_eq!(palm.shape, Shape::Box { size: [0.01, 0.02, 0.03] });
+    let j = &w.joints[0];
+    assert_eq!((j.name.as_str(), j.anchor, j.axis), ("robot.j", [-1.0, 1.0, 1.0], [-1.0, 0.0, 0.0]));
+    assert_eq!((j.lo, j.hi, w.arms[0].max_speed), (-quarter, quarter, 1.0));
+    assert_eq!(w.grippers[0].holds, [BodyId(2), BodyId(3)]);
+    assert_eq!((w.grippers[0].delay, w.currents[0].of.len()), (SECOND / 2, 2));
+
+    let (palm, drink) = (BodyRef::Body(BodyId(0)), BodyRef::Current(CurrentId(0)));
+    let cup = BodyRef::Body(BodyId(2));
+    let near = &p.signals[0];
+    assert_eq!(near.terms, [Measure::Distance(palm, drink), Measure::Coordinate(drink, Axis::Z)]);
+    let close = op(BinaryOp::Lt, Expr::Var(0), Expr::float(0.05));
+    let low = op(BinaryOp::Lt, Expr::Call(Function::Abs, vec![Expr::Var(1)]), Expr::float(1.0));
+    assert_eq!(near.value, op(BinaryOp::And, close, low));
+    // An earlier signal is put in.
+    assert_eq!(p.signals[1].terms.len(), 3);
+    assert_eq!(p.signals[1].value, op(BinaryOp::And, near.value.clone(), Expr::Var(2)));
+    assert_eq!(p.signals[3].name, "range(robot.palm, cup)");
+    assert!(p.signals.iter().all(|s| !s.recorded));
+    let rule = &w.rules[0];
+    assert_eq!(rule.signals, [SignalId(3), SignalId(0), SignalId(1), SignalId(2)]);
+    let ranged = op(BinaryOp::Lt, Expr::Var(0), Expr::float(2.0));
+    assert_eq!(rule.guard, Some(op(BinaryOp::And, ranged, Expr::Var(1))));
+    assert_eq!(rule.args, [Expr::Var(2), Expr::Var(3)]);
+    assert_eq!(w.rules[1].on, RuleOn::Closes(GripperId(0)));
+
+    let steps = p.event(p.event_named("s").unwrap()).stimulus.clone().unwrap().steps;
+    let acts: Vec<WorldAction> =
+        steps.into_iter().map(|s| if let StimulusStep::Act(a) = s { a } else { panic!("{s:?}") }).collect();
+    let WorldAction::Move { body: BodyId(0), to, over } = &acts[0] else { panic!() };
+    assert_eq!((to.of, over), (Some(drink), &Expr::float(2.0)));
+    assert_eq!(to.offset, [Expr::Var(0), Expr::float(0.0), Expr::float(0.01)]);
+    let WorldAction::Move { to, .. } = &acts[1] else { panic!() };
+    assert_eq!((to.of, &to.offset[2]), (None, &Expr::Var(0)));
+    let WorldAction::Move { to, .. } = &acts[2] else { panic!() };
+    assert_eq!((to.of, &to.offset[2]), (Some(cup), &Expr::float(0.0)));
+    let WorldAction::Look { at, angle, .. } = &acts[3] else { panic!() };
+    assert_eq!((*at, angle), (drink, &Expr::float(quarter)));
+    assert_eq!(acts[4], WorldAction::Grasp { gripper: GripperId(0) });
+    assert_eq!(acts[5], WorldAction::LetGo { gripper: GripperId(0) });
+}
+
+/// `(from, to, on, guard, effects)` of each edge; events by name.
+fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<Effect>)> {
+    let on = |on: &On| match on {
+        On::Event(patterns) => {
+            patterns.iter().map(|e| p.event(e.event).name.clone()).collect::<Vec<_>>().join("|")
+        }
+        On::Sample => "sample".to_owned(),
+        On::Deadline => "deadline".to_owned(),
+    };
+    p.monitors[monitor]
+        .edges
+        .iter()
+        .map(|e| (e.from.0, e.to.0, on(&e.on), e.guard.is_some(), e.effects.clone()))
+        .collect()
+}
+
+#[test]
+fn patterns_become_monitors() {
+    use Effect::{Discharge, Fail, ResetClock, Trigger};
+    let p = program(&format!(
+        "{WORLD}event t(ok: bool) from robot\nevent r from robot\n\
+         require A functional \"title\" after t(_):\n  (r or read) within 10 s\nrequire B functional t(true) causes r\n\
+         require C safety t forbids r or read until said\nrequire D safety never r while distance(robot.palm, cup) < 5 cm\n\
+         require E safety globally joint_speed(robot.reach_) < 0.25 rad/s && speed(cup) <= 1 m/s\n\
+         require F safety never r\nrequire G safety globally near\n\
+         require H safety never r while not (cup.z > 5 cm || 3 m <= high)\n\
+         assume at most 4 t within 300 s"
+    ));
+    let e =
+        |from, to, on: &str, guard, effects: &[Effect]| (from, to, on.to_owned(), guard, effects.to_vec());
+    let a = &p.monitors[0];
+    assert_eq!((a.title.as_str(), a.text.as_str()), ("title", "after t(_): (r or read) within 10 s"));
+    assert_eq!((a.states[1].pending, a.states[1].deadline), (true, Some(10 * SECOND)));
+    assert_eq!(
+        edges(&p, 0),
+        [
+            e(0, 1, "t", false, &[Trigger, ResetClock]),
+            e(1, 0, "r|read", false, &[Discharge]),
+            e(1, 1, "t", false, &[Trigger]),
+            e(1, 0, "deadline", false, &[Fail]),
+        ]
+    );
+    assert_eq!((edges(&p, 1).len(), p.monitors[1].states[1].deadline), (3, None));
+    assert_eq!(p.monitors[1].edges[0].on, On::Event(vec![pattern(3, &[TRUE])]));
+    assert_eq!(
+        edges(&p, 2),
+        [
+            e(0, 1, "t", false, &[Trigger]),
+            e(1, 1, "r|read", false, &[Fail]),
+            e(1, 0, "said", false, &[Discharge]),
+            e(1, 1, "t", false, &[Trigger]),
+        ]
+    );
+    assert!(p.monitors[2].states.iter().all(|s| !s.pending));
+
+    assert_eq!(edges(&p, 3), [e(0, 0, "r", true, &[Trigger, Fail]), e(0, 0, "r", false, &[Trigger])]);
+    let d = &p.monitors[3];
+    let margin = d.margin.as_ref().unwrap();
+    assert_eq!(margin.value, op(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05)));
+    assert_eq!((margin.unit, margin.at.len()), (Unit::Metre, 1));
+    let read = &p.signals[usize::from(d.signals[0].0)];
+    assert_eq!((read.name.as_str(), read.recorded), ("distance(robot.palm, cup)", true));
+    assert_eq!(d.edges[0].guard, Some(op(BinaryOp::Lt, Expr::Var(0), Expr::float(0.05))));
+
+    assert_eq!(
+        edges(&p, 4),
+        [
+            e(0, 2, "sample", true, &[Trigger, Fail]),
+            e(0, 1, "sample", true, &[Trigger]),
+            e(1, 2, "sample", true, &[Fail]),
+            e(2, 1, "sample", true, &[]),
+        ]
+    );
+    // The units differ: there is no one margin.
+    assert_eq!((p.monitors[4].signals.len(), p.monitors[4].margin.as_ref()), (2, None));
+    assert_eq!(edges(&p, 5), [e(0, 0, "r", false, &[Trigger, Fail])]);
+    let g = &p.monitors[6];
+    assert_eq!((g.signals.as_slice(), g.margin.as_ref()), (&[SignalId(0)][..], None));
+    assert!(p.signals[0].recorded && !p.signals[1].recorded);
+    assert_eq!(g.edges[0].guard, Some(not(Expr::Var(0))));
+    // Never while not (z > c or d <= high): safe by the larger of z - c and high - d.
+    let h = &p.monitors[7];
+    assert_eq!(h.signals, [SignalId(2)], "`cup.z` is just what the signal `high` measures");
+    let above = op(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05));
+    let far = op(BinaryOp::Sub, Expr::Var(0), Expr::float(3.0));
+    assert_eq!(h.margin.as_ref().unwrap().value, Expr::Call(Function::Max, vec![above, far]));
+    let assumed = &p.assumptions[0];
+    assert_eq!((assumed.at_most, assumed.within), (4, Some(300 * SECOND)));
+    assert_eq!(assumed.text, "assume at most 4 t within 300 s");
+}
+
+#[test]
+fn coverage_suites_and_tests() {
+    let p = program(
+        "event e from person\nevent m(ok: bool) from robot\nstimulus s(ok: bool) by person {\n  sample a in 1 m .. 2 m\n  emit e\n}\n\
+         agent A plays person { belief b(n: 0..3, ok: bool) }\nautomaton R plays robot { init location a }\nnetwork net = R\n\
+         cover c = count(m(true) or e) bins none = 0, few = 1..3, many = 4..\n\
+         cross x = c { bin \"some\" when not c.none && (c.few || c.many)\n ignore when c.many }\n\
+         suite g by agents A, R { choose one b of A per ok\n choose any b of A\n explore random }\n\
+         suite h by search of net { reach each bin of x\n reach each location\n reach each edge\n tests 7 }\n\
+         suite r by random { stimuli s\n await m\n length 2..4\n pause 1 s .. 2 s }\n\
+         test h.t1 {\n seed 17\n method search\n because \"it\"\n predicts \"x.some\"\n s(true)\n s(false) with a = 150 cm\n await m(true) | e within 3 s\n wait 1 s\n}\n\
+         test t2 { s(true) }\nsystem robot { run \"python3 'my robot.py'\"\n coverage \"a.py\", \"b.py\"\n limit 60 s }",
+    );
+    let c = &p.coverage.points[0];
+    assert_eq!(c.count, [pattern(1, &[TRUE]), pattern(0, &[])]);
+    let bins: Vec<(i64, Option<i64>)> = c.bins.iter().map(|b| (b.lo, b.hi)).collect();
+    assert_eq!(bins, [(0, Some(0)), (1, Some(3)), (4, None)]);
+    let at = |bin| Condition::In { point: PointId(0), bin };
+    let x = &p.coverage.crosses[0];
+    let some = Condition::And(vec![Condition::Not(Box::new(at(0))), Condition::Or(vec![at(1), at(2)])]);
+    assert_eq!((&x.bins[0].when, x.ignore.as_slice()), (&some, &[at(2)][..]));
+
+    let Method::Agents { players, choose, explore } = &p.suites[0].method else { panic!() };
+    assert_eq!((players.len(), *explore), (2, Explore::Random));
+    assert_eq!((choose[0].how, choose[1].how), (ChoiceKind::OnePer(1), ChoiceKind::Any));
+    assert_eq!(
+        (p.suites[0].tests, p.suites[0].horizon, p.suites[0].patience),
+        (100, 300 * SECOND, 60 * SECOND)
+    );
+    let Method::Search { network: 0, goals } = &p.suites[1].method else { panic!() };
+    assert_eq!(goals[..], [SearchGoal::Bins { cross: 0 }, SearchGoal::Locations, SearchGoal::Edges]);
+    assert_eq!(p.suites[1].tests, 7);
+    assert_eq!(
+        p.suites[2].method,
+        Method::Random {
+            stimuli: vec![EventId(2)],
+            awaits: vec![pattern(1, &[ArgPattern::Any])],
+            length_lo: 2,
+            length_hi: 4,
+            pause_lo: SECOND,
+            pause_hi: 2 * SECOND,
+        }
+    );
+
+    let t = &p.tests[0];
+    assert_eq!((t.name.as_str(), t.seed, t.provenance.suite.as_str()), ("small.h.t1", 17, "h"));
+    assert_eq!(
+        (t.provenance.method.as_str(), t.provenance.predicts.as_slice()),
+        ("search", &["x.some".to_owned()][..])
+    );
+    let args = |b| vec![Value::Bool(b)];
+    assert_eq!(t.steps[0], TestStep::Do { event: EventId(2), args: args(true), samples: vec![] });
+    let samples = vec![Value::Float(1.5)];
+    assert_eq!(t.steps[1], TestStep::Do { event: EventId(2), args: args(false), samples });
+    let events = vec![pattern(1, &[TRUE]), pattern(0, &[])];
+    assert_eq!(t.steps[2], TestStep::Await { events, within: 3 * SECOND });
+    assert_eq!(t.steps[3], TestStep::Wait { time: SECOND });
+    assert_eq!((p.tests[1].name.as_str(), p.tests[1].provenance.method.as_str()), ("small.t2", "hand"));
+
+    let system = p.system.as_ref().unwrap();
+    assert_eq!(system.run, ["python3", "my robot.py"]);
+    assert_eq!((system.coverage.len(), system.limit, system.budget), (2, 60 * SECOND, 10 * SECOND));
+}
+
+#[test]
+fn constants_fold_as_the_run_time_evaluates() {
+    // Folded at compile time, and the same with a variable in place of one operand, evaluated.
+    let values = ["0", "1", "-3", "7", "0.5", "-2.5"];
+    let operators = ["+", "-", "*", "/", "%", "<", "<=", ">", ">=", "==", "!="];
+    let mut compared = 0;
+    for a in values {
+        for b in values {
+            for o in operators {
+                let result = if ["<", "<=", ">", ">=", "==", "!="].contains(&o) { "bool" } else { "float" };
+                let stimulus = |x: &str| {
+                    let hold = if result == "bool" {
+                        format!("if {x} {o} ({b}) {{ hold 1 s }}")
+                    } else {
+                        format!("hold ({x} {o} ({b})) * 1 s")
+                    };
+                    format!("stimulus s(x: float) by person {{ {hold} }}")
+                };
+                let with = |x: &str| {
+                    let text = format!("scenario fold\n{ACTORS}{}", stimulus(x));
+                    let c = compile(Input { name: "fold.hri", text: &text }, &[]);
+                    let steps = c.program?.events[0].stimulus.clone()?.steps;
+                    let e = match steps.into_iter().next()? {
+                        StimulusStep::Hold { seconds } => seconds,
+                        StimulusStep::If { condition, .. } => condition,
+                        StimulusStep::Emit { .. } | StimulusStep::Act(_) => return None,
+                    };
+                    let whole = !a.contains('.');
+                    let x = if whole { Value::Int(a.parse().ok()?) } else { Value::Float(a.parse().ok()?) };
+                    e.eval(&|_| Some(x)).ok()
+                };
+                let (folded, evaluated) = (with(&format!("({a})")), with("x"));
+                assert_eq!(folded, evaluated, "{a} {o} {b}");
+                compared += usize::from(folded.is_some());
+            }
+        }
+    }
+    // All but the divisions by zero have a value.
+    assert_eq!(compared, values.len() * (values.len() * operators.len() - 2));
+}
