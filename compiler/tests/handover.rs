@@ -49,3 +49,24 @@ fn its_program_means_what_it_says() {
     assert_eq!(labels[..3], ["table#1", "table#2", "reach_out#1"]);
     assert_eq!(p.coverage.crosses[0].bins.len(), 14);
 }
+
+/// Whatever is missing, the compiler says so, and does not break.
+#[test]
+fn no_line_is_needed_to_survive() {
+    let lines: Vec<&str> = SCENARIO.lines().collect();
+    for missing in 0..lines.len() {
+        let mut left = lines.clone();
+        left.remove(missing);
+        let without = compiled(&left.join("\n"));
+        assert_eq!(without.program.is_none(), without.has_errors());
+        let start = compiled(&lines[..missing].join("\n"));
+        assert_eq!(start.program.is_none(), start.has_errors());
+    }
+}
+
+/// Two runs say and make the same, to the byte.
+#[test]
+fn compiling_is_deterministic() {
+    let twice = [(); 2].map(|()| format!("{:?}", compiled(&SCENARIO.replace("person", "persn"))));
+    assert_eq!(twice[0], twice[1]);
+}

@@ -45,8 +45,8 @@ fn tokens(text: &str) -> Vec<Token> {
         let is_name = |c: char| c.is_alphanumeric() || c == '_';
         let (length, kept, name) = if rest.starts_with("//") {
             (run(|c| c != '\n'), None, false)
-        } else if rest.starts_with('"') {
-            (rest[1..].find('"').unwrap() + 2, Some("\"".to_owned()), false)
+        } else if let Some(inner) = rest.strip_prefix('"') {
+            (inner.find('"').unwrap() + 2, Some("\"".to_owned()), false)
         } else if bytes[i].is_ascii_digit() {
             let mut n = run(|c| c.is_ascii_digit() || c == '.');
             // `0..4` is not one number

@@ -48,10 +48,12 @@ impl<'a> Checker<'a> {
         });
         let placed = self.flatten(members, "", Frame::default(), 0);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &Placed<'a>); 5] = [
+        let passes: [fn(&mut Self, &Placed<'a>); 7] = [
             Self::settings_and_bodies,
-            Self::joints_and_grippers,
-            Self::arms_and_currents,
+            Self::joint,
+            Self::gripper,
+            Self::arm,
+            Self::current,
             Self::signals,
             Self::rules,
         ];
@@ -186,58 +188,45 @@ impl<'a> Checker<'a> {
         self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
     }
 
-    fn joints_and_grippers(&mut self, p: &Placed<'a>) {
-        match &p.member.kind {
-            Member::Joint { name, parent, child, at, axis, limits } => {
-                let bodies = (self.local_body(parent, &p.prefix), self.local_body(child, &p.prefix));
-                if parent.text == child.text {
-                    let message = format!("the joint `{}` joins a body to itself", name.text);
-                    self.report(bad_world(child.span, message, "name another body"));
-                }
-                let anchor = self.vector(at, LENGTH).unwrap_or_default();
-                let direction = self.vector(axis, NUMBER);
-                if direction == Some([0.0; 3]) {
-                    let message = "an axis has a direction".to_owned();
-                    self.report(bad_world(axis.span, message, "write `axis (0, 0, 1)`"));
-                }
-                let (lo, hi) = self.limits(limits);
-                let full = format!("{}{}", p.prefix, name.text);
-                let (issues, table) = (&mut self.issues, &mut self.in_world.joints);
-                if Self::declare_as(issues, table, Noun::Joint, &full, name.span).is_some() {
-                    let joint = Joint {
-                        name: full,
-                        parent: bodies.0.unwrap_or(BodyId(0)),
-                        child: bodies.1.unwrap_or(BodyId(0)),
-                        frame: p.frame,
-                        anchor,
-                        axis: direction.unwrap_or([0.0, 0.0, 1.0]),
-                        lo,
-                        hi,
-                    };
-                    self.world_mut().joints.push(joint);
-                }
-            }
-            Member::Gripper { name, palm, tool, reach, delay } => {
-                let palm = self.local_body(palm, &p.prefix).unwrap_or(BodyId(0));
-                let tool = self.vector(tool, LENGTH).unwrap_or_default();
-                let reach = self.more_than_zero(reach, Dim::LENGTH, "the reach").unwrap_or(0.0);
-                let delay = self.time(delay, "the delay", false).unwrap_or(0.0);
-                let full = format!("{}{}", p.prefix, name.text);
-                let (issues, table) = (&mut self.issues, &mut self.in_world.grippers);
-                if Self::declare_as(issues, table, Noun::Gripper, &full, name.span).is_some() {
-                    self.world_mut().grippers.push(Gripper { name: full, palm, tool, reach, delay });
-                }
-            }
-            Member::Step(_)
-            | Member::Sample(_)
-            | Member::Gravity(_)
-            | Member::Part { .. }
-            | Member::Body(_)
-            | Member::Arm { .. }
-            | Member::Current { .. }
-            | Member::Signal { .. }
-            | Member::Rule(_)
-            | Member::Error => {}
+    fn joint(&mut self, p: &Placed<'a>) {
+        let Member::Joint { name, parent, child, at, axis, limits } = &p.member.kind else { return };
+        let bodies = (self.local_body(parent, &p.prefix), self.local_body(child, &p.prefix));
+        if parent.text == child.text {
+            let message = format!("the joint `{}` joins a body to itself", name.text);
+            self.report(bad_world(child.span, message, "name another body"));
+        }
+        let anchor = self.vector(at, LENGTH).unwrap_or_default();
+        let direction = self.vector(axis, NUMBER);
+        if direction == Some([0.0; 3]) {
+            self.report(bad_world(axis.span, "an axis has a direction", "write `axis (0, 0, 1)`"));
+        }
+        let (lo, hi) = self.limits(limits);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.in_world.joints);
+        if Self::declare_as(issues, table, Noun::Joint, &full, name.span).is_some() {
+            self.world_mut().joints.push(Joint {
+                name: full,
+                parent: bodies.0.unwrap_or(BodyId(0)),
+                child: bodies.1.unwrap_or(BodyId(0)),
+                frame: p.frame,
+                anchor,
+                axis: direction.unwrap_or([0.0, 0.0, 1.0]),
+                lo,
+                hi,
+            });
+        }
+    }
+
+    fn gripper(&mut self, p: &Placed<'a>) {
+        let Member::Gripper { name, palm, tool, reach, delay } = &p.member.kind else { return };
+        let palm = self.local_body(palm, &p.prefix).unwrap_or(BodyId(0));
+        let tool = self.vector(tool, LENGTH).unwrap_or_default();
+        let reach = self.more_than_zero(reach, Dim::LENGTH, "the reach").unwrap_or(0.0);
+        let delay = self.time(delay, "the delay", false).unwrap_or(0.0);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.in_world.grippers);
+        if Self::declare_as(issues, table, Noun::Gripper, &full, name.span).is_some() {
+            self.world_mut().grippers.push(Gripper { name: full, palm, tool, reach, delay });
         }
     }
 
@@ -255,56 +244,40 @@ impl<'a> Checker<'a> {
         (lo, hi)
     }
 
-    fn arms_and_currents(&mut self, p: &Placed<'a>) {
-        match &p.member.kind {
-            Member::Arm { name, joints, tip, tool, speed } => {
-                let ids: Vec<JointId> = joints
-                    .iter()
-                    .filter_map(|j| self.world_name(Noun::Joint, std::slice::from_ref(j), &p.prefix))
-                    .map(JointId)
-                    .collect();
-                let tip_id = self.local_body(tip, &p.prefix);
-                if ids.len() == joints.len()
-                    && let Some(tip_id) = tip_id
-                {
-                    self.chain(&ids, joints, tip, tip_id);
-                }
-                let tool = self.vector(tool, LENGTH).unwrap_or_default();
-                let speed = self.more_than_zero(speed, Dim::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
-                let full = format!("{}{}", p.prefix, name.text);
-                let (issues, table) = (&mut self.issues, &mut self.in_world.arms);
-                if Self::declare_as(issues, table, Noun::Arm, &full, name.span).is_some() {
-                    let tip = tip_id.unwrap_or(BodyId(0));
-                    self.world_mut().arms.push(Arm { name: full, joints: ids, tip, tool, speed });
-                }
-            }
-            Member::Current { name, of, by } => {
-                let of: Vec<BodyId> = of
-                    .iter()
-                    .filter_map(|path| self.world_name(Noun::Body, &path.names, &p.prefix))
-                    .map(BodyId)
-                    .collect();
-                let by = self.world_name(Noun::Gripper, &by.names, &p.prefix).map_or(GripperId(0), GripperId);
-                let full = format!("{}{}", p.prefix, name.text);
-                if let Some(id) = self.in_world.bodies.get(&full) {
-                    let first = self.in_world.bodies.span(id);
-                    self.report(names::duplicate(Noun::Body, &full, name.span, first));
-                }
-                let (issues, table) = (&mut self.issues, &mut self.in_world.currents);
-                if Self::declare_as(issues, table, Noun::Current, &full, name.span).is_some() {
-                    self.world_mut().currents.push(Current { name: full, of, by });
-                }
-            }
-            Member::Step(_)
-            | Member::Sample(_)
-            | Member::Gravity(_)
-            | Member::Part { .. }
-            | Member::Body(_)
-            | Member::Joint { .. }
-            | Member::Gripper { .. }
-            | Member::Signal { .. }
-            | Member::Rule(_)
-            | Member::Error => {}
+    fn arm(&mut self, p: &Placed<'a>) {
+        let Member::Arm { name, joints, tip, tool, speed } = &p.member.kind else { return };
+        let ids: Vec<JointId> = joints
+            .iter()
+            .filter_map(|j| self.world_name(Noun::Joint, std::slice::from_ref(j), &p.prefix))
+            .map(JointId)
+            .collect();
+        let tip_id = self.local_body(tip, &p.prefix);
+        if let (true, Some(tip_id)) = (ids.len() == joints.len(), tip_id) {
+            self.chain(&ids, joints, tip, tip_id);
+        }
+        let tool = self.vector(tool, LENGTH).unwrap_or_default();
+        let speed = self.more_than_zero(speed, Dim::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.in_world.arms);
+        if Self::declare_as(issues, table, Noun::Arm, &full, name.span).is_some() {
+            let tip = tip_id.unwrap_or(BodyId(0));
+            self.world_mut().arms.push(Arm { name: full, joints: ids, tip, tool, speed });
+        }
+    }
+
+    fn current(&mut self, p: &Placed<'a>) {
+        let Member::Current { name, of, by } = &p.member.kind else { return };
+        let bodies = of.iter().filter_map(|path| self.world_name(Noun::Body, &path.names, &p.prefix));
+        let of: Vec<BodyId> = bodies.map(BodyId).collect();
+        let by = self.world_name(Noun::Gripper, &by.names, &p.prefix).map_or(GripperId(0), GripperId);
+        let full = format!("{}{}", p.prefix, name.text);
+        if let Some(id) = self.in_world.bodies.get(&full) {
+            let first = self.in_world.bodies.span(id);
+            self.report(names::duplicate(Noun::Body, &full, name.span, first));
+        }
+        let (issues, table) = (&mut self.issues, &mut self.in_world.currents);
+        if Self::declare_as(issues, table, Noun::Current, &full, name.span).is_some() {
+            self.world_mut().currents.push(Current { name: full, of, by });
         }
     }
 
