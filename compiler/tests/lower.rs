@@ -315,7 +315,10 @@ fn patterns_become_monitors() {
     );
     assert!(p.monitors[2].states.iter().all(|s| !s.pending));
 
-    assert_eq!(edges(&p, 3), [e(0, 0, "r", true, &[Trigger, Fail]), e(0, 0, "r", false, &[Trigger])]);
+    assert_eq!(
+        edges(&p, 3),
+        [e(0, 0, "r", true, &[Trigger, Fail]), e(0, 0, "r", false, &[Trigger, Discharge])]
+    );
     let d = &p.monitors[3];
     let margin = d.margin.as_ref().unwrap();
     assert_eq!(margin.value, op(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05)));

@@ -109,7 +109,7 @@ fn never(events: Vec<EventPattern>, condition: Option<&model::Expr>, signals: &m
     let margin = condition.and_then(|c| margin(c, false, &mut reader));
     let mut edges = vec![edge(0, 0, On::Event(events.clone()), guard, &[Trigger, Fail])];
     if condition.is_some() {
-        edges.push(edge(0, 0, On::Event(events.clone()), None, &[Trigger]));
+        edges.push(edge(0, 0, On::Event(events.clone()), None, &[Trigger, Discharge]));
     }
     Machine {
         states: vec![state("watch", false, None)],

@@ -46,12 +46,18 @@ fn declaration(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &m
     if first.kind == Kind::Scenario && chunk.sort == Sort::Item {
         return scenario(cx, tokens, chunk, result);
     }
+    let said = cx.diagnostics.len();
     let kind = match chunk.sort {
         Sort::Item => item(cx, tokens, chunk),
         Sort::Unread => ItemKind::Error,
     };
     let span = cx.span(first.start, last.end);
+    // What was kept of a broken declaration without a block may have swallowed the next one.
+    let swallowed = cx.diagnostics.len() > said && !first.kind.has_block() && kind != ItemKind::Error;
     result.items.push(Item { doc: cx.doc(first.start), kind, span });
+    if swallowed {
+        result.items.push(Item { doc: String::new(), kind: ItemKind::Error, span });
+    }
 }
 
 /// A declaration of one token: always broken.

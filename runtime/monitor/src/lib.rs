@@ -30,6 +30,8 @@ pub struct Checker {
     /// For each signal of the program, the monitors that read it.
     by_signal: Vec<Vec<usize>>,
     signals: Latest,
+    /// For each monitor the last of the samples of this instant that it has not yet reacted to.
+    sampled: Vec<Option<Moment>>,
     now: Nanos,
     /// No deadline is due before this; it may be too early (then a scan finds nothing), never too late.
     next_due: Nanos,
@@ -58,15 +60,32 @@ impl Checker {
         }
         let next_due = earliest(&machines);
         let signals = Latest(vec![None; program.signals.len()]);
-        Self { machines, by_event, by_signal, signals, now: 0, next_due, ended: false }
+        let sampled = vec![None; machines.len()];
+        Self { machines, by_event, by_signal, signals, sampled, now: 0, next_due, ended: false }
     }
 
     /// The verdicts, in the order of the program's monitors.
     ///
     /// Without a call of [`Observer::end`] they are those of the trace so far: no time has passed since its last step.
     #[must_use]
-    pub fn verdicts(self) -> Vec<Verdict> {
+    pub fn verdicts(mut self) -> Vec<Verdict> {
+        self.take_all_samples();
         self.machines.into_iter().enumerate().map(|(index, machine)| machine.verdict(index)).collect()
+    }
+
+    /// Lets a monitor react to the samples of this instant, as to one: a condition over several signals never sees some of
+    /// them new and others old.
+    fn take_samples(&mut self, index: usize) {
+        let Some(at) = self.sampled[index].take() else { return };
+        let machine = &mut self.machines[index];
+        machine.sample(at, &self.signals);
+        self.next_due = self.next_due.min(machine.due().unwrap_or(Nanos::MAX));
+    }
+
+    fn take_all_samples(&mut self) {
+        for index in 0..self.machines.len() {
+            self.take_samples(index);
+        }
     }
 
     fn fire_before(&mut self, time: Nanos) {
@@ -86,23 +105,29 @@ impl Observer for Checker {
         if self.ended {
             return;
         }
+        if step.time > self.now {
+            self.take_all_samples();
+        }
         self.now = self.now.max(step.time);
         self.fire_before(self.now);
         let at = Moment { time: self.now, step: Some(index) };
-        let readers = match &step.what {
-            What::Event { event, .. } => self.by_event.get(usize::from(event.0)),
+        match &step.what {
+            What::Event { event, args } => {
+                let event_index = usize::from(event.0);
+                for k in 0..self.by_event.get(event_index).map_or(0, Vec::len) {
+                    let reader = self.by_event[event_index][k];
+                    self.take_samples(reader);
+                    let machine = &mut self.machines[reader];
+                    machine.event(at, *event, args, &self.signals);
+                    self.next_due = self.next_due.min(machine.due().unwrap_or(Nanos::MAX));
+                }
+            }
             What::Sample { signal, value } => {
                 self.signals.set(*signal, Reading { value: *value, step: index });
-                self.by_signal.get(usize::from(signal.0))
+                for &reader in self.by_signal.get(usize::from(signal.0)).into_iter().flatten() {
+                    self.sampled[reader] = Some(at);
+                }
             }
-        };
-        for &reader in readers.into_iter().flatten() {
-            let machine = &mut self.machines[reader];
-            match &step.what {
-                What::Event { event, args } => machine.event(at, *event, args, &self.signals),
-                What::Sample { .. } => machine.sample(at, &self.signals),
-            }
-            self.next_due = self.next_due.min(machine.due().unwrap_or(Nanos::MAX));
         }
     }
 
@@ -110,6 +135,7 @@ impl Observer for Checker {
         if self.ended {
             return;
         }
+        self.take_all_samples();
         self.now = self.now.max(time);
         // Times are whole nanoseconds: "up to and including now" is "before the next one".
         self.fire_before(self.now.saturating_add(1));

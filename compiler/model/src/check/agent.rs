@@ -54,6 +54,7 @@ impl Checker<'_> {
             .map(|(name, n)| Goal { name: name.clone(), arity: u16::try_from(*n).unwrap_or(u16::MAX) })
             .collect();
         let mut scope = Scope { id, goals, labels: Table::default(), plans_of: IndexMap::new() };
+        self.unread_members = super::unread::in_agent(agent);
         for member in &agent.members {
             match &member.kind {
                 Member::Belief { name, initial, .. } => {
@@ -70,6 +71,7 @@ impl Checker<'_> {
             }
         }
         self.unadopted(&scope, agent);
+        self.unread_members = false;
     }
 
     /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
@@ -177,6 +179,7 @@ impl Checker<'_> {
             let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
             let issue = match is {
                 Some(is) => names::wrong_kind(Noun::Goal, is, &name.text, name.span, goals),
+                None if self.unread_members => return None,
                 None => no_plan(&name.text, name.span, goals),
             };
             self.report(issue);

@@ -39,6 +39,7 @@ impl Checker<'_> {
             vars: Table::default(),
             locations: Table::default(),
         };
+        self.unread_members = super::unread::in_automaton(automaton);
         for member in &automaton.members {
             match &member.kind {
                 Member::Clock(clocks) => {
@@ -57,6 +58,7 @@ impl Checker<'_> {
                 self.s.automata[index].edges.extend(edge);
             }
         }
+        self.unread_members = false;
     }
 
     fn clock(&mut self, index: usize, clock: &Name, scope: &mut Scope) {
@@ -117,7 +119,7 @@ impl Checker<'_> {
                             let known = self.issues.len();
                             self.expr_of(part, crate::Kind::Bool, &mut env);
                             // A name that does not exist is said before what an invariant is.
-                            if self.issues.len() == known {
+                            if self.issues.len() == known && !self.unread_members {
                                 self.report(automata::bad_invariant(part.span));
                             }
                         }

@@ -15,6 +15,7 @@ mod suite;
 mod system;
 mod table;
 mod test;
+mod unread;
 mod vocabulary;
 mod world;
 mod world_parts;
@@ -50,6 +51,7 @@ pub fn resolve(
     let from_modules = items.len();
     items.extend(&scenario.items);
     let mut checker = Checker::new(items, from_modules);
+    checker.unread_items = checker.items.iter().any(|i| unread::in_item(&i.kind));
     checker.s.name = scenario.scenario.as_ref().map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
     checker.world();
@@ -58,7 +60,9 @@ pub fn resolve(
     checker.automata();
     checker.requirements();
     checker.coverage();
+    checker.unread_members = checker.agent_decls.iter().any(|a| unread::in_agent(a));
     checker.suites();
+    checker.unread_members = false;
     checker.systems();
     checker.tests(tests);
     (checker.s, distinct(checker.issues))
@@ -118,6 +122,10 @@ pub(crate) struct Checker<'a> {
     beliefs: Vec<Table>,
     has_world: bool,
     in_world: world_parts::WorldNames,
+    /// A declaration of the scenario, or a member of its world, could not be read.
+    unread_items: bool,
+    /// A member of the agent or automaton that is being checked could not be read.
+    unread_members: bool,
 }
 
 impl<'a> Checker<'a> {
@@ -144,6 +152,8 @@ impl<'a> Checker<'a> {
             automaton_decls: Vec::new(),
             beliefs: Vec::new(),
             has_world,
+            unread_items: false,
+            unread_members: false,
             in_world: world_parts::WorldNames::default(),
         }
     }
@@ -188,8 +198,12 @@ impl<'a> Checker<'a> {
 
     /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
     fn unknown(&mut self, noun: Noun, name: &Name, names: &[String], local: Option<Noun>) {
+        let is = local.or_else(|| self.kind_of(&name.text));
+        if is.is_none() && unread::may_declare(noun, self.unread_items, self.unread_members) {
+            return;
+        }
         let names = names.iter().map(String::as_str);
-        let issue = match local.or_else(|| self.kind_of(&name.text)) {
+        let issue = match is {
             Some(is) if is != noun => wrong_kind(noun, is, &name.text, name.span, names),
             Some(_) | None => unknown(noun, &name.text, name.span, names),
         };
