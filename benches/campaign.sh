@@ -15,5 +15,5 @@ for suite in bdi_tests ta_tests random_tests; do
   target/release/hrdsl sim examples/handover/scenario.hri --suite "$suite" -j "$jobs" -o "$out/$suite" --exit-zero >/dev/null
   end=$(date +%s.%N)
   tests=$(ls "$out/$suite/traces" | wc -l)
-  echo "$suite: $tests tests in $(echo "$end - $start" | bc) s of wall time, $jobs jobs"
+  echo "$suite: $tests tests in $(awk "BEGIN { print $end - $start }") s of wall time, $jobs jobs"
 done

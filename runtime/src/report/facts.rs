@@ -193,15 +193,20 @@ pub fn how(failure: &Failure) -> String {
     }
 }
 
-/// A violation in a few words: the step that violates, or what was not done.
-pub fn in_short(failure: &Failure) -> String {
+/// A violation in a few words: the step that violates, with the margin if it has one, or what was not done.
+pub fn in_short(verdict: &VerdictResult, failure: &Failure) -> String {
     let step = failure.witness.last().map(|s| text::line(&s.text)).unwrap_or_default();
     let passed = text::moment(failure.time - failure.triggered_at);
     match (failure.deadline, failure.witness.as_slice()) {
         (true, []) => format!("nothing within {passed}"),
         (true, _) => format!("nothing within {passed} of {step}"),
-        (false, [first, .., _]) => format!("{step}, {passed} after {}", text::line(&first.text)),
-        (false, _) => step,
+        (false, [first, .., _]) if failure.triggered_at < failure.time => {
+            format!("{step}, {passed} after {}", text::line(&first.text))
+        }
+        (false, _) => match verdict.worst_margin {
+            Some((value, unit)) => format!("{step}, margin {}", text::margin(value, unit)),
+            None => step,
+        },
     }
 }
 

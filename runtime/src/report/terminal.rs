@@ -210,7 +210,7 @@ fn violations(page: &mut Page, results: &Results) {
         let name = format!("✗ {:<names$}  ", text::line(&requirement.name));
         let failure = facts::failure(tests[0].1, &requirement.name);
         let time = failure.map(|(_, f)| text::moment(f.time)).unwrap_or_default();
-        let what = failure.map(|(_, f)| facts::in_short(f)).unwrap_or_default();
+        let what = failure.map(|(v, f)| facts::in_short(v, f)).unwrap_or_default();
         let others = match tests.len() - 1 {
             0 => String::new(),
             more => format!("  +{more}"),
