@@ -6,6 +6,7 @@ use std::{
 };
 
 use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_ir::Program;
 
 use crate::render;
 
@@ -81,8 +82,8 @@ pub fn folder(scenario: &Path) -> PathBuf {
     }
 }
 
-/// Shows all diagnostics on stderr; gives whether there is an error.
-pub fn report(compilation: &Compilation) -> bool {
+/// Shows all diagnostics on stderr; gives the program, which there is if none of them is an error.
+pub fn report(compilation: &Compilation) -> Option<&Program> {
     for diagnostic in &compilation.diagnostics {
         eprint!("{}", render::diagnostic(&compilation.files, diagnostic));
     }
@@ -91,5 +92,5 @@ pub fn report(compilation: &Compilation) -> bool {
     if errors + warnings > 0 {
         eprintln!("{}", render::totals(errors, warnings));
     }
-    errors > 0
+    compilation.program.as_ref()
 }

@@ -204,10 +204,12 @@ fn failure(program: &Program, trace: &Trace, verdict: &Verdict) -> Option<Failur
     let violation = verdict.first_failure.as_ref()?;
     let step = |index: &usize| {
         let step = trace.steps.get(*index)?;
-        let line = print::line(program, step);
-        let text = line.split_once(" s  ").map_or(line.as_str(), |(_, what)| what);
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        Some(WitnessStep { step: *index, time: results::in_seconds(step.time), text })
+        let (who, what) = print::who_did_what(program, &step.what);
+        Some(WitnessStep {
+            step: *index,
+            time: results::in_seconds(step.time),
+            text: format!("{who} {what}"),
+        })
     };
     let mut witness: Vec<WitnessStep> = violation.witness.iter().filter_map(step).collect();
     witness.sort_by_key(|w| w.step);

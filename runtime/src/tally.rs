@@ -7,7 +7,7 @@ use hrdsl_ir::Program;
 
 use crate::{
     results::{BinResult, CodeFile, Margin, Ratios, Results, SuiteInfo, TestResult, requirements},
-    testgen::{Generated, GoalStatus},
+    testgen::{Generated, GoalStatus, bin_goal},
 };
 
 /// Puts the results of a campaign together. `sources` are the texts of the measured files, by name.
@@ -151,7 +151,7 @@ fn bins(
 
 /// Why the search says that a bin cannot be reached.
 fn unreachable(generated: &[Generated], bin: &str) -> Option<String> {
-    let name = format!("bin {bin}");
+    let name = bin_goal(bin);
     let goals = generated.iter().flat_map(|g| &g.goals);
     goals.filter(|g| g.goal == name && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone()).next()
 }

@@ -23,24 +23,20 @@ pub struct Args {
 /// A file that cannot be read.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &args.tests)?;
-    if input::report(&compilation) {
-        return Ok(Exit::Errors);
-    }
-    if let Some(program) = &compilation.program {
-        println!(
-            "{}: scenario `{}` is well formed: {} events and stimuli, {} agents ({} plans), {} automata ({} edges), {} requirements, {} bins, {} suites, {} tests",
-            args.file.display(),
-            program.name,
-            program.events.len(),
-            program.agents.len(),
-            program.agents.iter().map(|a| a.plans.len()).sum::<usize>(),
-            program.automata.len(),
-            program.automata.iter().map(|a| a.edges.len()).sum::<usize>(),
-            program.monitors.len(),
-            program.coverage.crosses.iter().map(|c| c.bins.len()).sum::<usize>(),
-            program.suites.len(),
-            program.tests.len(),
-        );
-    }
+    let Some(program) = input::report(&compilation) else { return Ok(Exit::Errors) };
+    println!(
+        "{}: scenario `{}` is well formed: {} events and stimuli, {} agents ({} plans), {} automata ({} edges), {} requirements, {} bins, {} suites, {} tests",
+        args.file.display(),
+        program.name,
+        program.events.len(),
+        program.agents.len(),
+        program.agents.iter().map(|a| a.plans.len()).sum::<usize>(),
+        program.automata.len(),
+        program.automata.iter().map(|a| a.edges.len()).sum::<usize>(),
+        program.monitors.len(),
+        program.coverage.crosses.iter().map(|c| c.bins.len()).sum::<usize>(),
+        program.suites.len(),
+        program.tests.len(),
+    );
     Ok(Exit::Ok)
 }

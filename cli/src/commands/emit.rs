@@ -45,7 +45,7 @@ enum Stage {
 /// A file that cannot be read.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
-    let has_errors = input::report(&compilation);
+    let has_errors = input::report(&compilation).is_none();
     let Some(text) = emit(args.stage, &compilation) else { return Ok(Exit::Errors) };
     println!("{}", text?);
     Ok(if has_errors { Exit::Errors } else { Exit::Ok })

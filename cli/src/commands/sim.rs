@@ -5,6 +5,7 @@ use std::{
     fs,
     io::{IsTerminal, stdout},
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
 };
 
 use hrdsl_ir::{Program, test::Test};
@@ -60,8 +61,7 @@ pub struct Args {
 /// A file, a suite that does not exist, a model that cannot be run, or what the code needs cannot be installed.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &args.tests)?;
-    let has_errors = input::report(&compilation);
-    let Some(program) = compilation.program.as_ref().filter(|_| !has_errors) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report(&compilation) else { return Ok(Exit::Errors) };
     let system =
         program.system.as_ref().ok_or("the scenario has no `system` block: there is nothing to run")?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
@@ -129,6 +129,15 @@ fn cache() -> Result<PathBuf, Fault> {
         .ok_or_else(|| "no folder for the cache: set HRDSL_CACHE".to_owned())
 }
 
+/// What has come in so far.
+#[derive(Default)]
+struct Progress {
+    violating: u32,
+    errors: u32,
+    /// The first recording that could not be written.
+    fault: Option<Fault>,
+}
+
 /// Runs the tests under a progress bar; each recording is written before its test is counted.
 fn execute(
     campaign: &Campaign<'_>,
@@ -145,20 +154,20 @@ fn execute(
     {
         bar.set_style(style);
     }
-    let counts = std::sync::Mutex::new((0u32, 0u32, None::<Fault>));
+    let progress = Mutex::new(Progress::default());
     let results = campaign.run(tests, |done| {
-        let mut counts = counts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        counts.0 += u32::from(done.result.has_failed());
-        counts.1 += u32::from(done.result.error.is_some());
+        let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.violating += u32::from(done.result.has_failed());
+        progress.errors += u32::from(done.result.error.is_some());
         let path = traces.join(format!("{}.jsonl", done.result.name));
         if let Err(fault) = input::write(&path, done.recording) {
-            counts.2.get_or_insert(fault);
+            progress.fault.get_or_insert(fault);
         }
-        bar.set_message(format!("{} with violations, {} errors", counts.0, counts.1));
+        bar.set_message(format!("{} with violations, {} errors", progress.violating, progress.errors));
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    match counts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).2 {
+    match progress.into_inner().unwrap_or_else(PoisonError::into_inner).fault {
         Some(fault) => Err(fault),
         None => Ok(results),
     }

@@ -66,6 +66,34 @@ pub struct Stimulus {
     pub steps: Vec<StimulusStep>,
 }
 
+impl Stimulus {
+    /// The steps that are done, in order, with `holds` deciding each `if`: no [`StimulusStep::If`] is among them.
+    ///
+    /// # Errors
+    /// The first error of `holds`.
+    pub fn taken<E>(&self, holds: &dyn Fn(&Expr) -> Result<bool, E>) -> Result<Vec<&StimulusStep>, E> {
+        let mut out = Vec::new();
+        take(&self.steps, holds, &mut out)?;
+        Ok(out)
+    }
+}
+
+fn take<'a, E>(
+    steps: &'a [StimulusStep],
+    holds: &dyn Fn(&Expr) -> Result<bool, E>,
+    out: &mut Vec<&'a StimulusStep>,
+) -> Result<(), E> {
+    for step in steps {
+        match step {
+            StimulusStep::If { condition, then, otherwise } => {
+                take(if holds(condition)? { then } else { otherwise }, holds, out)?;
+            }
+            StimulusStep::Emit { .. } | StimulusStep::Hold { .. } | StimulusStep::Act(_) => out.push(step),
+        }
+    }
+    Ok(())
+}
+
 /// A value of the second tier, drawn uniformly from `lo..hi` by the test's seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {

@@ -40,9 +40,7 @@ pub fn parse(file: FileId, text: &str) -> (File, Vec<Diagnostic>) {
 
 fn declaration(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
     let run = &tokens[chunk.start..chunk.end];
-    let [first, .., last] = run else {
-        return short(cx, tokens, chunk, result);
-    };
+    let (Some(first), Some(last)) = (run.first(), run.last()) else { return };
     if first.kind == Kind::Scenario && chunk.sort == Sort::Item {
         return scenario(cx, tokens, chunk, result);
     }
@@ -58,19 +56,6 @@ fn declaration(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &m
     if swallowed {
         result.items.push(Item { doc: String::new(), kind: ItemKind::Error, span });
     }
-}
-
-/// A declaration of one token: always broken.
-fn short(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
-    let Some(only) = tokens[chunk.start..chunk.end].first() else { return };
-    if only.kind == Kind::Scenario && chunk.sort == Sort::Item {
-        return scenario(cx, tokens, chunk, result);
-    }
-    let kind = match chunk.sort {
-        Sort::Item => item(cx, tokens, chunk),
-        Sort::Unread => ItemKind::Error,
-    };
-    result.items.push(Item { doc: cx.doc(only.start), kind, span: cx.span_of(*only) });
 }
 
 fn item(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk) -> ItemKind {

@@ -3,11 +3,7 @@
 use std::collections::VecDeque;
 
 use hrdsl_ir::{
-    EventId, Nanos, Program, Type, Value,
-    event::{Stimulus, StimulusStep},
-    expr::Expr,
-    value::nanos,
-    world::WorldAction,
+    EventId, Nanos, Program, Type, Value, event::StimulusStep, expr::Expr, value::nanos, world::WorldAction,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -69,6 +65,28 @@ fn eval(program: &Program, event: EventId, expr: &Expr, vars: &[Value]) -> Resul
         .map_err(|e| Fault::Model(format!("stimulus `{}`: {e}", program.event(event).name)))
 }
 
+/// A step with its expressions evaluated.
+fn primitive(
+    program: &Program,
+    event: EventId,
+    step: &StimulusStep,
+    vars: &[Value],
+) -> Result<Option<Primitive>, Fault> {
+    Ok(match step {
+        StimulusStep::Emit { event: emitted, args } => {
+            let args = args.iter().map(|a| eval(program, event, a, vars)).collect::<Result<_, _>>()?;
+            Some(Primitive::Emit(*emitted, args))
+        }
+        StimulusStep::Hold { seconds } => {
+            let time = eval(program, event, seconds, vars)?.as_f64().unwrap_or(0.0);
+            Some(Primitive::Hold(nanos(time.max(0.0))))
+        }
+        StimulusStep::Act(action) => Some(Primitive::Act(action.clone())),
+        // INVARIANT: a branch has been taken.
+        StimulusStep::If { .. } => None,
+    })
+}
+
 impl Performance {
     /// Begins a stimulus: it is recorded as an event, then its first steps run.
     ///
@@ -83,33 +101,14 @@ impl Performance {
     ) -> Result<Self, Fault> {
         cx.out.push(Message::Event { event, args: args.to_vec() });
         let mut this = Self { steps: VecDeque::new(), vars: [args, samples].concat(), until: cx.now };
-        if let Some(Stimulus { steps, .. }) = &program.event(event).stimulus {
-            this.plan(program, event, steps)?;
+        if let Some(stimulus) = &program.event(event).stimulus {
+            let holds = |c: &Expr| Ok(eval(program, event, c, &this.vars)?.as_bool() == Some(true));
+            for step in stimulus.taken(&holds)? {
+                this.steps.extend(primitive(program, event, step, &this.vars)?);
+            }
         }
         this.go_on(cx);
         Ok(this)
-    }
-
-    fn plan(&mut self, program: &Program, event: EventId, steps: &[StimulusStep]) -> Result<(), Fault> {
-        for step in steps {
-            match step {
-                StimulusStep::Emit { event: emitted, args } => {
-                    let args = args.iter().map(|a| eval(program, event, a, &self.vars));
-                    let args = args.collect::<Result<_, _>>()?;
-                    self.steps.push_back(Primitive::Emit(*emitted, args));
-                }
-                StimulusStep::Hold { seconds } => {
-                    let time = eval(program, event, seconds, &self.vars)?.as_f64().unwrap_or(0.0);
-                    self.steps.push_back(Primitive::Hold(nanos(time.max(0.0))));
-                }
-                StimulusStep::Act(action) => self.steps.push_back(Primitive::Act(action.clone())),
-                StimulusStep::If { condition, then, otherwise } => {
-                    let holds = eval(program, event, condition, &self.vars)?.as_bool() == Some(true);
-                    self.plan(program, event, if holds { then } else { otherwise })?;
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Runs steps until one holds beyond now. `is_done` tells whether any are left.

@@ -3,11 +3,13 @@
 //! A stimulus that followed an event which its actor's model waits for becomes "await that event, then the stimulus";
 //! what is left of the time between becomes a wait.
 
+use std::convert::Infallible;
+
 use hrdsl_coverage::Collector;
 use hrdsl_ir::{
-    ActorId, EventPattern, Nanos, Program, Role,
+    ActorId, EventId, EventPattern, Nanos, Program, Role, Value,
     bdi::{StepKind, TriggerOn},
-    event::ArgPattern,
+    event::{ArgPattern, StimulusStep},
     expr::Expr,
     suite::PlayerRef,
     ta::{ReceiveArg, Sync},
@@ -78,7 +80,7 @@ impl Awaits {
     }
 }
 
-fn any(program: &Program, event: hrdsl_ir::EventId) -> EventPattern {
+fn any(program: &Program, event: EventId) -> EventPattern {
     EventPattern { event, args: vec![ArgPattern::Any; program.event(event).params.len()] }
 }
 
@@ -126,23 +128,23 @@ pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos)
 }
 
 /// How long a stimulus holds: the sum of its holds, so far as they do not depend on samples.
-fn duration(program: &Program, event: hrdsl_ir::EventId, args: &[hrdsl_ir::Value]) -> Nanos {
-    use hrdsl_ir::event::StimulusStep;
-    fn sum(steps: &[StimulusStep], eval: &dyn Fn(&Expr) -> Option<hrdsl_ir::Value>) -> Nanos {
-        let of = |step: &StimulusStep| match step {
-            StimulusStep::Hold { seconds } => {
-                nanos(eval(seconds).and_then(|v| v.as_f64()).unwrap_or(0.0).max(0.0))
-            }
-            StimulusStep::If { condition, then, otherwise } => {
-                let holds = eval(condition).and_then(|v| v.as_bool()) == Some(true);
-                sum(if holds { then } else { otherwise }, eval)
-            }
-            StimulusStep::Emit { .. } | StimulusStep::Act(_) => 0,
-        };
-        steps.iter().map(of).sum()
-    }
+fn duration(program: &Program, event: EventId, args: &[Value]) -> Nanos {
     let eval = |e: &Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
-    program.event(event).stimulus.as_ref().map_or(0, |s| sum(&s.steps, &eval))
+    let hold = |step: &StimulusStep| match step {
+        StimulusStep::Hold { seconds } => {
+            nanos(eval(seconds).and_then(Value::as_f64).unwrap_or(0.0).max(0.0))
+        }
+        StimulusStep::Emit { .. } | StimulusStep::Act(_) | StimulusStep::If { .. } => 0,
+    };
+    taken(program, event, args).into_iter().map(hold).sum()
+}
+
+/// The steps that a stimulus takes with these arguments; a condition on samples counts as false.
+pub fn taken<'p>(program: &'p Program, event: EventId, args: &[Value]) -> Vec<&'p StimulusStep> {
+    let holds =
+        |c: &Expr| Ok::<_, Infallible>(c.eval(&|i| args.get(i as usize).copied()) == Ok(Value::Bool(true)));
+    let Some(stimulus) = &program.event(event).stimulus else { return Vec::new() };
+    stimulus.taken(&holds).unwrap_or_else(|never| match never {})
 }
 
 /// The cross-product bins that a trace falls into, by name.

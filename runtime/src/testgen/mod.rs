@@ -21,6 +21,7 @@ use hrdsl_ir::{
     test::{Provenance, Test, TestStep},
 };
 
+pub use search::bin_goal;
 pub use write::{step_text, write};
 
 /// An abstract test: steps without samples.

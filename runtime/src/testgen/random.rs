@@ -2,7 +2,7 @@
 
 use hrdsl_coverage::assume::Assumptions;
 use hrdsl_ir::{
-    EventId, Nanos, Program, Type, Value,
+    EventId, Expr, Nanos, Program, Type, Value,
     event::StimulusStep,
     suite::{Method, Suite},
     test::TestStep,
@@ -10,7 +10,7 @@ use hrdsl_ir::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{AbstractTest, Harvest};
+use super::{AbstractTest, Harvest, extract};
 
 /// Draws `count` sequences.
 ///
@@ -105,26 +105,13 @@ fn instances(program: &Program, event: EventId) -> Result<Vec<TestStep>, String>
 
 /// The stimulus itself and the events that it makes whose arguments do not depend on samples.
 fn makes(program: &Program, event: EventId, args: &[Value]) -> Vec<(EventId, Vec<Value>)> {
-    fn collect(steps: &[StimulusStep], args: &[Value], out: &mut Vec<(EventId, Vec<Value>)>) {
-        let eval = |e: &hrdsl_ir::Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
-        for step in steps {
-            match step {
-                StimulusStep::Emit { event, args: exprs } => {
-                    if let Some(values) = exprs.iter().map(eval).collect() {
-                        out.push((*event, values));
-                    }
-                }
-                StimulusStep::If { condition, then, otherwise } => {
-                    let holds = eval(condition) == Some(Value::Bool(true));
-                    collect(if holds { then } else { otherwise }, args, out);
-                }
-                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
-            }
+    let eval = |e: &Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
+    let made = |step: &StimulusStep| match step {
+        StimulusStep::Emit { event, args } => {
+            Some((*event, args.iter().map(eval).collect::<Option<Vec<Value>>>()?))
         }
-    }
-    let mut out = vec![(event, args.to_vec())];
-    if let Some(stimulus) = &program.event(event).stimulus {
-        collect(&stimulus.steps, args, &mut out);
-    }
-    out
+        StimulusStep::Hold { .. } | StimulusStep::Act(_) | StimulusStep::If { .. } => None,
+    };
+    let made = extract::taken(program, event, args).into_iter().filter_map(made);
+    std::iter::once((event, args.to_vec())).chain(made).collect()
 }

@@ -170,6 +170,12 @@ fn each_automaton(
     network.automata.iter().enumerate().flat_map(of).collect()
 }
 
+/// What the goal of a bin is called, by the bin's name.
+#[must_use]
+pub fn bin_goal(bin: &str) -> String {
+    format!("bin {bin}")
+}
+
 /// A bin holds where its condition does and none of the cross's `ignore`s.
 fn bins(program: &Program, cross: &Cross) -> Vec<Named> {
     let ignored = cross.ignore.iter().map(|c| StateFormula::Not(Box::new(formula(program, c))));
@@ -178,7 +184,7 @@ fn bins(program: &Program, cross: &Cross) -> Vec<Named> {
         let mut all = vec![formula(program, &bin.when)];
         all.extend(ignored.iter().cloned());
         Named {
-            name: format!("bin {}", hrdsl_coverage::name::bin(&cross.name, &bin.name)),
+            name: bin_goal(&hrdsl_coverage::name::bin(&cross.name, &bin.name)),
             goal: Goal { what: GoalKind::Condition(StateFormula::And(all)), settled: true },
         }
     });

@@ -17,11 +17,17 @@ const SIGNAL: &str = "signal";
 pub fn line(program: &Program, step: &Step) -> String {
     let names = program.actors.iter().map(|a| a.name.as_str());
     let width = names.chain([SIGNAL]).map(|n| n.chars().count()).max().unwrap_or(0);
-    let (who, what) = match &step.what {
+    let (who, what) = who_did_what(program, &step.what);
+    format!("{:>8} s  {who:<width$}  {what}", milliseconds(step.time))
+}
+
+/// The line's last two columns: the actor (or `signal`), and what it did (or its value).
+#[must_use]
+pub fn who_did_what<'p>(program: &'p Program, what: &What) -> (&'p str, String) {
+    match what {
         What::Event { event, args } => (maker(program, *event), event_text(program, *event, args)),
         What::Sample { signal, value } => (SIGNAL, sample(program, *signal, *value)),
-    };
-    format!("{:>8} s  {who:<width$}  {what}", milliseconds(step.time))
+    }
 }
 
 /// An event with its arguments: `sensed(gaze: true, distance: 0.25 m)`.
