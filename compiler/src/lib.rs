@@ -4,7 +4,8 @@
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
 //! 2. [`modules::load`]: the standard modules that are used, and those that they use
 //! 3. [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
-//! 4. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
+//! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant
+//! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!
 //! [`compile`] does them all.
 
@@ -66,6 +67,9 @@ pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
     diagnostics.extend(unnamed(&ast[0], &diagnostics));
     let (resolved, issues) = hrdsl_model::resolve(&ast[0], &used, &tests);
     diagnostics.extend(issues);
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        diagnostics.extend(hrdsl_model::lint(&resolved));
+    }
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));

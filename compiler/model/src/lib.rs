@@ -3,6 +3,7 @@
 
 mod check;
 mod expr;
+mod lint;
 mod nearest;
 mod noun;
 mod report;
@@ -13,6 +14,7 @@ pub mod world;
 
 pub use check::resolve;
 pub use expr::{Expr, ExprKind, Function, Leaf, Term};
+pub use lint::lint;
 pub use nearest::{distance, nearest};
 pub use scenario::*;
 pub use types::{Dim, Kind, Type, UNITS, Unit};

@@ -20,6 +20,26 @@ pub struct Diagnostic {
     /// The first is the place of the fault; others show what it clashes with.
     pub labels: Vec<Label>,
     pub help: Option<String>,
+    /// Changes of the text that would mend it, the likeliest first.
+    pub fixes: Vec<Fix>,
+}
+
+/// A change of the text that mends a fault.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fix {
+    /// What it does, as a command: "replace `wats` by `wants`".
+    pub title: String,
+    /// In order of place, not overlapping.
+    pub edits: Vec<Edit>,
+    /// Nothing else can have been meant, so that a tool may apply it unasked.
+    pub certain: bool,
+}
+
+/// A piece of text and what is to stand there; an empty span inserts, an empty text deletes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Edit {
+    pub span: Span,
+    pub text: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -41,7 +61,7 @@ impl Diagnostic {
 
     fn new(severity: Severity, code: Code, span: Span, message: String) -> Self {
         let labels = vec![Label { span, text: String::new() }];
-        Self { code, severity, message, labels, help: None }
+        Self { code, severity, message, labels, help: None, fixes: Vec::new() }
     }
 
     /// The text at the primary span.
@@ -61,6 +81,20 @@ impl Diagnostic {
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
+        self
+    }
+
+    /// A change of one piece of text that would mend it.
+    #[must_use]
+    pub fn fix(
+        mut self,
+        title: impl Into<String>,
+        span: Span,
+        text: impl Into<String>,
+        certain: bool,
+    ) -> Self {
+        let edits = vec![Edit { span, text: text.into() }];
+        self.fixes.push(Fix { title: title.into(), edits, certain });
         self
     }
 

@@ -6,6 +6,6 @@ mod files;
 mod span;
 
 pub use codes::{Code, CodeInfo, REGISTRY};
-pub use diagnostic::{Diagnostic, Label, Severity};
+pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
 pub use span::{FileId, Span};
