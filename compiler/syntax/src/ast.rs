@@ -45,8 +45,20 @@ pub struct Item {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ItemKind {
-    /// `use std.person`
-    Use(Path),
+    /// `use std.person`, `use "people.hri"`
+    Use(Module),
+    /// `allow HR0107 "why"`: the next declaration may be so
+    Allow(Allow),
+    /// `enum Order { feed, clean }`
+    Enum {
+        name: Name,
+        values: Vec<Name>,
+    },
+    /// `record Pose { x: length, y: length }`
+    Record {
+        name: Name,
+        fields: Vec<Param>,
+    },
     /// `actor person : environment`
     Actor {
         name: Name,
@@ -77,18 +89,63 @@ pub enum ItemKind {
     World(World),
     System(System),
     Test(Test),
+    /// `agent Human = Visitor(10 s)`: a template with its arguments
+    Instance(Instance),
     /// Could not be read; the diagnostic has been made.
     Error,
 }
 
+/// What `use` names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Module {
+    /// A module of the library.
+    Library(Path),
+    /// A file, relative to the one that uses it.
+    File(Text),
+}
+
+/// `allow HR0107 "why"`
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Allow {
+    pub code: Name,
+    pub reason: Text,
+}
+
+/// What a template makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sort {
+    Agent,
+    Automaton,
+    Require,
+    Cover,
+    Cross,
+}
+
+/// `agent Human = Visitor(10 s)`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Instance {
+    pub sort: Sort,
+    pub name: Name,
+    pub of: Name,
+    pub args: Vec<Expr>,
+    /// The template's name with the arguments.
+    pub span: Span,
+}
+
 // ── Types and expressions ──
 
-/// `bool`, `0..LEGS`, `length`, `time`, `angle`, `float`, …
+/// `bool`, `0..LEGS`, `length`, `Pose`, `bool[4]`, …; of a template's parameter also `event`, `actor`, `cover`, …
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TypeExpr {
     Named(Name),
     Range(Expr, Expr),
+    /// `bool[4]`
+    Array(Box<TypeExpr>, Expr),
+    /// Could not be read.
+    Error,
 }
 
 /// `name: type`
@@ -125,6 +182,16 @@ pub enum ExprKind {
         args: Vec<Expr>,
     },
     /// `not a` / `!a`, `-a`
+    /// `a[i]`
+    Index {
+        of: Box<Expr>,
+        index: Box<Expr>,
+    },
+    /// `a[i].x`
+    Field {
+        of: Box<Expr>,
+        name: Name,
+    },
     Unary {
         op: UnaryOp,
         operand: Box<Expr>,
@@ -190,13 +257,19 @@ pub struct Range {
 
 // ── Vocabulary ──
 
-/// `event sensed(gaze: bool) from sensors to robot, person`
+/// `event asked, sensed(gaze: bool) from sensors to robot, person`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Event {
-    pub name: Name,
-    pub params: Vec<Param>,
+    pub names: Vec<EventName>,
     pub from: Name,
     pub to: Vec<Name>,
+}
+
+/// One of the events of a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventName {
+    pub name: Name,
+    pub params: Vec<Param>,
 }
 
 /// `stimulus look(ok: bool) by person { … }`
@@ -248,10 +321,12 @@ pub enum SampleRange {
 
 // ── Agents ──
 
-/// `agent Human plays person { … }`
+/// `agent Human plays person { … }`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agent {
     pub name: Name,
+    /// `Some`: a template.
+    pub params: Option<Vec<Param>>,
     pub plays: Name,
     pub members: Vec<AgentMember>,
 }
@@ -275,6 +350,7 @@ pub enum AgentMemberKind {
     /// `goal !table`: adopted at the start
     Goal(Call),
     Plan(Plan),
+    Allow(Allow),
     Error,
 }
 
@@ -356,10 +432,11 @@ pub struct Var {
     pub init: Option<Expr>,
 }
 
-/// `automaton Person plays person { … }`
+/// `automaton Person plays person { … }`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Automaton {
     pub name: Name,
+    pub params: Option<Vec<Param>>,
     pub plays: Name,
     pub members: Vec<AutomatonMember>,
 }
@@ -385,6 +462,7 @@ pub enum AutomatonMemberKind {
         invariant: Option<Expr>,
     },
     Edge(Edge),
+    Allow(Allow),
     Error,
 }
 
@@ -419,16 +497,27 @@ pub struct EdgeAction {
 pub enum EdgeActionKind {
     /// An event or stimulus of the automaton's actor; at most one for an edge.
     Send(Call),
-    /// `left = left - 1`, `x = 0` (a clock), `left -= 1`, `left += 1`
-    Assign { target: Name, op: Option<BinaryOp>, value: Expr },
+    /// `left = left - 1`, `x = 0` (a clock), `left -= 1`, `seen[i].ok = true`
+    Assign { target: Name, access: Vec<Access>, op: Option<BinaryOp>, value: Expr },
+}
+
+/// A step into a variable that has parts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Access {
+    /// `[i]`
+    Index(Expr),
+    /// `.x`
+    Field(Name),
 }
 
 // ── Requirements ──
 
-/// `require R1 functional "title" pattern`
+/// `require R1 functional "title" pattern`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Require {
     pub name: Name,
+    pub params: Option<Vec<Param>>,
     /// `safety` or `functional`
     pub kind: Name,
     pub title: Option<Text>,
@@ -480,6 +569,8 @@ pub struct Assume {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cover {
     pub name: Name,
+    /// `Some`: a template.
+    pub params: Option<Vec<Param>>,
     pub count: Vec<Call>,
     pub bins: Vec<Bin>,
 }
@@ -500,6 +591,8 @@ pub struct Bin {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cross {
     pub name: Name,
+    /// `Some`: a template.
+    pub params: Option<Vec<Param>>,
     pub points: Vec<Name>,
     pub members: Vec<CrossMember>,
 }
@@ -515,6 +608,7 @@ pub struct CrossMember {
 pub enum CrossMemberKind {
     Bin { name: Text, when: Expr },
     Ignore { when: Expr },
+    Allow(Allow),
     Error,
 }
 
@@ -623,6 +717,7 @@ pub enum TestMemberKind {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
     pub name: Name,
+    pub params: Option<Vec<Param>>,
     pub members: Vec<WorldMember>,
 }
 
@@ -652,6 +747,7 @@ pub enum WorldMemberKind {
     Part {
         name: Name,
         of: Name,
+        args: Option<Vec<Expr>>,
         at: Expr,
         rotated: Option<Expr>,
     },
@@ -695,6 +791,7 @@ pub enum WorldMemberKind {
         value: Expr,
     },
     Rule(Rule),
+    Allow(Allow),
     Error,
 }
 

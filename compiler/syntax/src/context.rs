@@ -3,9 +3,9 @@
 use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use crate::ast::{
-    AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
-    EdgeAction, Expr, ExprKind, ItemKind, Name, Param, Path, Range, Step, StimulusStep, SuiteMember,
-    SystemMember, TestMember, Text, UnaryOp, WorldMember,
+    Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
+    EdgeAction, Expr, ExprKind, Instance, ItemKind, Name, Param, Path, Range, Sort, Step, StimulusStep,
+    SuiteMember, SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -51,7 +51,7 @@ macro_rules! small {
     )*};
 }
 
-small!(Name, Path, Text, Call, Expr);
+small!(Name, Path, Text, Call, Expr, Access);
 
 /// One of the parts of an edge that may come in any order.
 pub(crate) enum EdgePart {
@@ -182,6 +182,39 @@ impl<'t> Context<'t> {
     pub(crate) fn call_expr(&self, callee: Path, args: Vec<Expr>, end: u32) -> Expr {
         let span = self.span(callee.span.start, end);
         Expr { kind: ExprKind::Call { callee, args }, span }
+    }
+
+    pub(crate) fn index(&self, of: Expr, index: Expr, end: u32) -> Expr {
+        let span = self.span(of.span.start, end);
+        Expr { kind: ExprKind::Index { of: Box::new(of), index: Box::new(index) }, span }
+    }
+
+    pub(crate) fn field(&self, of: Expr, name: Name) -> Expr {
+        let span = of.span.to(name.span);
+        Expr { kind: ExprKind::Field { of: Box::new(of), name }, span }
+    }
+
+    /// A type that was read as an expression: `bool`, `bool[4]`.
+    pub(crate) fn type_of(&mut self, expr: Expr) -> TypeExpr {
+        match expr.kind {
+            ExprKind::Path(mut path) if path.names.len() == 1 => match path.names.pop() {
+                Some(name) => TypeExpr::Named(name),
+                None => TypeExpr::Error,
+            },
+            ExprKind::Index { of, index } => TypeExpr::Array(Box::new(self.type_of(*of)), *index),
+            ExprKind::Error => TypeExpr::Error,
+            _ => {
+                self.diagnostics.push(Diagnostic::error(Code::SYNTAX, expr.span, "expected a type").help(
+                    "a type is a name such as `bool` or `length`, a range `0..4`, or an array `bool[4]`",
+                ));
+                TypeExpr::Error
+            }
+        }
+    }
+
+    pub(crate) fn instance(&self, sort: Sort, name: Name, of: Name, args: Vec<Expr>, end: u32) -> ItemKind {
+        let span = self.span(of.span.start, end);
+        ItemKind::Instance(Instance { sort, name, of, args, span })
     }
 
     /// `(e)`: the parentheses are in the span and leave no other trace.

@@ -183,7 +183,6 @@ fn instead_of(c: char) -> Option<&'static str> {
         '&' => "`and` is written `&&` or `and`",
         '\'' | '`' | '‘' | '’' | '“' | '”' | '«' | '»' => "texts are written between `\"` and `\"`",
         '#' => "comments begin with `//`",
-        '[' | ']' => "vectors and lists of arguments are written in `(` and `)`",
         '≤' => "write `<=`",
         '≥' => "write `>=`",
         '≠' => "write `!=`",
@@ -277,8 +276,21 @@ impl Join<'_> {
         taken + 1
     }
 
-    /// How many tokens after the number at `i` are its unit: none, one (`s`, `%`), or three (`m/s2`).
+    /// How many tokens after the number at `i` are its unit: none, one (`s`, `%`), three (`m/s`), five (`m/s^2`).
     fn unit(&self, i: usize) -> usize {
+        let taken = self.plain_unit(i);
+        if taken > 0
+            && let (Some(last), Some(caret)) = (self.raw.get(i + taken), self.raw.get(i + taken + 1))
+            && let Some(power) = self.raw.get(i + taken + 2)
+            && (caret.kind, power.kind) == (Kind::Caret, Kind::Int)
+            && (last.end, caret.end) == (caret.start, power.start)
+        {
+            return taken + 2;
+        }
+        taken
+    }
+
+    fn plain_unit(&self, i: usize) -> usize {
         let Some(unit) = self.raw.get(i + 1).filter(|t| !t.first) else { return 0 };
         let after = self.raw.get(i + 2).filter(|t| !t.first);
         if unit.kind == Kind::Percent {

@@ -174,7 +174,8 @@ impl Splitter<'_> {
         };
         let belongs = match token.kind {
             Kind::Var => self.current.is_some_and(|c| c.sort == Sort::Unread || c.head == Kind::Automaton),
-            Kind::Part => self.kind(i + 2) != Some(Kind::LBrace),
+            Kind::Part => self.kind(i + 2) == Some(Kind::Assign),
+            Kind::Allow => true,
             _ => false,
         };
         token.first && names_follow && !before.continues() && !belongs
@@ -270,7 +271,7 @@ impl Splitter<'_> {
 
     fn bracket(&mut self, token: Lexeme) {
         match token.kind {
-            Kind::LBrace | Kind::LParen => {
+            Kind::LBrace | Kind::LParen | Kind::LBracket => {
                 let brace = token.kind == Kind::LBrace;
                 self.braces += usize::from(brace);
                 self.brackets.push(Bracket { brace, at: self.out.len() - 1, ..Bracket::default() });
@@ -278,7 +279,9 @@ impl Splitter<'_> {
                     self.too_deep(token, &format!("brackets are nested more than {MAX_NESTING} levels deep"));
                 }
             }
-            Kind::RParen if self.brackets.len() > 1 && self.brackets.last().is_some_and(|b| !b.brace) => {
+            Kind::RParen | Kind::RBracket
+                if self.brackets.len() > 1 && self.brackets.last().is_some_and(|b| !b.brace) =>
+            {
                 self.pop(token);
             }
             Kind::RBrace => self.close(token),
@@ -348,7 +351,7 @@ impl Splitter<'_> {
         }
         let boundary = match token.kind {
             Kind::Comma | Kind::Semi | Kind::Colon | Kind::Pipe | Kind::Assign | Kind::From => true,
-            Kind::True | Kind::False | Kind::Else | Kind::LParen => false,
+            Kind::True | Kind::False | Kind::Else | Kind::LParen | Kind::LBracket => false,
             kind => {
                 matches!(kind.class(), Some(Class::Head | Class::Hard))
                     || (after_operand && kind.starts_operand())

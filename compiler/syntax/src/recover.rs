@@ -101,6 +101,8 @@ impl Recovery<'_, '_> {
             (ItemKind::Part(item), _) => item.members = self.members(block),
             (ItemKind::World(item), _) => item.members = self.members(block),
             (ItemKind::System(item), _) => item.members = self.members(block),
+            // Of a list with a fault nothing is kept: its names would be said to be unknown.
+            (ItemKind::Enum { .. } | ItemKind::Record { .. }, _) => kind = ItemKind::Error,
             (_, Kind::Stimulus) => drop(self.members::<StimulusStep>(block)),
             (_, Kind::Agent) => drop(self.members::<AgentMember>(block)),
             (_, Kind::Automaton) => drop(self.members::<AutomatonMember>(block)),
@@ -458,14 +460,14 @@ macro_rules! members {
 
 members! {
     StimulusStep StimulusStepKind StartStimulusStep [] is_name: Emit | If;
-    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Goal | Plan;
+    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Goal | Plan | Allow;
     AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
-        Clock | Var | Init | Committed | Urgent | Location | From;
-    CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore;
+        Clock | Var | Init | Committed | Urgent | Location | From | Allow;
+    CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore | Allow;
     SuiteMember SuiteMemberKind StartSuiteMember []:
         Choose | Explore | Tests | Horizon | Patience | Reach | Stimuli | Await | Length | Pause;
     TestMember TestMemberKind StartTestMember [] is_name: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
-        Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On;
+        Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;
     SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget;
 }

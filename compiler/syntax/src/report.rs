@@ -121,7 +121,8 @@ const GROUPS: &[Group] = &[
         if_none: &["IDENT"],
         names: false,
         covers: &[
-            "step", "sample", "gravity", "part", "body", "joint", "arm", "gripper", "current", "signal", "on",
+            "step", "sample", "gravity", "part", "body", "joint", "arm", "gripper", "current", "signal",
+            "on", "allow",
         ],
         says: &["a member of the world such as `body` or `signal`"],
     },
@@ -139,7 +140,7 @@ const GROUPS: &[Group] = &[
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
-        covers: &["ORIGIN", "clock", "var", "init", "urgent", "committed", "location"],
+        covers: &["ORIGIN", "clock", "var", "init", "urgent", "committed", "location", "allow"],
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
     Group {
@@ -164,7 +165,14 @@ const GROUPS: &[Group] = &[
         says: &["an expression"],
     },
     Group { if_all: &["INT", "-", "("], if_none: &[], names: true, covers: EXPRESSION, says: &["a value"] },
-    Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "("], says: &[] },
+    Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "(", "["], says: &[] },
+    Group { if_all: &["+", "*", "["], if_none: &[], names: false, covers: &["["], says: &[] },
+    Group { if_all: &["=", "+=", "["], if_none: &[], names: false, covers: &[".", "["], says: &[] },
+    // Fits before every member, and is never what was meant.
+    Group { if_all: &["allow", "plan"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
+    Group { if_all: &["allow", "clock"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
+    Group { if_all: &["allow", "ORIGIN"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
+    Group { if_all: &["allow", "bin"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
 ];
 
 /// The words for what would have fitted, where the token that did not is the first of its line or not.
@@ -277,8 +285,6 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
             "texts are written between `\"` and `\"`"
         }
-        Kind::Comma if fault.has("from") => "each event has a line of its own, which starts with `event`",
-        Kind::If if before == Some(Kind::Else) => "write `else { if … }`",
         Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
         Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",
         Kind::DotDot if matches!(before, Some(Kind::Int | Kind::Quantity)) && !fault.has("IDENT") => {

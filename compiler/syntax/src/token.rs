@@ -41,6 +41,9 @@ macro_rules! tokens {
             #[token(")")] RParen,
             #[token("{")] LBrace,
             #[token("}")] RBrace,
+            #[token("[")] LBracket,
+            #[token("]")] RBracket,
+            #[token("^")] Caret,
             #[token(",")] Comma,
             #[token(";")] Semi,
             #[token(":")] Colon,
@@ -133,6 +136,9 @@ tokens! {
     World "world" Head "declaration",
     System "system" Head "declaration, actor",
     Test "test" Head "declaration",
+    Enum "enum" Head "declaration",
+    Record "record" Head "declaration",
+    Allow "allow" Head "before what is allowed",
 
     True "true" Hard "expression",
     False "false" Hard "expression",
@@ -247,6 +253,8 @@ impl Kind {
                 | Self::World
                 | Self::System
                 | Self::Test
+                | Self::Enum
+                | Self::Record
         )
     }
 
@@ -286,6 +294,7 @@ impl Kind {
                     | Self::Quantity
                     | Self::Str
                     | Self::RParen
+                    | Self::RBracket
                     | Self::RBrace
                     | Self::Any
                     | Self::True
@@ -330,6 +339,7 @@ impl Kind {
                     | Self::Dot
                     | Self::DotDot
                     | Self::LParen
+                    | Self::LBracket
                     | Self::Pipe
                     | Self::Arrow
                     | Self::Assign

@@ -55,7 +55,10 @@ fn a_broken_step_costs_that_step() {
         .iter()
         .filter_map(|m| match &m.kind {
             AgentMemberKind::Plan(plan) => Some(&plan.body),
-            AgentMemberKind::Belief { .. } | AgentMemberKind::Goal(_) | AgentMemberKind::Error => None,
+            AgentMemberKind::Belief { .. }
+            | AgentMemberKind::Goal(_)
+            | AgentMemberKind::Allow(_)
+            | AgentMemberKind::Error => None,
         })
         .collect();
     let broken: Vec<_> = bodies.iter().filter(|b| b.iter().any(|s| s.kind == StepKind::Error)).collect();
