@@ -49,6 +49,8 @@ pub enum Function {
     Abs,
     Min,
     Max,
+    /// The square root of the sum of the squares.
+    Norm,
 }
 
 /// A primitive measurement of the world.

@@ -16,6 +16,11 @@ pub(crate) enum Noun {
     Sample,
     Unit,
     Type,
+    Enum,
+    EnumValue,
+    Record,
+    Field,
+    Template,
     Function,
     Agent,
     Automaton,
@@ -80,6 +85,11 @@ impl Noun {
             | Noun::Sample
             | Noun::Unit
             | Noun::Type
+            | Noun::Enum
+            | Noun::EnumValue
+            | Noun::Record
+            | Noun::Field
+            | Noun::Template
             | Noun::Function
             | Noun::Agent
             | Noun::Belief
@@ -120,6 +130,11 @@ impl fmt::Display for Noun {
             Noun::Sample => "sample",
             Noun::Unit => "unit",
             Noun::Type => "type",
+            Noun::Enum => "enumeration",
+            Noun::EnumValue => "value",
+            Noun::Record => "record",
+            Noun::Field => "field",
+            Noun::Template => "template",
             Noun::Function => "function",
             Noun::Agent => "agent",
             Noun::Automaton => "automaton",

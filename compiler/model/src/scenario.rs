@@ -23,6 +23,8 @@ macro_rules! ids {
 ids! {
     /// Index into [`Scenario::actors`].
     ActorId,
+    /// Index into [`Scenario::enums`].
+    EnumId,
     /// Index into [`Scenario::events`].
     EventId,
     /// Index into [`Scenario::agents`].
@@ -62,6 +64,7 @@ ids! {
 pub struct Scenario {
     pub name: String,
     pub actors: Vec<Actor>,
+    pub enums: Vec<Enum>,
     pub events: Vec<Event>,
     pub agents: Vec<Agent>,
     pub shared: Vec<Var>,
@@ -91,6 +94,15 @@ pub struct Actor {
     pub span: Span,
 }
 
+/// An enumeration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Enum {
+    pub name: String,
+    pub values: Vec<String>,
+    pub span: Span,
+}
+
+/// A parameter of one value. One of a record or array is as many as it has parts, `to.x` and `to.y`, `a[0]` and `a[1]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Param {
     pub name: String,
@@ -240,6 +252,8 @@ pub struct Var {
     /// Finite.
     pub ty: Type,
     pub init: Value,
+    /// Its name, where it is declared.
+    pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

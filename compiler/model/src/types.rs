@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::EnumId;
+
 /// A physical dimension: exponents of metre, kilogram, second and radian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Dim {
@@ -27,6 +29,11 @@ const NAMED: &[(Dim, &str, &str, &str)] = &[
     (Dim::FORCE, "force", "a force", "N"),
     (Dim::SPEED, "speed", "a speed", "m/s"),
     (Dim::ANGULAR_SPEED, "angular_speed", "an angular speed", "rad/s"),
+    (Dim::ACCELERATION, "acceleration", "an acceleration", "m/s^2"),
+    (Dim::ANGULAR_ACCELERATION, "angular_acceleration", "an angular acceleration", "rad/s^2"),
+    (Dim::PRESSURE, "pressure", "a pressure", "Pa"),
+    (Dim::TORQUE, "torque", "a torque", "Nm"),
+    (Dim::FREQUENCY, "frequency", "a frequency", "Hz"),
 ];
 
 impl Dim {
@@ -38,6 +45,11 @@ impl Dim {
     pub const FORCE: Dim = dim(1, 1, -2, 0);
     pub const SPEED: Dim = dim(1, 0, -1, 0);
     pub const ANGULAR_SPEED: Dim = dim(0, 0, -1, 1);
+    pub const ACCELERATION: Dim = dim(1, 0, -2, 0);
+    pub const ANGULAR_ACCELERATION: Dim = dim(0, 0, -2, 1);
+    pub const PRESSURE: Dim = dim(-1, 1, -2, 0);
+    pub const TORQUE: Dim = dim(2, 1, -2, 0);
+    pub const FREQUENCY: Dim = dim(0, 0, -1, 0);
 
     /// The dimension of a product.
     #[must_use]
@@ -77,7 +89,7 @@ impl fmt::Display for Dim {
     }
 }
 
-/// A declared type: of a parameter, variable, belief argument or signal.
+/// A declared type of one value: of a parameter, variable, belief argument or signal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Type {
@@ -89,6 +101,18 @@ pub enum Type {
     },
     /// A quantity, in SI units.
     Float(Dim),
+    /// One of the values of an enumeration.
+    Enum(EnumId),
+}
+
+/// A declared type, perhaps of several parts. Everything behind the checker knows the parts alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Layout {
+    Scalar(Type),
+    /// Into the checker's records.
+    Record(u16),
+    /// Of this many.
+    Array(Box<Layout>, u16),
 }
 
 impl Type {
@@ -98,6 +122,16 @@ impl Type {
             Type::Bool => Kind::Bool,
             Type::Int { .. } => Kind::Int,
             Type::Float(dim) => Kind::Float(dim),
+            Type::Enum(id) => Kind::Enum(id),
+        }
+    }
+
+    /// The smallest and largest value of an integer type.
+    #[must_use]
+    pub fn range(self) -> Option<(i64, i64)> {
+        match self {
+            Type::Int { lo, hi } => Some((lo, hi)),
+            Type::Bool | Type::Float(_) | Type::Enum(_) => None,
         }
     }
 
@@ -105,7 +139,7 @@ impl Type {
     #[must_use]
     pub fn is_finite(self) -> bool {
         match self {
-            Type::Bool | Type::Int { .. } => true,
+            Type::Bool | Type::Int { .. } | Type::Enum(_) => true,
             Type::Float(_) => false,
         }
     }
@@ -133,6 +167,7 @@ pub enum Kind {
     Bool,
     Int,
     Float(Dim),
+    Enum(EnumId),
     /// Not known: a goal's argument, or an expression that already has a diagnostic. It fits everywhere.
     Unknown,
 }
@@ -144,7 +179,16 @@ impl Kind {
         match self {
             Kind::Int => Some(Dim::NUMBER),
             Kind::Float(dim) => Some(dim),
-            Kind::Bool | Kind::Unknown => None,
+            Kind::Bool | Kind::Enum(_) | Kind::Unknown => None,
+        }
+    }
+
+    /// Whether it may be a number.
+    #[must_use]
+    pub fn is_number(self) -> bool {
+        match self {
+            Kind::Int | Kind::Float(_) | Kind::Unknown => true,
+            Kind::Bool | Kind::Enum(_) => false,
         }
     }
 
@@ -160,6 +204,7 @@ impl fmt::Display for Kind {
             Kind::Bool => f.write_str("a bool"),
             Kind::Int => f.write_str("a whole number"),
             Kind::Float(dim) => dim.fmt(f),
+            Kind::Enum(_) => f.write_str("a value of an enumeration"),
             Kind::Unknown => f.write_str("a value"),
         }
     }
@@ -202,17 +247,33 @@ pub const UNITS: &[Unit] = &[
     unit("m", Dim::LENGTH, 1.0, 1.0),
     unit("cm", Dim::LENGTH, 1.0, 1e2),
     unit("mm", Dim::LENGTH, 1.0, 1e3),
+    unit("um", Dim::LENGTH, 1.0, 1e6),
     unit("km", Dim::LENGTH, 1e3, 1.0),
     unit("rad", Dim::ANGLE, 1.0, 1.0),
     unit("deg", Dim::ANGLE, std::f64::consts::PI, 180.0),
     unit("kg", Dim::MASS, 1.0, 1.0),
     unit("g", Dim::MASS, 1.0, 1e3),
     unit("N", Dim::FORCE, 1.0, 1.0),
+    unit("mN", Dim::FORCE, 1.0, 1e3),
+    unit("kN", Dim::FORCE, 1e3, 1.0),
     unit("m/s", Dim::SPEED, 1.0, 1.0),
     unit("cm/s", Dim::SPEED, 1.0, 1e2),
     unit("mm/s", Dim::SPEED, 1.0, 1e3),
+    unit("km/h", Dim::SPEED, 1.0, 3.6),
     unit("rad/s", Dim::ANGULAR_SPEED, 1.0, 1.0),
     unit("deg/s", Dim::ANGULAR_SPEED, std::f64::consts::PI, 180.0),
+    unit("rpm", Dim::ANGULAR_SPEED, std::f64::consts::PI, 30.0),
+    unit("m/s^2", Dim::ACCELERATION, 1.0, 1.0),
+    unit("cm/s^2", Dim::ACCELERATION, 1.0, 1e2),
+    unit("mm/s^2", Dim::ACCELERATION, 1.0, 1e3),
+    unit("rad/s^2", Dim::ANGULAR_ACCELERATION, 1.0, 1.0),
+    unit("deg/s^2", Dim::ANGULAR_ACCELERATION, std::f64::consts::PI, 180.0),
+    unit("Pa", Dim::PRESSURE, 1.0, 1.0),
+    unit("kPa", Dim::PRESSURE, 1e3, 1.0),
+    unit("N/cm^2", Dim::PRESSURE, 1e4, 1.0),
+    unit("Nm", Dim::TORQUE, 1.0, 1.0),
+    unit("Hz", Dim::FREQUENCY, 1.0, 1.0),
+    unit("kHz", Dim::FREQUENCY, 1e3, 1.0),
     unit("%", Dim::NUMBER, 1.0, 1e2),
 ];
 

@@ -5,7 +5,7 @@ use std::fmt;
 use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use serde::Serialize;
 
-use crate::Function;
+use crate::{EnumId, Function};
 
 /// A value of a scalar type; quantities in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -14,6 +14,7 @@ pub enum Value {
     Bool(bool),
     Int(i64),
     Float(f64),
+    Symbol { of: EnumId, index: u16 },
 }
 
 /// Why a constant has no value.
@@ -42,7 +43,7 @@ impl Value {
         match self {
             Value::Int(n) => Some(n as f64),
             Value::Float(x) => Some(x),
-            Value::Bool(_) => None,
+            Value::Bool(_) | Value::Symbol { .. } => None,
         }
     }
 }
@@ -53,6 +54,7 @@ impl fmt::Display for Value {
             Value::Bool(b) => write!(f, "{b}"),
             Value::Int(n) => write!(f, "{n}"),
             Value::Float(x) => write!(f, "{x}"),
+            Value::Symbol { of, index } => write!(f, "enum {} value {index}", of.0),
         }
     }
 }
@@ -62,9 +64,9 @@ pub(crate) fn unary(op: UnaryOp, v: Value) -> Result<Value, FoldError> {
         (UnaryOp::Not, Value::Bool(b)) => Ok(Value::Bool(!b)),
         (UnaryOp::Neg, Value::Int(n)) => n.checked_neg().map(Value::Int).ok_or(FoldError::Overflow),
         (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
-        (UnaryOp::Not, Value::Int(_) | Value::Float(_)) | (UnaryOp::Neg, Value::Bool(_)) => {
-            Err(FoldError::Type)
-        }
+        (UnaryOp::Not, Value::Int(_) | Value::Float(_))
+        | (UnaryOp::Neg, Value::Bool(_))
+        | (UnaryOp::Not | UnaryOp::Neg, Value::Symbol { .. }) => Err(FoldError::Type),
     }
 }
 
@@ -72,7 +74,24 @@ pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldErro
     match (a, b) {
         (Value::Bool(a), Value::Bool(b)) => bools(op, a, b),
         (Value::Int(a), Value::Int(b)) => ints(op, a, b),
-        (Value::Bool(_), _) | (_, Value::Bool(_)) => Err(FoldError::Type),
+        (Value::Symbol { .. }, Value::Symbol { .. }) => match op {
+            BinaryOp::Eq => Ok(Value::Bool(a == b)),
+            BinaryOp::Ne => Ok(Value::Bool(a != b)),
+            BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::Div
+            | BinaryOp::Rem
+            | BinaryOp::Lt
+            | BinaryOp::Le
+            | BinaryOp::Gt
+            | BinaryOp::Ge
+            | BinaryOp::And
+            | BinaryOp::Or => Err(FoldError::Type),
+        },
+        (Value::Bool(_) | Value::Symbol { .. }, _) | (_, Value::Bool(_) | Value::Symbol { .. }) => {
+            Err(FoldError::Type)
+        }
         (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
             let (Some(a), Some(b)) = (a.number(), b.number()) else { return Err(FoldError::Type) };
             floats(op, a, b)
@@ -134,7 +153,11 @@ pub(crate) fn call(f: Function, args: &[Value]) -> Result<Value, FoldError> {
         (Function::Abs, [Value::Float(x)]) => Ok(Value::Float(x.abs())),
         (Function::Min, [a, b]) => pick(*a, *b, BinaryOp::Le),
         (Function::Max, [a, b]) => pick(*a, *b, BinaryOp::Ge),
-        (Function::Abs | Function::Min | Function::Max, _) => Err(FoldError::Type),
+        (Function::Norm, parts) if !parts.is_empty() => {
+            let squares = parts.iter().map(|v| v.number().map(|x| x * x)).sum::<Option<f64>>();
+            squares.map(|sum| Value::Float(sum.sqrt())).ok_or(FoldError::Type)
+        }
+        (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => Err(FoldError::Type),
     }
 }
 

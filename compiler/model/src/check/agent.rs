@@ -1,11 +1,11 @@
 //! Agents: beliefs, goals, and what holds at the start.
 
-use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, StepKind, TriggerKind};
+use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, ItemKind, Sort, StepKind, TriggerKind};
 use indexmap::IndexMap;
 
-use super::{Checker, Env, table::Table};
+use super::{Checker, Declared, Env, layout::Fields, table::Table};
 use crate::{
-    AgentId, Belief, BeliefId, Context, Goal, GoalId, Kind, Param, Value,
+    AgentId, Belief, BeliefId, Context, Goal, GoalId, Kind, Value,
     noun::Noun,
     report::{
         agents::{no_plan, not_adopted},
@@ -26,20 +26,35 @@ pub(super) struct Scope {
 
 impl Checker<'_> {
     pub(super) fn agents(&mut self) {
+        self.templates_of(Sort::Agent, |c, template| {
+            let ItemKind::Agent(syntax) = template.kind else { return };
+            let index = c.s.agents.len();
+            let plain = Declared { syntax, given: None, instance: None };
+            c.push_agent(&plain, template.name, template.name.span);
+            c.declare_beliefs(index, syntax);
+            c.agent(index, syntax);
+            c.s.agents.truncate(index);
+            c.beliefs.truncate(index);
+            c.belief_fields.truncate(index);
+        });
         let decls = self.agent_decls.clone();
         for (index, agent) in decls.iter().enumerate() {
-            self.declare_beliefs(index, agent);
+            let place = agent.instance.map(|i| (&i.name, i.span));
+            self.as_instance(agent.given.clone(), place, |c| c.declare_beliefs(index, agent.syntax));
         }
         for (index, agent) in decls.iter().enumerate() {
-            self.agent(index, agent);
+            let place = agent.instance.map(|i| (&i.name, i.span));
+            self.as_instance(agent.given.clone(), place, |c| c.agent(index, agent.syntax));
         }
     }
 
     fn declare_beliefs(&mut self, index: usize, agent: &ast::Agent) {
         for member in &agent.members {
             let Member::Belief { name, params, .. } = &member.kind else { continue };
-            let params = self.params(params);
+            let fields = self.fields(params);
             if Self::declare(&mut self.issues, &mut self.beliefs[index], Noun::Belief, name).is_some() {
+                let params = self.flat(&fields);
+                self.belief_fields[index].push(fields);
                 let belief = Belief { name: name.text.clone(), params, span: member.span };
                 self.s.agents[index].beliefs.push(belief);
             }
@@ -67,7 +82,7 @@ impl Checker<'_> {
                     let plan = self.plan(&mut scope, plan, member.span);
                     self.s.agents[index].plans.extend(plan);
                 }
-                Member::Error => {}
+                Member::Allow(_) | Member::Error => {}
             }
         }
         self.unadopted(&scope, agent);
@@ -90,7 +105,7 @@ impl Checker<'_> {
                         }
                     }
                 }
-                Member::Belief { .. } => {}
+                Member::Belief { .. } | Member::Allow(_) => {}
                 Member::Error => return,
             }
         }
@@ -120,8 +135,8 @@ impl Checker<'_> {
                     .label(declared.span, "declared here"),
             );
         }
-        let args = self.belief_params(scope.id, belief);
-        let args = self.ground(Noun::Belief, fact, &args);
+        let fields = self.belief_fields(scope.id, belief);
+        let args = self.ground(Noun::Belief, fact, &fields);
         if let Some(args) = args {
             self.s.agents[usize::from(scope.id.0)].initial_beliefs.push((belief, args));
         }
@@ -137,19 +152,20 @@ impl Checker<'_> {
     }
 
     /// Constant arguments.
-    fn ground(&mut self, noun: Noun, call: &Call, params: &[Param]) -> Option<Vec<Value>> {
-        let args = self.args(noun, call, params, &mut Env::constants());
+    fn ground(&mut self, noun: Noun, call: &Call, fields: &Fields) -> Option<Vec<Value>> {
+        let args = self.args(noun, call, fields, &mut Env::constants());
         for arg in &args {
             if arg.constant().is_none() && arg.ty != Kind::Unknown {
                 self.report(types::not_constant(arg.span));
             }
         }
         let values: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
-        values.filter(|v| v.len() == params.len())
+        let whole = call.args.as_ref().map_or(0, Vec::len) == fields.len();
+        values.filter(|_| whole)
     }
 
-    pub(super) fn belief_params(&self, agent: AgentId, belief: BeliefId) -> Vec<Param> {
-        self.s.agents[usize::from(agent.0)].beliefs[usize::from(belief.0)].params.clone()
+    pub(super) fn belief_fields(&self, agent: AgentId, belief: BeliefId) -> Fields {
+        self.belief_fields[usize::from(agent.0)][usize::from(belief.0)].clone()
     }
 
     pub(super) fn belief(&mut self, scope: &Scope, name: &ast::Name) -> Option<BeliefId> {

@@ -1,57 +1,102 @@
 //! Arguments and event patterns.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{Call, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
-use super::{Checker, Env};
-use crate::{EventId, EventPattern, Expr, Param, Type, noun::Noun, report::types};
+use super::{Checker, Env, given::Given, item::Part, layout::Fields};
+use crate::{EventId, EventPattern, Expr, Type, Value, noun::Noun, report::types, types::Layout};
 
 impl Checker<'_> {
-    /// The arguments of a call, each of its parameter's type. Without parentheses there are none.
-    pub(super) fn args(&mut self, noun: Noun, call: &Call, params: &[Param], env: &mut Env) -> Vec<Expr> {
+    /// The arguments of a call, each of its parameter's type, as single values. Without parentheses there are none.
+    pub(super) fn args(
+        &mut self,
+        noun: Noun,
+        call: &Call,
+        fields: &[(String, Layout)],
+        env: &mut Env,
+    ) -> Vec<Expr> {
         let args = call.args.as_deref().unwrap_or_default();
-        if args.len() != params.len() {
-            self.report(types::arity(noun, &call.name.text, params, args.len(), call.span));
+        if args.len() != fields.len() {
+            self.wrong_arity(noun, call, fields);
         }
-        args.iter().zip(params).map(|(a, p)| self.expr_for(a, p.ty, env)).collect()
+        let mut values = Vec::with_capacity(fields.len());
+        for (arg, (_, layout)) in args.iter().zip(fields) {
+            match layout {
+                Layout::Scalar(ty) => values.push(self.expr_for(arg, *ty, env)),
+                Layout::Record(_) | Layout::Array(..) => self.item_for(arg, layout, env).flatten(&mut values),
+            }
+        }
+        values
+    }
+
+    pub(super) fn wrong_arity(&mut self, noun: Noun, call: &Call, fields: &[(String, Layout)]) {
+        let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
+        let got = call.args.as_ref().map_or(0, Vec::len);
+        self.report(types::arity(noun, &call.name.text, &names, got, call.span));
     }
 
     /// An event with constants or `_` for arguments; without parentheses any arguments will do.
     pub(super) fn pattern(&mut self, call: &Call, env: &mut Env) -> Option<EventPattern> {
         let event = self.event(Noun::EventOrStimulus, &call.name, None)?;
-        let params = self.params_of(event);
+        let fields = self.fields_of(event);
         let Some(args) = &call.args else {
-            return Some(EventPattern { event, args: vec![None; params.len()] });
+            return Some(EventPattern { event, args: vec![None; self.arity_of(event)] });
         };
-        if args.len() != params.len() {
-            self.report(types::arity(Noun::Event, &call.name.text, &params, args.len(), call.span));
+        if args.len() != fields.len() {
+            self.wrong_arity(Noun::Event, call, &fields);
             return None;
         }
-        let mut patterns = Vec::new();
-        for (arg, param) in args.iter().zip(&params) {
-            patterns.push(match arg.kind {
-                Syntax::Any => None,
-                _ => {
-                    let e = self.expr_for(arg, param.ty, env);
-                    if e.constant().is_none() && e.ty != crate::Kind::Unknown {
-                        self.report(
-                            types::not_constant(e.span).help("write a constant, or `_` for any value"),
-                        );
-                    }
-                    e.constant()
-                }
-            });
+        let mut parts = Vec::new();
+        for (arg, (_, layout)) in args.iter().zip(fields.iter()) {
+            self.spread(arg, layout, env, &|_, _| false, &mut parts);
         }
+        let patterns = parts.into_iter().map(|part| self.pattern_part(part, env)).collect();
         Some(EventPattern { event, args: patterns })
     }
 
-    /// Patterns over constants.
-    pub(super) fn patterns(&mut self, calls: &[Call]) -> Vec<EventPattern> {
-        calls.iter().filter_map(|c| self.pattern(c, &mut Env::constants())).collect()
+    fn pattern_part(&mut self, part: Part<'_>, env: &mut Env) -> Option<Value> {
+        let e = match part {
+            Part::Any | Part::Variable(..) => return None,
+            Part::Syntax(arg, _) if arg.kind == Syntax::Any => return None,
+            Part::Syntax(arg, ty) => self.expr_for(arg, ty, env),
+            Part::Done(e, _) => e,
+        };
+        if e.constant().is_none() && e.ty != crate::Kind::Unknown {
+            self.report(types::not_constant(e.span).help("write a constant, or `_` for any value"));
+        }
+        e.constant()
     }
 
-    pub(super) fn params_of(&self, event: EventId) -> Vec<Param> {
-        self.s.events[usize::from(event.0)].params.clone()
+    /// Patterns over constants. A parameter of a template may stand for several.
+    pub(super) fn patterns(&mut self, calls: &[Call]) -> Vec<EventPattern> {
+        self.patterns_with(calls, &mut Env::constants()).into_iter().map(|(p, _)| p).collect()
+    }
+
+    /// Patterns with the places where they are named.
+    pub(super) fn patterns_with(&mut self, calls: &[Call], env: &mut Env) -> Vec<(EventPattern, Span)> {
+        let mut all = Vec::new();
+        for call in calls {
+            match self.given(&call.name.text) {
+                Some(Given::Events(events)) if call.args.is_none() => {
+                    all.extend(events.iter().map(|p| (p.clone(), call.name.span)));
+                }
+                Some(Given::Unknown) => {}
+                Some(
+                    Given::Events(_) | Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_),
+                )
+                | None => all.extend(self.pattern(call, env).map(|p| (p, call.name.span))),
+            }
+        }
+        all
+    }
+
+    pub(super) fn fields_of(&self, event: EventId) -> Fields {
+        self.event_fields[usize::from(event.0)].clone()
+    }
+
+    /// How many single values an event carries.
+    pub(super) fn arity_of(&self, event: EventId) -> usize {
+        self.s.events[usize::from(event.0)].params.len()
     }
 
     /// A constant that must not be less than another of its type; says so at `span`.
@@ -72,5 +117,28 @@ impl Checker<'_> {
             self.report(types::not_finite(what, span));
         }
         ty.is_finite()
+    }
+
+    /// Whether all single values of a layout can be enumerated; says so if not.
+    pub(super) fn finite_layout(&mut self, layout: &Layout, what: &str, span: Span) -> bool {
+        let mut leaves = Vec::new();
+        self.leaves("", layout, &mut leaves);
+        leaves.iter().all(|(_, ty)| ty.is_finite())
+            || self.finite(Type::Float(crate::Dim::NUMBER), what, span)
+    }
+
+    /// The arguments of a call with their types, taken apart as the parameters are.
+    pub(super) fn spread_args<'e>(
+        &mut self,
+        args: &'e [ast::Expr],
+        fields: &[(String, Layout)],
+        env: &mut Env,
+        variable: &dyn Fn(&Checker<'_>, &ast::Name) -> bool,
+    ) -> Vec<Part<'e>> {
+        let mut parts = Vec::new();
+        for (arg, (_, layout)) in args.iter().zip(fields) {
+            self.spread(arg, layout, env, variable, &mut parts);
+        }
+        parts
     }
 }

@@ -1,11 +1,12 @@
 //! Automata: clocks, variables, locations; and networks.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name};
+use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sort};
 
-use super::{Checker, Env, env::Local, table::Table};
+use super::{Checker, Declared, Env, env::Local, table::Table};
 use crate::{
     ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, noun::Noun, report::automata,
+    types::Layout,
 };
 
 /// The names of one automaton.
@@ -14,14 +15,28 @@ pub(super) struct Scope {
     pub index: usize,
     pub actor: ActorId,
     pub clocks: Table,
+    /// The single values of the variables.
     pub vars: Table,
+    /// Of the variables that have several.
+    pub layouts: Vec<(String, Layout)>,
     pub locations: Table,
+    /// What its edges see besides what they bind.
+    pub env: Env,
 }
 
 impl Checker<'_> {
     pub(super) fn automata(&mut self) {
+        self.templates_of(Sort::Automaton, |c, template| {
+            let ItemKind::Automaton(syntax) = template.kind else { return };
+            let index = c.s.automata.len();
+            let plain = Declared { syntax, given: None, instance: None };
+            c.push_automaton(&plain, template.name, template.name.span);
+            c.automaton(index, syntax);
+            c.s.automata.truncate(index);
+        });
         for (index, automaton) in self.automaton_decls.clone().into_iter().enumerate() {
-            self.automaton(index, automaton);
+            let place = automaton.instance.map(|i| (&i.name, i.span));
+            self.as_instance(automaton.given, place, |c| c.automaton(index, automaton.syntax));
         }
         for (item, span) in self.each_item() {
             if let ItemKind::Network { name, automata } = item {
@@ -37,7 +52,9 @@ impl Checker<'_> {
             actor,
             clocks: Table::default(),
             vars: Table::default(),
+            layouts: Vec::new(),
             locations: Table::default(),
+            env: Env::default(),
         };
         self.unread_members = super::unread::in_automaton(automaton);
         for member in &automaton.members {
@@ -48,9 +65,10 @@ impl Checker<'_> {
                     }
                 }
                 Member::Var(var) => self.own_var(index, var, &mut scope),
-                Member::Location { .. } | Member::Edge(_) | Member::Error => {}
+                Member::Location { .. } | Member::Edge(_) | Member::Allow(_) | Member::Error => {}
             }
         }
+        scope.env = self.automaton_env(&scope);
         self.locations(index, automaton, &mut scope);
         for member in &automaton.members {
             if let Member::Edge(edge) = &member.kind {
@@ -70,21 +88,28 @@ impl Checker<'_> {
 
     fn own_var(&mut self, index: usize, var: &ast::Var, scope: &mut Scope) {
         self.check_free(&self.automaton_env(scope), Noun::Clock, &var.name);
-        let resolved = self.var(var);
-        if scope.clocks.get(&var.name.text).is_none()
-            && scope.vars.insert(&var.name.text, var.name.span).is_ok()
-        {
-            self.s.automata[index].vars.push(resolved);
+        let (layout, vars) = self.var(var);
+        if scope.clocks.get(&var.name.text).is_some() {
+            return;
+        }
+        for var in vars {
+            if scope.vars.insert(&var.name, var.span).is_ok() {
+                self.s.automata[index].vars.push(var);
+            }
+        }
+        if !matches!(layout, Layout::Scalar(_)) {
+            scope.layouts.push((var.name.text.clone(), layout));
         }
     }
 
     /// What the automaton's expressions can see: its variables, clocks (only in bounds), and the shared variables.
-    pub(super) fn automaton_env(&self, scope: &Scope) -> Env {
-        let mut env = Env { noun: Some(Noun::Variable), ..Env::default() };
+    fn automaton_env(&self, scope: &Scope) -> Env {
+        let layouts = scope.layouts.clone();
+        let mut env = Env { noun: Some(Noun::Variable), layouts, ..Env::default() };
         for (name, i) in scope.vars.entries() {
             let own = local(name, Noun::Variable, Some(Leaf::Own(i)));
-            let ty = self.s.automata[scope.index].vars[usize::from(i)].ty.kind();
-            env.locals.push(Local { ty, ..own });
+            let ty = self.s.automata[scope.index].vars[usize::from(i)].ty;
+            env.locals.push(Local { ty: ty.kind(), range: ty.range(), ..own });
         }
         for (name, _) in scope.clocks.entries() {
             env.locals.push(local(name, Noun::Clock, None));
@@ -92,7 +117,12 @@ impl Checker<'_> {
         for (i, var) in (0..).zip(&self.s.shared) {
             if env.find(&var.name).is_none() {
                 let shared = local(&var.name, Noun::Variable, Some(Leaf::Shared(i)));
-                env.locals.push(Local { ty: var.ty.kind(), ..shared });
+                env.locals.push(Local { ty: var.ty.kind(), range: var.ty.range(), ..shared });
+            }
+        }
+        for (name, layout) in &self.shared_layouts {
+            if env.find(name).is_none() {
+                env.declare_layout(name, layout.clone());
             }
         }
         env
@@ -106,7 +136,7 @@ impl Checker<'_> {
             let Member::Location { init, kind, name, invariant } = &member.kind else { continue };
             let mut bounds = Vec::new();
             if let Some(e) = invariant {
-                let mut env = self.automaton_env(scope);
+                let mut env = scope.env.clone();
                 for part in super::edge::conjuncts(e) {
                     let bound = self.clock_bound(part, scope, &mut env);
                     match bound {
@@ -167,5 +197,5 @@ impl Checker<'_> {
 }
 
 fn local(name: &str, noun: Noun, leaf: Option<Leaf>) -> Local {
-    Local { name: name.to_owned(), noun, leaf, ty: crate::Kind::Unknown, bound: true }
+    Local { name: name.to_owned(), noun, leaf, ty: crate::Kind::Unknown, range: None, bound: true }
 }

@@ -2,31 +2,85 @@
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, UnaryOp,
+    self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, Sort, UnaryOp,
 };
 
-use super::{Checker, table::Table};
+use super::{
+    Checker, Env,
+    given::{Given, template},
+    table::Table,
+};
 use crate::{
-    Bin, Condition, CoverPoint, Cross, PointId, Value,
+    Bin, Condition, CoverPoint, Cross, EventPattern, PointId, Value,
     noun::Noun,
     report::{coverage::overlap, names, types},
 };
 
 impl Checker<'_> {
     pub(super) fn coverage(&mut self) {
+        self.templates_of(Sort::Cover, |c, template| {
+            if let ItemKind::Cover(cover) = template.kind {
+                c.point_of(cover);
+            }
+        });
         for (item, span) in self.each_item() {
-            if let ItemKind::Cover(cover) = item {
-                self.point_of(cover, span);
+            match item {
+                _ if template(item).is_some() => {}
+                ItemKind::Cover(cover) => {
+                    let resolved = self.point_of(cover);
+                    self.add_point(&cover.name, resolved, span);
+                }
+                ItemKind::Instance(instance) if instance.sort == Sort::Cover => {
+                    let Some((template, given)) = self.instance(instance, &Env::constants()) else {
+                        continue;
+                    };
+                    let ItemKind::Cover(cover) = template.kind else { continue };
+                    let place = Some((&instance.name, instance.span));
+                    let resolved = self.as_instance(Some(given), place, |c| c.point_of(cover));
+                    self.add_point(&instance.name, resolved, span);
+                }
+                _ => {}
             }
         }
+        self.templates_of(Sort::Cross, |c, template| {
+            if let ItemKind::Cross(cross) = template.kind {
+                c.cross_of(cross, cross.name.span);
+            }
+        });
         for (item, span) in self.each_item() {
-            if let ItemKind::Cross(cross) = item {
-                self.cross_of(cross, span);
+            match item {
+                _ if template(item).is_some() => {}
+                ItemKind::Cross(cross) => {
+                    let resolved = self.cross_of(cross, span);
+                    self.cross(&cross.name, resolved);
+                }
+                ItemKind::Instance(instance) if instance.sort == Sort::Cross => {
+                    let Some((template, given)) = self.instance(instance, &Env::constants()) else {
+                        continue;
+                    };
+                    let ItemKind::Cross(cross) = template.kind else { continue };
+                    let place = Some((&instance.name, instance.span));
+                    let resolved = self.as_instance(Some(given), place, |c| c.cross_of(cross, span));
+                    self.cross(&instance.name, resolved);
+                }
+                _ => {}
             }
         }
     }
 
-    fn point_of(&mut self, cover: &ast::Cover, span: Span) {
+    fn add_point(&mut self, name: &Name, (count, bins): (Vec<EventPattern>, Vec<Bin>), span: Span) {
+        if Self::declare(&mut self.issues, &mut self.points, Noun::Point, name).is_some() {
+            self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, span });
+        }
+    }
+
+    fn cross(&mut self, name: &Name, cross: Cross) {
+        if Self::declare(&mut self.issues, &mut self.crosses, Noun::Cross, name).is_some() {
+            self.s.crosses.push(Cross { name: name.text.clone(), ..cross });
+        }
+    }
+
+    fn point_of(&mut self, cover: &ast::Cover) -> (Vec<EventPattern>, Vec<Bin>) {
         let count = self.patterns(&cover.count);
         let mut table = Table::default();
         let mut bins: Vec<(Bin, Span)> = Vec::new();
@@ -45,10 +99,7 @@ impl Checker<'_> {
             }
             bins.push((resolved, bin.span));
         }
-        if Self::declare(&mut self.issues, &mut self.points, Noun::Point, &cover.name).is_some() {
-            let bins = bins.into_iter().map(|(b, _)| b).collect();
-            self.s.points.push(CoverPoint { name: cover.name.text.clone(), count, bins, span });
-        }
+        (count, bins.into_iter().map(|(b, _)| b).collect())
     }
 
     fn bin(&mut self, bin: &ast::Bin) -> Option<Bin> {
@@ -64,16 +115,10 @@ impl Checker<'_> {
         Some(Bin { name: bin.name.text.clone(), lo, hi })
     }
 
-    fn cross_of(&mut self, cross: &ast::Cross, span: Span) {
+    fn cross_of(&mut self, cross: &ast::Cross, span: Span) -> Cross {
         let mut points = Vec::new();
         for name in &cross.points {
-            match self.points.get(&name.text) {
-                Some(id) => points.push(PointId(id)),
-                None => {
-                    let all: Vec<String> = self.points.names().map(str::to_owned).collect();
-                    self.unknown(Noun::Point, name, &all, None);
-                }
-            }
+            points.extend(self.point_named(name));
         }
         let mut titles = Table::default();
         let (mut bins, mut ignore) = (Vec::new(), Vec::new());
@@ -87,12 +132,10 @@ impl Checker<'_> {
                     bins.extend(when.map(|when| (name.text.clone(), when, member.span)));
                 }
                 Member::Ignore { when } => ignore.extend(self.cross_condition(when, &points)),
-                Member::Error => {}
+                Member::Allow(_) | Member::Error => {}
             }
         }
-        if Self::declare(&mut self.issues, &mut self.crosses, Noun::Cross, &cross.name).is_some() {
-            self.s.crosses.push(Cross { name: cross.name.text.clone(), points, bins, ignore, span });
-        }
+        Cross { name: cross.name.text.clone(), points, bins, ignore, span }
     }
 
     /// A formula over `point.bin`.
@@ -122,12 +165,24 @@ impl Checker<'_> {
     }
 
     fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId]) -> Option<Condition> {
+        match self.given(&point.text) {
+            Some(Given::Unknown) => return None,
+            Some(Given::Point(id)) if points.contains(id) => return self.bin_of(*id, bin),
+            Some(
+                Given::Point(_) | Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..),
+            )
+            | None => {}
+        }
         let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
         let Some(id) = points.iter().copied().find(|p| name_of(self, p) == point.text) else {
             let all: Vec<String> = points.iter().map(|p| name_of(self, p)).collect();
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };
+        self.bin_of(id, bin)
+    }
+
+    fn bin_of(&mut self, id: PointId, bin: &Name) -> Option<Condition> {
         let bins: Vec<String> =
             self.s.points[usize::from(id.0)].bins.iter().map(|b| b.name.clone()).collect();
         let Some(at) = bins.iter().position(|b| *b == bin.text) else {

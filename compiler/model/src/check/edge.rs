@@ -2,21 +2,22 @@
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam,
+    self, Access, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam,
 };
 
-use super::{Checker, Env, automaton::Scope, is_variable_name};
+use super::{Checker, Env, automaton::Scope, is_variable_name, item::Part};
 use crate::{
     ClockConstraint, ClockId, ClockOp, Dim, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param,
     ReceiveArg, StimulusStep, Sync, Type, Update, Value,
     noun::Noun,
     report::{automata, types},
+    types::Layout,
 };
 
 impl Checker<'_> {
     pub(super) fn edge(&mut self, scope: &Scope, edge: &ast::Edge, span: Span) -> Option<Edge> {
         let (from, to) = (self.location(scope, &edge.from), self.location(scope, &edge.to));
-        let mut env = self.automaton_env(scope);
+        let mut env = scope.env.clone();
         let selects = self.selects(&edge.selects, &mut env);
         let mut equal = Vec::new();
         let receive = edge.on.as_ref().map(|call| self.receive(scope, call, &mut env, &mut equal));
@@ -45,8 +46,8 @@ impl Checker<'_> {
                         sent = Some((call.span, sync));
                     }
                 }
-                Action::Assign { target, op, value } => {
-                    updates.extend(self.update(scope, target, *op, value, &mut env));
+                Action::Assign { target, access, op, value } => {
+                    self.update(scope, (target, access), *op, value, &mut env, &mut updates);
                 }
             }
         }
@@ -64,7 +65,7 @@ impl Checker<'_> {
             return Some(LocationId(id));
         }
         let all: Vec<String> = scope.locations.names().map(str::to_owned).collect();
-        let local = self.automaton_env(scope).find(&name.text).map(|l| l.noun);
+        let local = scope.env.find(&name.text).map(|l| l.noun);
         self.unknown(Noun::Location, name, &all, local);
         None
     }
@@ -74,7 +75,10 @@ impl Checker<'_> {
         for select in selects {
             let ty = self.ty(&select.ty).filter(|ty| self.finite(*ty, "a select", select.name.span));
             self.check_free(env, Noun::Variable, &select.name);
-            env.push_local(&select.name.text, Noun::Variable, ty.map_or(Kind::Unknown, Type::kind));
+            match ty {
+                Some(ty) => env.push_typed(&select.name.text, Noun::Variable, ty),
+                None => env.push_local(&select.name.text, Noun::Variable, Kind::Unknown),
+            };
             resolved.push(Param { name: select.name.text.clone(), ty: ty.unwrap_or(Type::Bool) });
         }
         resolved
@@ -88,18 +92,20 @@ impl Checker<'_> {
             return None;
         };
         self.perceives(scope.actor, event, call.name.span, true);
-        let params = self.params_of(event);
+        let fields = self.fields_of(event);
         let Some(args) = &call.args else {
-            return Some(Sync::Receive { event, args: vec![ReceiveArg::Any; params.len()] });
+            return Some(Sync::Receive { event, args: vec![ReceiveArg::Any; self.arity_of(event)] });
         };
-        if args.len() != params.len() {
-            self.report(types::arity(self.noun_of(event), &call.name.text, &params, args.len(), call.span));
+        if args.len() != fields.len() {
+            self.wrong_arity(self.noun_of(event), call, &fields);
             return None;
         }
-        let mut received = Vec::new();
-        for (arg, param) in args.iter().zip(&params) {
-            received.push(self.received(arg, param, env, equal));
-        }
+        let known: Vec<String> = env.layouts.iter().map(|(n, _)| n.clone()).collect();
+        let free = |c: &Checker<'_>, name: &Name| {
+            !known.contains(&name.text) && !c.has_value(&name.text) && !is_variable_name(&name.text)
+        };
+        let parts = self.spread_args(args, &fields, env, &free);
+        let received = parts.into_iter().map(|part| self.received_part(part, env, equal)).collect();
         Some(Sync::Receive { event, args: received })
     }
 
@@ -115,38 +121,52 @@ impl Checker<'_> {
         }
     }
 
-    fn received(
-        &mut self,
-        arg: &ast::Expr,
-        param: &Param,
-        env: &mut Env,
-        equal: &mut Vec<Expr>,
-    ) -> ReceiveArg {
+    fn received_part(&mut self, part: Part<'_>, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+        match part {
+            Part::Any => ReceiveArg::Any,
+            Part::Syntax(arg, ty) => self.received(arg, ty, env, equal),
+            Part::Done(e, ty) => self.compared(e, ty, env, equal),
+            Part::Variable(name, ty) => {
+                self.finite(ty, "what an automaton binds", name.span);
+                env.push_typed(&name.text, Noun::Variable, ty);
+                ReceiveArg::Bind
+            }
+        }
+    }
+
+    fn received(&mut self, arg: &ast::Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
         if arg.kind == Syntax::Any {
             return ReceiveArg::Any;
         }
         if let Syntax::Path(path) = &arg.kind
             && let [name] = path.names.as_slice()
             && env.find(&name.text).is_none()
-            && !self.consts.contains_key(name.text.as_str())
+            && env.layout(&name.text).is_none()
+            && !self.has_value(&name.text)
             && !is_variable_name(&name.text)
         {
-            self.finite(param.ty, "what an automaton binds", name.span);
-            env.push_local(&name.text, Noun::Variable, param.ty.kind());
+            self.finite(ty, "what an automaton binds", name.span);
+            env.push_typed(&name.text, Noun::Variable, ty);
             return ReceiveArg::Bind;
         }
-        let value = self.expr_for(arg, param.ty, env);
+        let value = self.expr_for(arg, ty, env);
+        self.compared(value, ty, env, equal)
+    }
+
+    /// What is received is compared with a value.
+    fn compared(&mut self, value: Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+        let span = value.span;
         if let Some(value) = value.constant() {
             return ReceiveArg::Is(value);
         }
         if value.ty == Kind::Unknown {
             return ReceiveArg::Any;
         }
-        self.finite(param.ty, "what an automaton compares", arg.span);
-        let bound = env.push_local("", Noun::Variable, param.ty.kind());
-        let leaf = Expr { kind: ExprKind::Leaf(Leaf::Local(bound)), ty: param.ty.kind(), span: arg.span };
+        self.finite(ty, "what an automaton compares", span);
+        let bound = env.push_local("", Noun::Variable, ty.kind());
+        let leaf = Expr { kind: ExprKind::Leaf(Leaf::Local(bound)), ty: ty.kind(), span };
         let kind = ExprKind::Binary(BinaryOp::Eq, Box::new(leaf), Box::new(value));
-        equal.push(Expr { kind, ty: Kind::Bool, span: arg.span });
+        equal.push(Expr { kind, ty: Kind::Bool, span });
         ReceiveArg::Bind
     }
 
@@ -154,8 +174,9 @@ impl Checker<'_> {
         let local = env.find(&call.name.text).map(|l| l.noun);
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
         self.owns(scope.actor, event, call);
-        let params = self.params_of(event);
-        let args = self.args(self.noun_of(event), call, &params, env);
+        let fields = self.fields_of(event);
+        let args = self.args(self.noun_of(event), call, &fields, env);
+        let params = self.s.events[usize::from(event.0)].params.clone();
         if args.len() != params.len() {
             return None;
         }
@@ -177,55 +198,216 @@ impl Checker<'_> {
         e.stimulus.as_ref().is_some_and(|s| sampled(&s.steps, params))
     }
 
+    /// `target = value`: one update for each single value.
     fn update(
         &mut self,
         scope: &Scope,
-        target: &Name,
+        (target, access): (&Name, &[Access]),
         op: Option<BinaryOp>,
         value: &ast::Expr,
         env: &mut Env,
-    ) -> Option<Update> {
+        updates: &mut Vec<Update>,
+    ) {
         if let Some(clock) = scope.clocks.get(&target.text) {
-            let zero = match value.kind {
-                Syntax::Int(n) => n == 0,
-                Syntax::Quantity { number, .. } => {
-                    number == 0.0 && self.expr_of(value, Kind::Float(Dim::TIME), env).constant().is_some()
-                }
-                _ => false,
-            };
-            if !zero || op.is_some() {
-                self.report(automata::clock_set(&target.text, target.span));
-                return None;
-            }
-            return Some(Update::Reset(ClockId(clock)));
+            let reset = self.reset(target, access, op, value, env);
+            return updates.extend(reset.then_some(Update::Reset(ClockId(clock))));
         }
-        let slot = env.find(&target.text).map(|l| (l.leaf, l.noun));
-        let (leaf, ty) = match slot {
-            Some((Some(Leaf::Own(i)), _)) => {
-                (Leaf::Own(i), self.s.automata[scope.index].vars[usize::from(i)].ty)
-            }
-            Some((Some(Leaf::Shared(i)), _)) => (Leaf::Shared(i), self.s.shared[usize::from(i)].ty),
-            Some((Some(Leaf::Local(_) | Leaf::Signal(_)) | None, _)) => {
+        let slot = env.find(&target.text).map(|l| l.leaf);
+        let layout = match slot {
+            Some(Some(leaf @ (Leaf::Own(_) | Leaf::Shared(_)))) => Layout::Scalar(self.type_of(scope, leaf)),
+            Some(Some(Leaf::Local(_) | Leaf::Signal(_)) | None) => {
                 let message = format!("`{}` is bound by the edge: it cannot be assigned", target.text);
                 let issue =
                     hrdsl_source::Diagnostic::error(hrdsl_source::Code::WRONG_KIND, target.span, message);
-                self.report(issue.help("assign a variable declared by `var`"));
-                return None;
+                return self.report(issue.help("assign a variable declared by `var`"));
             }
-            None => {
-                let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
-                let all: Vec<String> = vars.map(|l| l.name.clone()).collect();
-                self.unknown(Noun::Variable, target, &all, None);
-                self.expr(value, env);
-                return None;
-            }
+            None => match env.layout(&target.text) {
+                Some(layout) => layout.clone(),
+                None => {
+                    let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
+                    let all: Vec<String> = vars.map(|l| l.name.clone()).collect();
+                    self.unknown(Noun::Variable, target, &all, None);
+                    self.item(value, env);
+                    return;
+                }
+            },
         };
-        let value = self.new_value(leaf, ty, op, value, target, env);
-        Some(match leaf {
-            Leaf::Own(i) => Update::Own(i, value),
-            Leaf::Shared(i) | Leaf::Local(i) => Update::Shared(i, value),
-            Leaf::Signal(_) => return None,
-        })
+        let place = Place { name: target.text.clone(), layout, only_if: None };
+        let places = self.places(place, access, target, env);
+        let several = places.len() > 1 || places.iter().any(|p| !matches!(p.layout, Layout::Scalar(_)));
+        for place in places {
+            if several {
+                self.assign_parts(scope, &place, op, value, target, env, updates);
+            } else {
+                self.assign(scope, &place, op, value, target, env, updates);
+            }
+        }
+    }
+
+    /// `x = 0`
+    fn reset(
+        &mut self,
+        target: &Name,
+        access: &[Access],
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        env: &mut Env,
+    ) -> bool {
+        let zero = match value.kind {
+            Syntax::Int(n) => n == 0,
+            Syntax::Quantity { number, .. } => {
+                number == 0.0 && self.expr_of(value, Kind::Float(Dim::TIME), env).constant().is_some()
+            }
+            _ => false,
+        };
+        let fits = zero && op.is_none() && access.is_empty();
+        if !fits {
+            self.report(automata::clock_set(&target.text, target.span));
+        }
+        fits
+    }
+
+    fn type_of(&self, scope: &Scope, leaf: Leaf) -> Type {
+        match leaf {
+            Leaf::Own(i) => self.s.automata[scope.index].vars[usize::from(i)].ty,
+            Leaf::Shared(i) => self.s.shared[usize::from(i)].ty,
+            Leaf::Local(_) | Leaf::Signal(_) => Type::Bool,
+        }
+    }
+
+    /// What `a[i].x` may be: each element that the index can name, under the condition that it does.
+    fn places(&mut self, place: Place, access: &[Access], target: &Name, env: &mut Env) -> Vec<Place> {
+        let mut places = vec![place];
+        for step in access {
+            let mut inner = Vec::new();
+            for place in places {
+                match (step, &place.layout) {
+                    (Access::Index(e), Layout::Array(of, n)) => {
+                        let at = self.expr_of(e, Kind::Int, env);
+                        if !self.index_fits(&at, usize::from(*n), env) {
+                            return Vec::new();
+                        }
+                        let element = |i: u16, only_if| Place {
+                            name: format!("{}[{i}]", place.name),
+                            layout: (**of).clone(),
+                            only_if,
+                        };
+                        match at.constant() {
+                            Some(Value::Int(i)) => {
+                                inner.push(element(u16::try_from(i).unwrap_or(0), place.only_if.clone()));
+                            }
+                            Some(_) | None => inner.extend((0..*n).map(|i| {
+                                let here = super::item::is_at(&at, usize::from(i));
+                                element(i, Some(place.only_if.clone().map_or(here.clone(), |c| and(c, here))))
+                            })),
+                        }
+                    }
+                    (Access::Field(name), layout) => match self.field_of(layout, name) {
+                        Some(layout) => inner.push(Place {
+                            name: format!("{}{}", place.name, layout.0),
+                            layout: layout.1,
+                            only_if: place.only_if.clone(),
+                        }),
+                        None => return Vec::new(),
+                    },
+                    (Access::Index(_), layout) => {
+                        let message = format!("{} has no elements", self.shown_layout(layout));
+                        self.report(types::no_elements(message, target.span));
+                        return Vec::new();
+                    }
+                }
+            }
+            places = inner;
+        }
+        places
+    }
+
+    /// One single value is set.
+    #[allow(clippy::too_many_arguments, reason = "all of an assignment")]
+    fn assign(
+        &mut self,
+        scope: &Scope,
+        place: &Place,
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        target: &Name,
+        env: &mut Env,
+        updates: &mut Vec<Update>,
+    ) {
+        let Some(leaf) = env.find(&place.name).and_then(|l| l.leaf) else { return };
+        let value = self.new_value(leaf, self.type_of(scope, leaf), op, value, target, env);
+        updates.extend(set(leaf, value));
+    }
+
+    /// Several single values are set, or one of several: nothing that is set may be read on the way.
+    #[allow(clippy::too_many_arguments, reason = "all of an assignment")]
+    fn assign_parts(
+        &mut self,
+        scope: &Scope,
+        place: &Place,
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        target: &Name,
+        env: &mut Env,
+        updates: &mut Vec<Update>,
+    ) {
+        let mut leaves = Vec::new();
+        self.leaves(&place.name, &place.layout, &mut leaves);
+        let mut values = Vec::new();
+        match (op, leaves.as_slice()) {
+            (None, _) => self.item_for(value, &place.layout, env).flatten(&mut values),
+            (Some(_), [(name, ty)]) => {
+                let Some(leaf) = env.find(name).and_then(|l| l.leaf) else { return };
+                values.push(self.new_value(leaf, *ty, op, value, target, env));
+            }
+            (Some(_), _) => {
+                let issue = types::no_value(&self.shown_layout(&place.layout), target.span);
+                return self.report(issue.help("`+=` and `-=` change one number"));
+            }
+        }
+        let slots: Vec<Option<Leaf>> =
+            leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();
+        let whole = leaves.len() > 1;
+        for (i, (slot, value)) in slots.iter().zip(values).enumerate() {
+            let Some(leaf) = *slot else { continue };
+            let reads = |e: &Expr, of: &[Option<Leaf>]| {
+                let mut found = false;
+                e.each(&mut |e| found |= matches!(e.kind, ExprKind::Leaf(l) if of.contains(&Some(l))));
+                found
+            };
+            let early = whole && reads(&value, &slots[..i]);
+            let index = place.only_if.as_ref().is_some_and(|c| self.reads_variable(c, target, env));
+            if early || index {
+                let message = format!("`{}` is read while its parts are being set", target.text);
+                let issue = types::no_value("this", value.span);
+                let issue = hrdsl_source::Diagnostic { message, ..issue };
+                return self
+                    .report(issue.help("set the parts one by one, or keep the old value in a variable"));
+            }
+            let value = match &place.only_if {
+                None => value,
+                Some(condition) => {
+                    let ty = self.type_of(scope, leaf).kind();
+                    let old = Expr { kind: ExprKind::Leaf(leaf), ty, span: target.span };
+                    let span = value.span;
+                    self.conditional(condition.clone(), value, old, span, env)
+                }
+            };
+            updates.extend(set(leaf, value));
+        }
+    }
+
+    /// Whether an expression reads a part of this variable.
+    fn reads_variable(&self, e: &Expr, target: &Name, env: &Env) -> bool {
+        let mut leaves = Vec::new();
+        if let Some(layout) = env.layout(&target.text) {
+            self.leaves(&target.text, layout, &mut leaves);
+        }
+        let slots: Vec<Option<Leaf>> =
+            leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();
+        let mut found = false;
+        e.each(&mut |e| found |= matches!(e.kind, ExprKind::Leaf(l) if slots.contains(&Some(l))));
+        found
     }
 
     /// `v`, or for `x += v` the sum.
@@ -239,8 +421,8 @@ impl Checker<'_> {
         env: &mut Env,
     ) -> Expr {
         let Some(op) = op else { return self.expr_for(value, ty, env) };
-        if ty == Type::Bool {
-            self.report(types::mismatch(Kind::Int, Kind::Bool, None, target.span));
+        if !ty.kind().is_number() {
+            self.report(types::mismatch(Kind::Int, ty.kind(), None, target.span, &self.s.enums));
         }
         let by = self.expr_of(value, Kind::Int, env);
         let span = target.span.to(value.span);
@@ -306,6 +488,23 @@ impl Checker<'_> {
                 None
             }
         }
+    }
+}
+
+/// A variable or a part of one that an assignment sets.
+struct Place {
+    /// `a[0].x`
+    name: String,
+    layout: Layout,
+    /// Set only if this holds; else it keeps its value.
+    only_if: Option<Expr>,
+}
+
+fn set(leaf: Leaf, value: Expr) -> Option<Update> {
+    match leaf {
+        Leaf::Own(i) => Some(Update::Own(i, value)),
+        Leaf::Shared(i) => Some(Update::Shared(i, value)),
+        Leaf::Local(_) | Leaf::Signal(_) => None,
     }
 }
 

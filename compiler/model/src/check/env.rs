@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::Name;
 
 use super::Checker;
-use crate::{Kind, Leaf, Type, noun::Noun, report::names::duplicate};
+use crate::{Kind, Leaf, Type, noun::Noun, report::names::duplicate, types::Layout};
 
 /// A name of the place's own scope.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub(crate) struct Local {
     /// `None`: a clock, which has no value in an expression.
     pub leaf: Option<Leaf>,
     pub ty: Kind,
+    /// Of a whole number, if its type says so.
+    pub range: Option<(i64, i64)>,
     /// It has a value here.
     pub bound: bool,
 }
@@ -22,6 +24,8 @@ pub(crate) struct Local {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Env {
     pub locals: Vec<Local>,
+    /// Names that stand for several locals, which are called `name.x` or `name[0]`.
+    pub layouts: Vec<(String, Layout)>,
     /// Measurements are allowed; names of the world have this prefix (`robot.` inside of a part, else empty).
     pub world: Option<String>,
     /// Names that start with an upper-case letter are an agent's variables.
@@ -58,8 +62,29 @@ impl Env {
     /// Adds a local without looking whether the name is free.
     pub fn push_local(&mut self, name: &str, noun: Noun, ty: Kind) -> u16 {
         let at = self.next_local();
-        self.locals.push(Local { name: name.to_owned(), noun, leaf: Some(Leaf::Local(at)), ty, bound: true });
+        let leaf = Some(Leaf::Local(at));
+        self.locals.push(Local { name: name.to_owned(), noun, leaf, ty, range: None, bound: true });
         at
+    }
+
+    /// The same for one whose type is declared.
+    pub fn push_typed(&mut self, name: &str, noun: Noun, ty: Type) -> u16 {
+        let at = self.push_local(name, noun, ty.kind());
+        if let Some(local) = self.locals.last_mut() {
+            local.range = ty.range();
+        }
+        at
+    }
+
+    /// Says of what parts a name is.
+    pub fn declare_layout(&mut self, name: &str, layout: Layout) {
+        if self.layout(name).is_none() {
+            self.layouts.push((name.to_owned(), layout));
+        }
+    }
+
+    pub fn layout(&self, name: &str) -> Option<&Layout> {
+        self.layouts.iter().find(|(n, _)| n == name).map(|(_, layout)| layout)
     }
 
     /// A variable is of this kind, which was not known before.
@@ -72,24 +97,40 @@ impl Env {
 
 impl Checker<'_> {
     /// Adds a local with a name that must be free.
-    pub(super) fn add_local(&mut self, env: &mut Env, name: &Name, noun: Noun, ty: Type) {
+    pub(super) fn add_local(&mut self, env: &mut Env, name: &Name, noun: Noun, layout: &Layout) {
         self.check_free(env, noun, name);
-        env.push_local(&name.text, noun, ty.kind());
+        let mut leaves = Vec::new();
+        self.leaves(&name.text, layout, &mut leaves);
+        for (name, ty) in leaves {
+            env.push_typed(&name, noun, ty);
+        }
+        if !matches!(layout, Layout::Scalar(_)) {
+            env.declare_layout(&name.text, layout.clone());
+        }
     }
 
-    /// The name is neither a local nor a constant.
+    /// The name is neither a local, a parameter of the template, nor a constant.
     pub(super) fn check_free(&mut self, env: &Env, noun: Noun, name: &Name) {
         let constant: Option<Span> = self.consts.get(name.text.as_str()).map(|c| c.name.span);
-        if let Some(local) = env.find(&name.text) {
-            let issue = duplicate(local.noun, &name.text, name.span, None);
+        let local = env.find(&name.text).map(|l| l.noun);
+        let local = local.or_else(|| env.layout(&name.text).map(|_| Noun::Variable));
+        let value = self.values.get(name.text.as_str()).and_then(|of| of.first()).map(|(id, _)| *id);
+        if let Some(local) = local {
+            let issue = duplicate(local, &name.text, name.span, None);
             self.report(issue);
+        } else if self.given(&name.text).is_some() {
+            let issue = duplicate(Noun::Parameter, &name.text, name.span, None);
+            self.report(issue);
+        } else if let Some(of) = value {
+            let of = self.s.enums[usize::from(of.0)].span;
+            self.report(duplicate(Noun::EnumValue, &name.text, name.span, Some(of)));
         } else if constant.is_some() {
             let issue = duplicate(Noun::Constant, &name.text, name.span, constant);
             self.report(issue);
         } else if noun == Noun::Clock
-            && let Some(id) = self.shared.get(&name.text)
+            && let Some(id) = self.shared_names.get(&name.text)
         {
-            let issue = duplicate(Noun::Variable, &name.text, name.span, self.shared.span(id));
+            let issue = duplicate(Noun::Variable, &name.text, name.span, self.shared_names.span(id));
             self.report(issue);
         }
     }

@@ -3,22 +3,34 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
 
-use super::{Checker, ConstState, Env, is_variable_name};
+use super::{Checker, ConstState, Env, given::Given, is_variable_name, item::Item, measure::text};
 use crate::{
-    Dim, Expr, ExprKind, Function, Kind, Type, Unit, Value,
+    Dim, EnumId, Expr, ExprKind, Function, Kind, Type, Unit, Value,
     noun::Noun,
-    report::{agents::unbound, automata::clock_misused, types},
+    report::{agents::unbound, automata::clock_misused, names, types},
     value,
 };
 
-pub(super) const FUNCTIONS: [(&str, Function); 3] =
-    [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max)];
+pub(super) const FUNCTIONS: [(&str, Function); 4] =
+    [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max), ("norm", Function::Norm)];
 
 impl Checker<'_> {
-    /// Resolves and types an expression, and folds it if it is constant.
+    /// Resolves and types an expression of one value, and folds it if it is constant.
     pub(super) fn expr(&mut self, e: &ast::Expr, env: &mut Env) -> Expr {
+        match self.item(e, env) {
+            Item::One(e) => e,
+            other => {
+                let issue = types::no_value(&self.shown(&other), other.span());
+                self.report(issue.help("one value is needed here: name a part of it"));
+                Expr::error(e.span)
+            }
+        }
+    }
+
+    /// Resolves and types an expression of one or more values.
+    pub(super) fn item(&mut self, e: &ast::Expr, env: &mut Env) -> Item {
         let span = e.span;
-        match &e.kind {
+        Item::One(match &e.kind {
             Syntax::Bool(b) => Expr::value(Value::Bool(*b), Kind::Bool, span),
             Syntax::Int(n) => Expr::value(Value::Int(*n), Kind::Int, span),
             Syntax::Float(x) => Expr::value(Value::Float(*x), Kind::Float(Dim::NUMBER), span),
@@ -27,25 +39,42 @@ impl Checker<'_> {
                 self.report(types::no_value("`_`", span));
                 Expr::error(span)
             }
-            Syntax::Path(path) => self.path(path, env),
-            Syntax::Call { callee, args } => self.call(callee, args, span, env),
-            Syntax::Unary { op, operand } => self.unary(*op, operand, span, env),
-            Syntax::Binary { op, left, right } => self.binary(*op, left, right, span, env),
+            Syntax::Path(path) => return self.path(path, env),
+            Syntax::Call { callee, args } => return self.call(callee, args, span, env),
+            Syntax::Unary { op, operand } => return self.unary(*op, operand, span, env),
+            Syntax::Binary { op, left, right } => return self.binary(*op, left, right, span, env),
             Syntax::If { condition, then, otherwise } => {
                 let condition = self.expr_of(condition, Kind::Bool, env);
-                let (then, otherwise) = (self.expr(then, env), self.expr(otherwise, env));
-                self.conditional(condition, then, otherwise, span, env)
+                let (then, otherwise) = (self.item(then, env), self.item(otherwise, env));
+                return self.either_item(&condition, then, otherwise, span, env);
             }
-            Syntax::Tuple(_) => {
-                self.report(types::no_value("a vector", span));
-                Expr::error(span)
+            Syntax::Tuple(parts) => {
+                return Item::Tuple(parts.iter().map(|p| self.item(p, env)).collect(), span);
+            }
+            Syntax::Index { of, index } => return self.index(of, index, span, env),
+            Syntax::Field { of, name } => {
+                let item = self.item(of, env);
+                return self.field(item, name);
             }
             Syntax::Error => Expr::error(span),
-        }
+        })
+    }
+
+    /// A value of an enumeration by its bare name, where one of this enumeration is due.
+    fn symbol_of(&self, e: &ast::Expr, id: EnumId) -> Option<Expr> {
+        let Syntax::Path(path) = &e.kind else { return None };
+        let [name] = path.names.as_slice() else { return None };
+        let (_, index) = self.values.get(name.text.as_str())?.iter().find(|(of, _)| *of == id)?;
+        Some(symbol_value(id, *index, e.span))
     }
 
     /// An expression that must be of this kind.
     pub(super) fn expr_of(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Expr {
+        if let Kind::Enum(id) = want
+            && let Some(symbol) = self.symbol_of(e, id)
+        {
+            return symbol;
+        }
         let e = self.expr(e, env);
         self.fit(e, want, env)
     }
@@ -53,12 +82,17 @@ impl Checker<'_> {
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
     pub(super) fn expr_for(&mut self, e: &ast::Expr, ty: Type, env: &mut Env) -> Expr {
         let e = self.expr_of(e, ty.kind(), env);
+        self.in_range(&e, ty);
+        e
+    }
+
+    /// A constant must lie in the range of its type.
+    pub(super) fn in_range(&mut self, e: &Expr, ty: Type) {
         if let (Type::Int { lo, hi }, Some(Value::Int(n))) = (ty, e.constant())
             && !(lo..=hi).contains(&n)
         {
             self.report(types::out_of_range(Value::Int(n), lo, hi, e.span));
         }
-        e
     }
 
     /// A constant of this kind; `None` with a diagnostic otherwise.
@@ -107,8 +141,8 @@ impl Checker<'_> {
                 e
             }
             (Kind::Float(Dim::NUMBER), Kind::Int) => as_float(e),
-            (Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Unknown, _) => {
-                self.report(types::mismatch(want, e.ty, e.constant(), e.span));
+            (Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) | Kind::Unknown, _) => {
+                self.report(types::mismatch(want, e.ty, e.constant(), e.span, &self.s.enums));
                 Expr::error(e.span)
             }
         }
@@ -131,27 +165,86 @@ impl Checker<'_> {
         }
     }
 
-    fn path(&mut self, path: &ast::Path, env: &mut Env) -> Expr {
-        let [name] = path.names.as_slice() else { return self.dotted(path, env) };
+    fn path(&mut self, path: &ast::Path, env: &mut Env) -> Item {
+        if let [_, _, ..] = path.names.as_slice() {
+            // A part of a local has a name of its own.
+            if let Some(leaf) =
+                env.find(&text(&path.names)).filter(|l| l.bound).and_then(|l| Some((l.leaf?, l.ty)))
+            {
+                return Item::One(Expr { kind: ExprKind::Leaf(leaf.0), ty: leaf.1, span: path.span });
+            }
+        }
+        let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
+        if let ([value], Some(of)) = (fields, self.enums.get(&first.text)) {
+            return Item::One(self.symbol_named(EnumId(of), value, path.span));
+        }
+        let Some(mut item) = self.named(first, env) else {
+            let alone = fields.is_empty();
+            return Item::One(if alone { self.without_value(first, env) } else { self.dotted(path, env) });
+        };
+        for field in fields {
+            item = self.field(item, field);
+        }
+        item
+    }
+
+    /// What a name stands for that has a value; `None` if it has none.
+    fn named(&mut self, name: &Name, env: &mut Env) -> Option<Item> {
         if let Some(local) = env.find(&name.text) {
-            return match local.leaf {
+            return Some(Item::One(match local.leaf {
                 Some(leaf) if local.bound => {
-                    Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: path.span }
+                    Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span }
                 }
                 Some(_) => self.without_value(name, env),
                 None => {
                     self.report(clock_misused(&name.text, name.span));
-                    Expr::error(path.span)
+                    Expr::error(name.span)
                 }
-            };
+            }));
+        }
+        if let Some(layout) = env.layout(&name.text).cloned() {
+            return Some(self.assembled(&name.text, &layout, env, name.span));
+        }
+        match self.given(&name.text) {
+            Some(Given::Value(item)) => return Some(item.named_at(name.span)),
+            Some(Given::Unknown) => return Some(Item::error(name.span)),
+            Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
         if self.consts.contains_key(name.text.as_str()) {
-            return self.const_value(name);
+            return Some(self.const_value(name));
         }
-        if let Some(e) = self.signal_named(name, env) {
-            return e;
+        match self.values.get(name.text.as_str()).map(Vec::as_slice) {
+            Some([(of, index)]) => return Some(Item::One(symbol_value(*of, *index, name.span))),
+            Some(several) => {
+                let of: Vec<String> =
+                    several.iter().map(|(of, _)| self.s.enums[usize::from(of.0)].name.clone()).collect();
+                self.report(names::ambiguous(&name.text, &of, name.span));
+                return Some(Item::error(name.span));
+            }
+            None => {}
         }
-        self.without_value(name, env)
+        self.signal_named(name, env).map(Item::One)
+    }
+
+    /// A plan's variable by its full name, of which `P.x` may be one.
+    pub(super) fn variable(&mut self, name: &Name, env: &Env) -> Expr {
+        match env.find(&name.text).filter(|l| l.bound).and_then(|l| Some((l.leaf?, l.ty))) {
+            Some((leaf, ty)) => Expr { kind: ExprKind::Leaf(leaf), ty, span: name.span },
+            None => self.without_value(name, env),
+        }
+    }
+
+    /// `Order.feed`
+    fn symbol_named(&mut self, of: EnumId, value: &Name, span: Span) -> Expr {
+        let values = self.s.enums[usize::from(of.0)].values.clone();
+        match values.iter().position(|v| *v == value.text) {
+            Some(index) => symbol_value(of, u16::try_from(index).unwrap_or(u16::MAX), span),
+            None => {
+                let near = values.iter().map(String::as_str);
+                self.report(names::unknown(Noun::EnumValue, &value.text, value.span, near));
+                Expr::error(span)
+            }
+        }
     }
 
     /// A name that has no value here.
@@ -168,29 +261,33 @@ impl Checker<'_> {
     }
 
     /// The value of a constant, worked out at its first use.
-    fn const_value(&mut self, name: &Name) -> Expr {
-        let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return Expr::error(name.span) };
+    fn const_value(&mut self, name: &Name) -> Item {
+        let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return Item::error(name.span) };
         match std::mem::replace(&mut entry.state, ConstState::Open) {
-            ConstState::Done(e) => {
-                let here = Expr { span: name.span, ..e.clone() };
-                entry.state = ConstState::Done(e);
+            ConstState::Done(item) => {
+                let here = item.named_at(name.span);
+                entry.state = ConstState::Done(item);
                 here
             }
             ConstState::Open => {
                 let declared = entry.name.span;
                 self.report(types::constant_cycle(&name.text, name.span, declared));
-                Expr::error(name.span)
+                Item::error(name.span)
             }
             ConstState::Unseen => {
                 let value = entry.value;
-                let mut e = self.expr(value, &mut Env::constants());
-                if e.constant().is_none() {
-                    e = Expr::error(e.span);
+                // A constant does not see the template that reads it.
+                let given = self.given.take();
+                let mut item = self.item(value, &mut Env::constants());
+                self.given = given;
+                if !item.is_constant() {
+                    item = Item::error(item.span());
                 }
+                let here = item.named_at(name.span);
                 if let Some(entry) = self.consts.get_mut(name.text.as_str()) {
-                    entry.state = ConstState::Done(e.clone());
+                    entry.state = ConstState::Done(item);
                 }
-                Expr { span: name.span, ..e }
+                here
             }
         }
     }
@@ -203,50 +300,128 @@ impl Checker<'_> {
         }
     }
 
-    fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Expr {
+    fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
         let name = &callee.names[0];
+        if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {
+            return self.record(id, name, args, span, env);
+        }
         let plain = FUNCTIONS.iter().find(|(n, _)| *n == name.text && callee.names.len() == 1);
-        let Some((text, f)) = plain else { return self.measured(callee, args, span, env) };
+        let Some((text, f)) = plain else { return Item::One(self.measured(callee, args, span, env)) };
+        if *f == Function::Norm {
+            return Item::One(self.norm(args, span, env));
+        }
         let want = if *f == Function::Abs { 1 } else { 2 };
         let args: Vec<Expr> = args.iter().map(|a| self.expr(a, env)).collect();
         if args.len() != want {
             self.report(types::counts(Noun::Function, text, want, args.len(), span));
-            return Expr::error(span);
+            return Item::error(span);
         }
         for arg in &args {
-            if arg.ty == Kind::Bool {
-                self.report(types::mismatch(Kind::Float(Dim::NUMBER), arg.ty, None, arg.span));
-                return Expr::error(span);
+            if !arg.ty.is_number() {
+                let want = Kind::Float(Dim::NUMBER);
+                self.report(types::mismatch(want, arg.ty, None, arg.span, &self.s.enums));
+                return Item::error(span);
             }
         }
         let Some(ty) = args.iter().skip(1).try_fold(args[0].ty, |ty, a| {
             self.same(text, (ty, args[0].span, args[0].constant()), (a.ty, a.span, a.constant()))
         }) else {
-            return Expr::error(span);
+            return Item::error(span);
         };
-        let values: Option<Vec<Value>> = args.iter().map(Expr::constant).collect();
-        let folded = values.map(|v| value::call(*f, &v));
-        self.folded(folded, Expr { kind: ExprKind::Call(*f, args), ty, span })
+        Item::One(self.applied(*f, args, ty, span))
     }
 
-    fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &mut Env) -> Expr {
+    /// `Pose(1 m, 2 m)`
+    fn record(&mut self, id: u16, name: &Name, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
+        let fields = self.records[usize::from(id)].fields.clone();
+        if args.len() != fields.len() {
+            let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
+            let issue = types::counts(Noun::Record, &name.text, fields.len(), args.len(), span);
+            self.report(issue.help(format!("write `{}({})`", name.text, names.join(", "))));
+            return Item::error(span);
+        }
+        let parts = args.iter().zip(&fields).map(|(a, (_, layout))| self.item_for(a, layout, env)).collect();
+        Item::Record(id, parts, span)
+    }
+
+    pub(super) fn applied(&mut self, f: Function, args: Vec<Expr>, ty: Kind, span: Span) -> Expr {
+        let values: Option<Vec<Value>> = args.iter().map(Expr::constant).collect();
+        let folded = values.map(|v| value::call(f, &v));
+        self.folded(folded, Expr { kind: ExprKind::Call(f, args), ty, span })
+    }
+
+    fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &mut Env) -> Item {
         let operand = match op {
-            UnaryOp::Not => self.expr_of(operand, Kind::Bool, env),
-            UnaryOp::Neg => self.expr(operand, env),
+            UnaryOp::Not => Item::One(self.expr_of(operand, Kind::Bool, env)),
+            UnaryOp::Neg => self.item(operand, env),
         };
-        if op == UnaryOp::Neg && operand.ty == Kind::Bool {
-            self.report(types::mismatch(Kind::Float(Dim::NUMBER), operand.ty, None, operand.span));
-            return Expr::error(span);
+        self.unary_item(op, operand, span)
+    }
+
+    fn unary_item(&mut self, op: UnaryOp, operand: Item, span: Span) -> Item {
+        let operand = match operand {
+            Item::One(operand) => operand,
+            Item::Array(parts, _) | Item::Tuple(parts, _) => {
+                return Item::Array(parts.into_iter().map(|p| self.unary_item(op, p, span)).collect(), span);
+            }
+            Item::Record(..) => {
+                let issue = types::no_value(&self.shown(&operand), span);
+                self.report(issue.help("a record has no negative: name a part of it"));
+                return Item::error(span);
+            }
+        };
+        if op == UnaryOp::Neg && !operand.ty.is_number() {
+            let want = Kind::Float(Dim::NUMBER);
+            self.report(types::mismatch(want, operand.ty, None, operand.span, &self.s.enums));
+            return Item::error(span);
         }
         let ty = if op == UnaryOp::Not { Kind::Bool } else { operand.ty };
         let folded = operand.constant().map(|v| value::unary(op, v));
-        self.folded(folded, Expr { kind: ExprKind::Unary(op, Box::new(operand)), ty, span })
+        Item::One(self.folded(folded, Expr { kind: ExprKind::Unary(op, Box::new(operand)), ty, span }))
     }
 
-    fn binary(&mut self, op: BinaryOp, l: &ast::Expr, r: &ast::Expr, span: Span, env: &mut Env) -> Expr {
+    fn binary(&mut self, op: BinaryOp, l: &ast::Expr, r: &ast::Expr, span: Span, env: &mut Env) -> Item {
+        if matches!(op, BinaryOp::And | BinaryOp::Or) {
+            let (l, r) = (self.expr_of(l, Kind::Bool, env), self.expr_of(r, Kind::Bool, env));
+            return Item::One(self.operate(op, l, r, span, env));
+        }
+        let (l, r) = self.sides(l, r, env);
+        match (l, r) {
+            (Item::One(l), Item::One(r)) => Item::One(self.operate(op, l, r, span, env)),
+            (l, r) => self.combine(op, l, r, span, env),
+        }
+    }
+
+    /// Both operands; the bare name of an enumeration's value is one of the other side's enumeration.
+    fn sides(&mut self, l: &ast::Expr, r: &ast::Expr, env: &mut Env) -> (Item, Item) {
+        let of = |item: &Item| match item {
+            Item::One(Expr { ty: Kind::Enum(id), .. }) => Some(*id),
+            Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..) => None,
+        };
+        if !self.values.is_empty() && self.is_value(l) {
+            let right = self.item(r, env);
+            let left = of(&right).and_then(|id| self.symbol_of(l, id)).map(Item::One);
+            return (left.unwrap_or_else(|| self.item(l, env)), right);
+        }
+        let left = self.item(l, env);
+        let right = of(&left).and_then(|id| self.symbol_of(r, id)).map(Item::One);
+        let right = right.unwrap_or_else(|| self.item(r, env));
+        (left, right)
+    }
+
+    /// The bare name of some enumeration's value.
+    fn is_value(&self, e: &ast::Expr) -> bool {
+        match &e.kind {
+            Syntax::Path(path) => {
+                path.names.len() == 1 && self.values.contains_key(path.names[0].text.as_str())
+            }
+            _ => false,
+        }
+    }
+
+    /// An operator on single values.
+    pub(super) fn operate(&mut self, op: BinaryOp, l: Expr, r: Expr, span: Span, env: &mut Env) -> Expr {
         let logical = matches!(op, BinaryOp::And | BinaryOp::Or);
-        let mut side = |c: &mut Self, e| if logical { c.expr_of(e, Kind::Bool, env) } else { c.expr(e, env) };
-        let (l, r) = (side(self, l), side(self, r));
         if l.ty == Kind::Unknown && r.ty != Kind::Unknown && !logical {
             self.learn(&l, r.ty, env);
         } else if r.ty == Kind::Unknown && !logical {
@@ -264,7 +439,7 @@ impl Checker<'_> {
         match op {
             BinaryOp::And | BinaryOp::Or => Some(Kind::Bool),
             BinaryOp::Eq | BinaryOp::Ne => {
-                if l.ty == Kind::Bool && r.ty == Kind::Bool {
+                if !l.ty.is_number() && l.ty == r.ty {
                     return Some(Kind::Bool);
                 }
                 self.same(symbol(op), left, right).map(|_| Kind::Bool)
@@ -292,8 +467,8 @@ impl Checker<'_> {
     }
 
     fn numbers(&mut self, op: BinaryOp, l: &Expr, r: &Expr) -> Option<()> {
-        if l.ty == Kind::Bool || r.ty == Kind::Bool {
-            self.report(types::operands(symbol(op), (l.ty, l.span), (r.ty, r.span)));
+        if !l.ty.is_number() || !r.ty.is_number() {
+            self.report(types::operands(symbol(op), (l.ty, l.span), (r.ty, r.span), &self.s.enums));
             return None;
         }
         Some(())
@@ -309,8 +484,8 @@ impl Checker<'_> {
         match (l.0, r.0) {
             (Kind::Unknown, other) | (other, Kind::Unknown) => Some(other),
             (a, b) if a == b => Some(a),
-            (Kind::Bool, _) | (_, Kind::Bool) => {
-                self.report(types::operands(op, (l.0, l.1), (r.0, r.1)));
+            (Kind::Bool | Kind::Enum(_), _) | (_, Kind::Bool | Kind::Enum(_)) => {
+                self.report(types::operands(op, (l.0, l.1), (r.0, r.1), &self.s.enums));
                 None
             }
             (a, b) if a.dim() == b.dim() => Some(Kind::Float(Dim::NUMBER)),
@@ -360,6 +535,10 @@ impl Checker<'_> {
     }
 }
 
+fn symbol_value(of: EnumId, index: u16, span: Span) -> Expr {
+    Expr::value(Value::Symbol { of, index }, Kind::Enum(of), span)
+}
+
 /// A whole number where a float is due.
 fn as_float(e: Expr) -> Expr {
     let (ty, span) = (Kind::Float(Dim::NUMBER), e.span);
@@ -373,7 +552,7 @@ fn as_float(e: Expr) -> Expr {
 }
 
 /// The operator as it is written.
-fn symbol(op: BinaryOp) -> &'static str {
+pub(super) fn symbol(op: BinaryOp) -> &'static str {
     match op {
         BinaryOp::Add => "+",
         BinaryOp::Sub => "-",

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 
-use super::{Checker, Env, expr::FUNCTIONS};
+use super::{Checker, Env, expr::FUNCTIONS, given::Given};
 use crate::{
     ArmId, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
     noun::Noun,
@@ -49,7 +49,8 @@ impl Checker<'_> {
             return self.signal(id, path.span);
         }
         let (axis, body) = path.names.split_last().expect("a path has a name");
-        let whole = self.in_world.is_body(&prefix, &text(&path.names));
+        let whole =
+            self.full_name(&path.names, &prefix).is_some_and(|full| self.in_world.body_ref(&full).is_some());
         if whole {
             let issue = types::no_value(&format!("the body `{}`", text(&path.names)), path.span);
             self.report(issue.help(format!("name a coordinate: `{}.x`", text(&path.names))));
@@ -142,7 +143,8 @@ impl Checker<'_> {
 
     /// A body or current body.
     pub(super) fn body_ref(&mut self, names: &[Name], prefix: &str) -> Option<BodyRef> {
-        if let Some(body) = self.in_world.body_ref(&format!("{prefix}{}", text(names))) {
+        let full = self.full_name(names, prefix)?;
+        if let Some(body) = self.in_world.body_ref(&full) {
             return Some(body);
         }
         self.world_name(Noun::Body, names, prefix);
@@ -151,8 +153,13 @@ impl Checker<'_> {
 
     /// Something in the world by its dotted name, or a diagnostic at the first name that leads nowhere.
     pub(super) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
-        if let Some(id) = self.in_world.get(noun, &format!("{prefix}{}", text(names))) {
+        let full = self.full_name(names, prefix)?;
+        if let Some(id) = self.in_world.get(noun, &full) {
             return Some(id);
+        }
+        if let Some(Given::Thing(is, given)) = self.given(&names[0].text) {
+            let (is, given) = (*is, given.clone());
+            return self.not_in_given(noun, is, names, &given);
         }
         if !self.has_world && prefix.is_empty() {
             let span = names[0].span.to(names[names.len() - 1].span);
@@ -180,6 +187,35 @@ impl Checker<'_> {
         // Within a part, what the name is elsewhere says nothing.
         let is = is.or(if base.is_empty() { None } else { Some(noun) });
         self.unknown(noun, last, &near, is);
+        None
+    }
+
+    /// The full name of something of the world, which a parameter may stand for; `None` if that is not known.
+    fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
+        match self.given(&names[0].text) {
+            Some(Given::Unknown) => None,
+            Some(Given::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
+            Some(Given::Thing(_, full)) => Some(format!("{full}.{}", text(&names[1..]))),
+            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Point(_)) | None => {
+                Some(format!("{prefix}{}", text(names)))
+            }
+        }
+    }
+
+    /// What a parameter stands for has no such thing, or is of another kind.
+    fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[Name], given: &str) -> Option<u16> {
+        match names {
+            [only] => {
+                let near = self.in_world.below(noun, "");
+                let is = self.in_world.kind_of(given).or((is != noun).then_some(is));
+                self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
+            }
+            [_, .., last] => {
+                let near = self.in_world.below(noun, &format!("{given}."));
+                self.unknown(noun, last, &near, Some(noun));
+            }
+            [] => {}
+        }
         None
     }
 

@@ -7,8 +7,12 @@ mod coverage;
 mod edge;
 mod env;
 mod expr;
+mod given;
+mod item;
+mod layout;
 mod measure;
 mod plan;
+mod range;
 mod requirement;
 mod stimulus;
 mod suite;
@@ -20,22 +24,32 @@ mod vocabulary;
 mod world;
 mod world_parts;
 
-use hrdsl_source::{Diagnostic, Span};
-use hrdsl_syntax::ast::{self, ItemKind, Name};
+use std::{collections::BTreeSet, rc::Rc};
+
+use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_syntax::ast::{self, Instance, ItemKind, Name};
 use indexmap::IndexMap;
 
 use crate::{
-    ActorId, EventId, Expr, Player, Role, Scenario,
+    ActorId, EnumId, EventId, Player, PointId, Role, Scenario,
     noun::Noun,
-    report::names::{duplicate, unknown, wrong_kind},
+    report::{
+        names::{duplicate, unknown, wrong_kind},
+        types,
+    },
+    types::Layout,
 };
 use env::Env;
+use given::{Given, Givens, Template};
+use item::Item;
+use layout::{Fields, RecordEntry};
 use table::Table;
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///
 /// # Steps
-/// 1. [`Checker::vocabulary`]: actors, constants, events, stimuli, shared variables, and the names of agents and automata
+/// 1. [`Checker::vocabulary`]: actors, types, constants, events, stimuli, shared variables, templates, and the names of
+///    agents and automata
 /// 2. [`Checker::world`]: bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
@@ -60,7 +74,7 @@ pub fn resolve(
     checker.automata();
     checker.requirements();
     checker.coverage();
-    checker.unread_members = checker.agent_decls.iter().any(|a| unread::in_agent(a));
+    checker.unread_members = checker.agent_decls.iter().any(|a| unread::in_agent(a.syntax));
     checker.suites();
     checker.unread_members = false;
     checker.systems();
@@ -70,13 +84,8 @@ pub fn resolve(
 
 /// A part that is used twice has its faults once.
 fn distinct(issues: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let mut kept: Vec<Diagnostic> = Vec::new();
-    for issue in issues {
-        if !kept.contains(&issue) {
-            kept.push(issue);
-        }
-    }
-    kept
+    let mut seen: BTreeSet<(Span, Code, String)> = BTreeSet::new();
+    issues.into_iter().filter(|i| seen.insert((i.span(), i.code, i.message.clone()))).collect()
 }
 
 /// How far the value of a constant is known.
@@ -84,7 +93,7 @@ enum ConstState {
     Unseen,
     /// Its own value is being worked out.
     Open,
-    Done(Expr),
+    Done(Item),
 }
 
 struct ConstEntry<'a> {
@@ -96,6 +105,19 @@ struct ConstEntry<'a> {
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
 const NOBODY: ActorId = ActorId(u16::MAX);
 
+/// An agent or automaton: as written, and if it is an instance of a template, what is given.
+pub(crate) struct Declared<'a, T> {
+    pub syntax: &'a T,
+    pub given: Option<Rc<Givens>>,
+    pub instance: Option<&'a Instance>,
+}
+
+impl<T> Clone for Declared<'_, T> {
+    fn clone(&self) -> Self {
+        Self { syntax: self.syntax, given: self.given.clone(), instance: self.instance }
+    }
+}
+
 pub(crate) struct Checker<'a> {
     s: Scenario,
     issues: Vec<Diagnostic>,
@@ -103,11 +125,27 @@ pub(crate) struct Checker<'a> {
     /// The first items come from modules.
     from_modules: usize,
     actors: Table,
+    enums: Table,
+    /// By their bare names: the values of enumerations.
+    values: IndexMap<&'a str, Vec<(EnumId, u16)>>,
+    record_names: Table,
+    records: Vec<RecordEntry<'a>>,
+    /// By sort and name.
+    templates: IndexMap<(u8, &'a str), Template<'a>>,
+    used_templates: BTreeSet<(u8, String)>,
+    /// What the parameters stand for in the instance that is being checked.
+    given: Option<Rc<Givens>>,
     events: Table,
+    /// By [`EventId`]: the parameters as declared.
+    event_fields: Vec<Fields>,
     /// Agents and automata.
     players: Table,
     player_ids: Vec<Player>,
+    /// The single values of the shared variables.
     shared: Table,
+    shared_names: Table,
+    /// Of those that have several.
+    shared_layouts: Vec<(String, Layout)>,
     networks: Table,
     points: Table,
     crosses: Table,
@@ -116,10 +154,11 @@ pub(crate) struct Checker<'a> {
     consts: IndexMap<&'a str, ConstEntry<'a>>,
     /// By [`EventId`]: the body of each stimulus.
     bodies: Vec<Option<&'a ast::Stimulus>>,
-    agent_decls: Vec<&'a ast::Agent>,
-    automaton_decls: Vec<&'a ast::Automaton>,
-    /// The beliefs of each agent.
+    agent_decls: Vec<Declared<'a, ast::Agent>>,
+    automaton_decls: Vec<Declared<'a, ast::Automaton>>,
+    /// The beliefs of each agent, and their parameters as declared.
     beliefs: Vec<Table>,
+    belief_fields: Vec<Vec<Fields>>,
     has_world: bool,
     in_world: world_parts::WorldNames,
     /// A declaration of the scenario, or a member of its world, could not be read.
@@ -137,10 +176,20 @@ impl<'a> Checker<'a> {
             items,
             from_modules,
             actors: Table::default(),
+            enums: Table::default(),
+            values: IndexMap::new(),
+            record_names: Table::default(),
+            records: Vec::new(),
+            templates: IndexMap::new(),
+            used_templates: BTreeSet::new(),
+            given: None,
             events: Table::default(),
+            event_fields: Vec::new(),
             players: Table::default(),
             player_ids: Vec::new(),
             shared: Table::default(),
+            shared_names: Table::default(),
+            shared_layouts: Vec::new(),
             networks: Table::default(),
             points: Table::default(),
             crosses: Table::default(),
@@ -151,6 +200,7 @@ impl<'a> Checker<'a> {
             agent_decls: Vec::new(),
             automaton_decls: Vec::new(),
             beliefs: Vec::new(),
+            belief_fields: Vec::new(),
             has_world,
             unread_items: false,
             unread_members: false,
@@ -171,6 +221,11 @@ impl<'a> Checker<'a> {
     // ── names that are visible everywhere ──
 
     fn actor(&mut self, name: &Name) -> Option<ActorId> {
+        match self.given(&name.text) {
+            Some(Given::Actor(id)) => return Some(*id),
+            Some(Given::Unknown) => return Some(NOBODY),
+            Some(Given::Value(_) | Given::Events(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+        }
         match self.actors.get(&name.text) {
             Some(id) => Some(ActorId(id)),
             None => {
@@ -183,6 +238,19 @@ impl<'a> Checker<'a> {
 
     /// An event, a stimulus, or either.
     fn event(&mut self, noun: Noun, name: &Name, local: Option<Noun>) -> Option<EventId> {
+        match self.given(&name.text) {
+            Some(Given::Events(patterns)) => {
+                if let [only] = patterns.as_slice()
+                    && only.args.iter().all(Option::is_none)
+                {
+                    return Some(only.event);
+                }
+                self.report(types::several_events(&name.text, name.span));
+                return None;
+            }
+            Some(Given::Unknown) => return None,
+            Some(Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+        }
         let fits = |c: &Self, id: u16| {
             let is = c.s.events[usize::from(id)].stimulus.is_some();
             noun == Noun::EventOrStimulus || is == (noun == Noun::Stimulus)
@@ -194,6 +262,21 @@ impl<'a> Checker<'a> {
             self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n.to_owned()).collect();
         self.unknown(noun, name, &names, local);
         None
+    }
+
+    /// A coverage point.
+    fn point_named(&mut self, name: &Name) -> Option<PointId> {
+        match self.given(&name.text) {
+            Some(Given::Point(id)) => return Some(*id),
+            Some(Given::Unknown) => return None,
+            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..)) | None => {}
+        }
+        let found = self.points.get(&name.text).map(PointId);
+        if found.is_none() {
+            let all: Vec<String> = self.points.names().map(str::to_owned).collect();
+            self.unknown(Noun::Point, name, &all, None);
+        }
+        found
     }
 
     /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
@@ -225,13 +308,24 @@ impl<'a> Checker<'a> {
         if self.consts.contains_key(text) {
             return Some(Noun::Constant);
         }
+        if self.given(text).is_some() {
+            return Some(Noun::Parameter);
+        }
+        if self.values.contains_key(text) {
+            return Some(Noun::EnumValue);
+        }
+        if self.is_template(text) {
+            return Some(Noun::Template);
+        }
         let tables = [
             (&self.actors, Noun::Actor),
-            (&self.shared, Noun::Variable),
+            (&self.shared_names, Noun::Variable),
             (&self.networks, Noun::Network),
             (&self.points, Noun::Point),
             (&self.crosses, Noun::Cross),
             (&self.suites, Noun::Suite),
+            (&self.enums, Noun::Enum),
+            (&self.record_names, Noun::Record),
         ];
         let found = tables.iter().find(|(t, _)| t.get(text).is_some()).map(|(_, noun)| *noun);
         found.or_else(|| self.in_world.kind_of(text))

@@ -5,12 +5,14 @@ use hrdsl_syntax::ast::{
     self, BinaryOp, Call, ExprKind as Syntax, StepKind as SyntaxStep, TriggerKind, UnaryOp,
 };
 
-use super::{Checker, Env, NOBODY, agent::Scope, expr::FUNCTIONS, is_variable_name};
+use super::{
+    Checker, Env, NOBODY, agent::Scope, expr::FUNCTIONS, is_variable_name, item::Part, layout::Fields,
+};
 use crate::{
-    ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Param, Plan, Role, Step, StepKind,
-    TriggerOn, Type,
+    ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Plan, Role, Step, StepKind, TriggerOn,
+    Type,
     noun::Noun,
-    report::{names, roles, types},
+    report::{names, roles},
 };
 
 impl Checker<'_> {
@@ -47,8 +49,8 @@ impl Checker<'_> {
         let call = &trigger.call;
         let on_belief = |c: &mut Self, make: fn(BeliefId) -> TriggerOn, env: &mut Env| {
             let belief = c.belief(scope, &call.name);
-            let params = belief.map(|b| c.belief_params(scope.id, b));
-            let args = c.matched(Noun::Belief, call, params.as_deref(), env, true);
+            let fields = belief.map(|b| c.belief_fields(scope.id, b));
+            let args = c.matched(Noun::Belief, call, fields.as_ref(), env, true);
             Some((make(belief?), args))
         };
         match trigger.kind {
@@ -65,12 +67,12 @@ impl Checker<'_> {
             TriggerKind::On => {
                 let local = self.kind_in_agent(scope, &call.name.text);
                 let event = self.event(Noun::EventOrStimulus, &call.name, local);
-                let params = event.map(|e| self.params_of(e));
-                let args = match (&call.args, &params) {
+                let fields = event.map(|e| self.fields_of(e));
+                let args = match (&call.args, event) {
                     // Without parentheses any arguments will do.
-                    (None, Some(params)) => params.iter().map(|_| Arg::Any).collect(),
+                    (None, Some(event)) => vec![Arg::Any; self.arity_of(event)],
                     (Some(_), _) | (None, None) => {
-                        self.matched(Noun::Event, call, params.as_deref(), env, true)
+                        self.matched(Noun::Event, call, fields.as_ref(), env, true)
                     }
                 };
                 let event = event?;
@@ -113,18 +115,35 @@ impl Checker<'_> {
         &mut self,
         noun: Noun,
         call: &Call,
-        params: Option<&[Param]>,
+        fields: Option<&Fields>,
         env: &mut Env,
         binds: bool,
     ) -> Vec<Arg> {
         let args = call.args.as_deref().unwrap_or_default();
-        if let Some(params) = params
-            && args.len() != params.len()
-        {
-            self.report(types::arity(noun, &call.name.text, params, args.len(), call.span));
+        let Some(fields) = fields else {
+            return args.iter().map(|arg| self.matched_arg(arg, None, env, binds)).collect();
+        };
+        if args.len() != fields.len() {
+            self.wrong_arity(noun, call, fields);
         }
-        let ty = |i: usize| params.and_then(|p| p.get(i)).map(|p| p.ty);
-        args.iter().enumerate().map(|(i, arg)| self.matched_arg(arg, ty(i), env, binds)).collect()
+        let variable =
+            |c: &Checker<'_>, name: &ast::Name| is_variable_name(&name.text) && !c.has_value(&name.text);
+        let parts = self.spread_args(args, fields, env, &variable);
+        let mut matched: Vec<Arg> =
+            parts.into_iter().map(|part| self.matched_part(part, env, binds)).collect();
+        for arg in args.iter().skip(fields.len()) {
+            matched.push(self.matched_arg(arg, None, env, binds));
+        }
+        matched
+    }
+
+    fn matched_part(&mut self, part: Part<'_>, env: &mut Env, binds: bool) -> Arg {
+        match part {
+            Part::Any => Arg::Any,
+            Part::Syntax(arg, ty) => self.matched_arg(arg, Some(ty), env, binds),
+            Part::Done(e, _) => Arg::Expr(e),
+            Part::Variable(name, ty) => self.matched_variable(&name, Some(ty), env, binds),
+        }
     }
 
     fn matched_arg(&mut self, arg: &ast::Expr, ty: Option<Type>, env: &mut Env, binds: bool) -> Arg {
@@ -134,30 +153,42 @@ impl Checker<'_> {
         if let Syntax::Path(path) = &arg.kind
             && let [name] = path.names.as_slice()
             && is_variable_name(&name.text)
-            && !self.consts.contains_key(name.text.as_str())
+            && !self.has_value(&name.text)
+            && env.layout(&name.text).is_none()
         {
-            let kind = ty.map_or(Kind::Unknown, Type::kind);
-            match env.find_mut(&name.text) {
-                Some(local) if !local.bound && binds => {
-                    local.bound = true;
-                    local.ty = kind;
-                }
-                Some(_) => {}
-                None if binds => {
-                    env.push_local(&name.text, Noun::Variable, kind);
-                }
-                None => {}
-            }
-            let e = self.expr_of(arg, kind, env);
-            return match e.kind {
-                crate::ExprKind::Leaf(Leaf::Local(i)) => Arg::Var(i),
-                _ => Arg::Any,
-            };
+            return self.matched_variable(name, ty, env, binds);
         }
         Arg::Expr(match ty {
             Some(ty) => self.expr_for(arg, ty, env),
             None => self.expr(arg, env),
         })
+    }
+
+    /// Binds a variable, or compares with its value.
+    fn matched_variable(&mut self, name: &ast::Name, ty: Option<Type>, env: &mut Env, binds: bool) -> Arg {
+        let kind = ty.map_or(Kind::Unknown, Type::kind);
+        match env.find_mut(&name.text) {
+            Some(local) if !local.bound && binds => {
+                local.bound = true;
+                local.ty = kind;
+                local.range = ty.and_then(Type::range);
+            }
+            Some(_) => {}
+            None if binds => match ty {
+                Some(ty) => {
+                    env.push_typed(&name.text, Noun::Variable, ty);
+                }
+                None => {
+                    env.push_local(&name.text, Noun::Variable, kind);
+                }
+            },
+            None => {}
+        }
+        let e = self.variable(name, env);
+        match self.fit(e, kind, env).kind {
+            crate::ExprKind::Leaf(Leaf::Local(i)) => Arg::Var(i),
+            _ => Arg::Any,
+        }
     }
 
     // ── context ──
@@ -203,13 +234,13 @@ impl Checker<'_> {
     fn is_literal(&self, path: &ast::Path, env: &Env) -> bool {
         let [name] = path.names.as_slice() else { return false };
         let text = name.text.as_str();
-        env.find(text).is_none() && !self.consts.contains_key(text) && !is_variable_name(text)
+        env.find(text).is_none() && !self.has_value(text) && !is_variable_name(text)
     }
 
     fn literal(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Context {
         let belief = self.belief(scope, &call.name);
-        let params = belief.map(|b| self.belief_params(scope.id, b));
-        let args = self.matched(Noun::Belief, call, params.as_deref(), env, true);
+        let fields = belief.map(|b| self.belief_fields(scope.id, b));
+        let args = self.matched(Noun::Belief, call, fields.as_ref(), env, true);
         belief.map_or(Context::True, |b| Context::Belief(b, args))
     }
 
@@ -281,9 +312,8 @@ impl Checker<'_> {
             SyntaxStep::Await { events, within } => {
                 let actor = self.s.agents[usize::from(scope.id.0)].actor;
                 let mut patterns = Vec::new();
-                for call in events {
-                    let Some(pattern) = self.pattern(call, env) else { continue };
-                    self.perceives(actor, pattern.event, call.name.span, false);
+                for (pattern, span) in self.patterns_with(events, env) {
+                    self.perceives(actor, pattern.event, span, false);
                     patterns.push(pattern);
                 }
                 let within = within.as_ref().and_then(|e| self.time(e, "the time to wait", true));
@@ -300,8 +330,8 @@ impl Checker<'_> {
         let local = self.kind_in_agent(scope, &call.name.text);
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
         self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
-        let params = self.params_of(event);
-        Some(StepKind::Do(event, self.args(self.noun_of(event), call, &params, env)))
+        let fields = self.fields_of(event);
+        Some(StepKind::Do(event, self.args(self.noun_of(event), call, &fields, env)))
     }
 
     pub(super) fn noun_of(&self, event: EventId) -> Noun {
@@ -333,16 +363,16 @@ impl Checker<'_> {
         binds: bool,
     ) -> (Option<BeliefId>, Vec<Arg>) {
         let belief = self.belief(scope, &call.name);
-        let params = belief.map(|b| self.belief_params(scope.id, b));
-        (belief, self.matched(Noun::Belief, call, params.as_deref(), env, binds))
+        let fields = belief.map(|b| self.belief_fields(scope.id, b));
+        (belief, self.matched(Noun::Belief, call, fields.as_ref(), env, binds))
     }
 
     fn new_belief(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> (Option<BeliefId>, Vec<Expr>) {
         let belief = self.belief(scope, &call.name);
         let args = match belief {
             Some(b) => {
-                let params = self.belief_params(scope.id, b);
-                self.args(Noun::Belief, call, &params, env)
+                let fields = self.belief_fields(scope.id, b);
+                self.args(Noun::Belief, call, &fields, env)
             }
             None => Vec::new(),
         };

@@ -1,9 +1,9 @@
 //! Requirements and assumptions.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, PatternKind};
+use hrdsl_syntax::ast::{self, ItemKind, Name, PatternKind, Sort};
 
-use super::{Checker, Env, table::Table};
+use super::{Checker, Env, given::template, table::Table};
 use crate::{
     Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind, noun::Noun,
     report::requirements::says_nothing,
@@ -12,31 +12,56 @@ use crate::{
 impl Checker<'_> {
     pub(super) fn requirements(&mut self) {
         let mut names = Table::default();
+        self.templates_of(Sort::Require, |c, template| {
+            if let ItemKind::Require(require) = template.kind {
+                c.resolved(require);
+            }
+        });
         for (item, span) in self.each_item() {
             match item {
-                ItemKind::Require(require) => self.requirement(require, span, &mut names),
+                _ if template(item).is_some() => {}
+                ItemKind::Require(require) => {
+                    let resolved = self.resolved(require);
+                    self.requirement(&require.name, resolved, require.pattern.span, span, &mut names);
+                }
+                ItemKind::Instance(instance) if instance.sort == Sort::Require => {
+                    let Some((template, given)) = self.instance(instance, &Env::measured("")) else {
+                        continue;
+                    };
+                    let ItemKind::Require(require) = template.kind else { continue };
+                    let place = Some((&instance.name, instance.span));
+                    let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
+                    self.requirement(&instance.name, resolved, instance.span, span, &mut names);
+                }
                 ItemKind::Assume(assume) => self.assume(assume, span),
                 _ => {}
             }
         }
     }
 
-    fn requirement(&mut self, require: &ast::Require, span: Span, names: &mut Table) {
+    /// What a requirement says, whatever its name.
+    fn resolved(&mut self, require: &ast::Require) -> Option<(RequirementKind, String, Pattern)> {
         let kind = match self.choice(Noun::RequirementKind, &require.kind, &["safety", "functional"]) {
             Some(0) => RequirementKind::Safety,
             Some(_) | None => RequirementKind::Functional,
         };
-        let pattern = self.requirement_pattern(&require.pattern);
-        Self::declare(&mut self.issues, names, Noun::Requirement, &require.name);
-        if let Some(pattern) = pattern {
-            self.s.requirements.push(Requirement {
-                name: require.name.text.clone(),
-                kind,
-                title: require.title.as_ref().map_or_else(String::new, |t| t.text.clone()),
-                pattern,
-                text: require.pattern.span,
-                span,
-            });
+        let pattern = self.requirement_pattern(&require.pattern)?;
+        let title = require.title.as_ref().map_or_else(String::new, |t| t.text.clone());
+        Some((kind, title, pattern))
+    }
+
+    fn requirement(
+        &mut self,
+        name: &Name,
+        resolved: Option<(RequirementKind, String, Pattern)>,
+        text: Span,
+        span: Span,
+        names: &mut Table,
+    ) {
+        Self::declare(&mut self.issues, names, Noun::Requirement, name);
+        if let Some((kind, title, pattern)) = resolved {
+            let name = name.text.clone();
+            self.s.requirements.push(Requirement { name, kind, title, pattern, text, span });
         }
     }
 

@@ -8,6 +8,7 @@ use crate::{
     ActorId, Dim, EventId, Expr, GripperId, Kind, Sample, Stimulus, StimulusStep, Type, Value,
     noun::Noun,
     report::{names, roles, types, world},
+    types::Layout,
     world::{Action, BodyRef, Motion, Point},
 };
 
@@ -25,9 +26,9 @@ impl Checker<'_> {
 
     fn stimulus(&mut self, index: usize, stimulus: &ast::Stimulus) -> Stimulus {
         let mut env = Env { noun: Some(Noun::Parameter), ..Env::default() };
-        let params = self.s.events[index].params.clone();
-        for (syntax, param) in stimulus.params.iter().zip(params) {
-            self.add_local(&mut env, &syntax.name, Noun::Parameter, param.ty);
+        let fields = self.event_fields[index].clone();
+        for (syntax, (_, layout)) in stimulus.params.iter().zip(fields.iter()) {
+            self.add_local(&mut env, &syntax.name, Noun::Parameter, layout);
         }
         let by = self.s.events[index].from;
         let mut samples = Vec::new();
@@ -84,14 +85,14 @@ impl Checker<'_> {
                 Type::Int { lo: lo.unwrap_or(0), hi: hi.unwrap_or(0) }
             }
             Kind::Float(dim) => Type::Float(dim),
-            Kind::Bool | Kind::Unknown => Type::Float(Dim::NUMBER),
+            Kind::Bool | Kind::Enum(_) | Kind::Unknown => Type::Float(Dim::NUMBER),
         };
         if lo.ty == Kind::Unknown {
             // Its range has a diagnostic; nothing follows from its type.
             self.check_free(env, Noun::Sample, name);
             env.push_local(&name.text, Noun::Sample, Kind::Unknown);
         } else {
-            self.add_local(env, name, Noun::Sample, ty);
+            self.add_local(env, name, Noun::Sample, &Layout::Scalar(ty));
         }
         samples.push(Sample { name: name.text.clone(), ty, lo, hi });
     }
@@ -110,8 +111,9 @@ impl Checker<'_> {
                 let hi = self.expr_of(hi, if lo.ty == Kind::Int { Kind::Unknown } else { lo.ty }, env);
                 let lo = self.fit(lo, if hi.ty == Kind::Int { Kind::Unknown } else { hi.ty }, env);
                 for end in [&lo, &hi] {
-                    if end.ty == Kind::Bool {
-                        self.report(types::mismatch(Kind::Float(Dim::NUMBER), end.ty, None, end.span));
+                    if !end.ty.is_number() {
+                        let want = Kind::Float(Dim::NUMBER);
+                        self.report(types::mismatch(want, end.ty, None, end.span, &self.s.enums));
                     }
                 }
                 self.ordered(&lo, &hi, range.span);
@@ -153,8 +155,8 @@ impl Checker<'_> {
             let issue = names::with_nearest(issue, Noun::Event, &call.name.text, own);
             self.report(issue);
         }
-        let params = self.params_of(event);
-        Some(StimulusStep::Emit { event, args: self.args(Noun::Event, call, &params, env) })
+        let fields = self.fields_of(event);
+        Some(StimulusStep::Emit { event, args: self.args(Noun::Event, call, &fields, env) })
     }
 
     fn act(&mut self, path: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Option<Action> {
@@ -218,37 +220,64 @@ impl Checker<'_> {
         }
     }
 
-    /// A tuple of three lengths, a body, or their sum.
+    /// A vector of three lengths, a body, or a body plus such a vector.
     fn point(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Point> {
         match &e.kind {
-            Syntax::Tuple(_) => Some(Point { of: None, offset: Some(self.offset(e, env)?) }),
-            Syntax::Path(path) => Some(Point { of: Some(self.body_ref(&path.names, "")?), offset: None }),
-            Syntax::Binary { op: BinaryOp::Add, left, right } => {
+            Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right }
+                if self.is_body(left, env) =>
+            {
                 let of = self.body_arg(left, "");
-                let offset = self.offset(right, env);
+                let offset = self.offset(right, *op == BinaryOp::Sub, env);
                 Some(Point { of: Some(of?), offset: Some(offset?) })
             }
+            Syntax::Path(path) if self.is_body(e, env) => {
+                Some(Point { of: Some(self.body_ref(&path.names, "")?), offset: None })
+            }
+            Syntax::Tuple(_)
+            | Syntax::Path(_)
+            | Syntax::Index { .. }
+            | Syntax::Field { .. }
+            | Syntax::Binary { .. }
+            | Syntax::Unary { .. }
+            | Syntax::If { .. } => Some(Point { of: None, offset: Some(self.offset(e, false, env)?) }),
             Syntax::Error => None,
-            _ => {
+            Syntax::Bool(_)
+            | Syntax::Int(_)
+            | Syntax::Float(_)
+            | Syntax::Quantity { .. }
+            | Syntax::Any
+            | Syntax::Call { .. } => {
                 self.report(not_a_point(e.span));
                 None
             }
         }
     }
 
-    fn offset(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Box<[Expr; 3]>> {
-        let Syntax::Tuple(parts) = &e.kind else {
-            self.report(not_a_point(e.span));
-            return None;
-        };
-        let parts: Vec<Expr> = parts.iter().map(|p| self.expr_of(p, Kind::Float(Dim::LENGTH), env)).collect();
-        match <[Expr; 3]>::try_from(parts) {
-            Ok(parts) => Some(Box::new(parts)),
-            Err(_) => {
-                self.report(not_a_point(e.span));
-                None
+    /// Whether a name means a body: it stands for no value.
+    fn is_body(&self, e: &ast::Expr, env: &Env) -> bool {
+        let Syntax::Path(path) = &e.kind else { return false };
+        let first = &path.names[0].text;
+        env.find(first).is_none() && env.layout(first).is_none() && !self.consts.contains_key(first.as_str())
+    }
+
+    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut Env) -> Option<Box<[Expr; 3]>> {
+        let known = self.issues.len();
+        let lengths = Layout::Array(Box::new(Layout::Scalar(Type::Float(Dim::LENGTH))), 3);
+        let mut parts = Vec::new();
+        self.item_for(e, &lengths, env).flatten(&mut parts);
+        if negative {
+            for part in &mut parts {
+                let zero = Expr::value(Value::Float(0.0), part.ty, part.span);
+                let old = std::mem::replace(part, zero.clone());
+                *part = self.operate(BinaryOp::Sub, zero, old, e.span, env);
             }
         }
+        if let Some(issue) = self.issues.get_mut(known)
+            && issue.help.is_none()
+        {
+            issue.help = not_a_point(e.span).help;
+        }
+        <[Expr; 3]>::try_from(parts).ok().map(Box::new)
     }
 }
 

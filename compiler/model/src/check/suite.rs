@@ -208,11 +208,15 @@ impl Checker<'_> {
             self.unknown(Noun::Belief, belief, &all, None);
             return None;
         };
-        let params = self.belief_params(id, belief_id);
+        let params = self.s.agents[usize::from(id.0)].beliefs[usize::from(belief_id.0)].params.clone();
         if let Some(param) = params.iter().find(|p| !p.ty.is_finite()) {
             let message =
                 format!("`{}` cannot be chosen: `{}` has infinitely many values", belief.text, param.name);
-            self.report(bad_suite(belief.span, message, "give the parameter the type `bool` or a range"));
+            self.report(bad_suite(
+                belief.span,
+                message,
+                "give the parameter the type `bool`, a range or an enumeration",
+            ));
         }
         let how = match per {
             None if any => ChoiceKind::Any,

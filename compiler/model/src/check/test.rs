@@ -109,8 +109,8 @@ impl Checker<'_> {
 
     fn test_do(&mut self, call: &Call, with: &[(Name, ast::Expr)]) -> Option<TestStep> {
         let event = self.test_stimulus(&call.name)?;
-        let params = self.params_of(event);
-        let args = self.args(Noun::Stimulus, call, &params, &mut Env::constants());
+        let fields = self.fields_of(event);
+        let args = self.args(Noun::Stimulus, call, &fields, &mut Env::constants());
         for arg in &args {
             if arg.constant().is_none() && arg.ty != Kind::Unknown {
                 self.report(types::not_constant(arg.span));
@@ -118,7 +118,7 @@ impl Checker<'_> {
         }
         let samples = self.samples(event, call, with)?;
         let args: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
-        Some(TestStep::Do { event, args: args.filter(|a| a.len() == params.len())?, samples })
+        Some(TestStep::Do { event, args: args.filter(|a| a.len() == self.arity_of(event))?, samples })
     }
 
     /// The values of the second tier: of every sample, or of none.

@@ -14,6 +14,10 @@ pub(super) fn in_item(item: &ItemKind) -> bool {
         ItemKind::World(world) => broken(&world.members),
         ItemKind::Part(part) => broken(&part.members),
         ItemKind::Use(_)
+        | ItemKind::Allow(_)
+        | ItemKind::Enum { .. }
+        | ItemKind::Record { .. }
+        | ItemKind::Instance(_)
         | ItemKind::Actor { .. }
         | ItemKind::Const { .. }
         | ItemKind::Event(_)
@@ -48,7 +52,6 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         // The language's own words.
         Noun::Role
         | Noun::Unit
-        | Noun::Type
         | Noun::Function
         | Noun::RequirementKind
         | Noun::Method
@@ -58,10 +61,14 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Action
         | Noun::Coordinate => false,
         // Declared in one piece with the place that uses them.
-        Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin => false,
+        Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
         Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location => members,
         Noun::Variable => items || members,
         Noun::Actor
+        | Noun::Type
+        | Noun::Enum
+        | Noun::Record
+        | Noun::Template
         | Noun::Constant
         | Noun::Event
         | Noun::Stimulus

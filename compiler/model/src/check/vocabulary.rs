@@ -1,14 +1,17 @@
 //! Declarations that everything else speaks of: actors, constants, events, shared variables, and the names of players.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, Name, Param as SyntaxParam, TypeExpr};
+use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
-use super::{Checker, ConstEntry, ConstState, Env, NOBODY, table::Table};
+use super::{
+    Checker, ConstEntry, ConstState, Declared, Env, NOBODY, given::template, layout::Fields, table::Table,
+};
 use crate::{
-    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Kind, LocationId, Param, Player, Role,
-    Stimulus, Type, Value, Var,
+    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, LocationId, Player, Role, Stimulus,
+    Type, Value, Var,
     noun::Noun,
     report::{names, roles, types},
+    types::Layout,
 };
 
 impl<'a> Checker<'a> {
@@ -18,24 +21,60 @@ impl<'a> Checker<'a> {
                 ItemKind::Actor { name, role } => self.declare_actor(name, role),
                 ItemKind::Const { name, value } => self.declare_const(name, value),
                 ItemKind::Part(part) => self.declare_part(part),
+                ItemKind::Record { name, fields } => self.declare_record(name, fields),
                 _ => {}
             }
         }
+        for (item, span) in self.each_item() {
+            if let ItemKind::Enum { name, values } = item {
+                self.declare_enum(name, values, span);
+            }
+        }
+        self.declare_templates();
+        self.all_records();
         self.all_consts();
         for (item, span) in self.each_item() {
             match item {
-                ItemKind::Event(event) => self.declare_event(event, span),
+                ItemKind::Event(event) => self.declare_events(event, span),
                 ItemKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
                 _ => {}
             }
         }
         for (item, span) in self.each_item() {
             match item {
-                ItemKind::Agent(agent) => self.declare_agent(agent, span),
-                ItemKind::Automaton(automaton) => self.declare_automaton(automaton, span),
+                _ if template(item).is_some() => {}
+                ItemKind::Agent(syntax) => {
+                    let plain = Declared { syntax, given: None, instance: None };
+                    self.declare_agent(plain, &syntax.name, span);
+                }
+                ItemKind::Automaton(syntax) => {
+                    let plain = Declared { syntax, given: None, instance: None };
+                    self.declare_automaton(plain, &syntax.name, span);
+                }
+                ItemKind::Instance(instance) => self.declare_instance(instance, span),
                 ItemKind::Var(var) => self.declare_shared(var),
                 _ => {}
             }
+        }
+    }
+
+    /// An instance of a template of agents or automata.
+    fn declare_instance(&mut self, instance: &'a Instance, span: Span) {
+        if !matches!(instance.sort, Sort::Agent | Sort::Automaton) {
+            return;
+        }
+        let Some((template, given)) = self.instance(instance, &Env::constants()) else { return };
+        let (given, instance_of) = (Some(given), Some(instance));
+        match template.kind {
+            ItemKind::Agent(syntax) => {
+                let declared = Declared { syntax, given, instance: instance_of };
+                self.declare_agent(declared, &instance.name, span);
+            }
+            ItemKind::Automaton(syntax) => {
+                let declared = Declared { syntax, given, instance: instance_of };
+                self.declare_automaton(declared, &instance.name, span);
+            }
+            _ => {}
         }
     }
 
@@ -66,15 +105,18 @@ impl<'a> Checker<'a> {
         self.parts.insert(&name.text, (part, name.span));
     }
 
-    fn declare_event(&mut self, event: &'a ast::Event, span: Span) {
-        let params = self.params(&event.params);
+    fn declare_events(&mut self, event: &'a ast::Event, span: Span) {
         let from = self.actor(&event.from);
         let to: Vec<ActorId> = event.to.iter().filter_map(|a| self.actor(a)).collect();
-        self.push_event(&event.name, params, from, to, None, span);
+        for one in &event.names {
+            let fields = self.fields(&one.params);
+            let span = if event.names.len() == 1 { span } else { one.name.span };
+            self.push_event(&one.name, fields, from, to.clone(), None, span);
+        }
     }
 
     fn declare_stimulus(&mut self, stimulus: &'a ast::Stimulus, span: Span) {
-        let params = self.params(&stimulus.params);
+        let fields = self.fields(&stimulus.params);
         let by = self.actor(&stimulus.by);
         if let Some(actor) = by.filter(|a| self.role_of(*a) == Role::System) {
             let issue = roles::stimulus_by_system(self.actor_name(actor), stimulus.by.span);
@@ -91,13 +133,13 @@ impl<'a> Checker<'a> {
             };
             self.report(issue);
         }
-        self.push_event(&stimulus.name, params, by, Vec::new(), Some(stimulus), span);
+        self.push_event(&stimulus.name, fields, by, Vec::new(), Some(stimulus), span);
     }
 
     fn push_event(
         &mut self,
         name: &Name,
-        params: Vec<Param>,
+        fields: Fields,
         from: Option<ActorId>,
         to: Vec<ActorId>,
         stimulus: Option<&'a ast::Stimulus>,
@@ -108,109 +150,117 @@ impl<'a> Checker<'a> {
             // Without its actor, which has a diagnostic, the event still is a name.
             let from = from.unwrap_or(NOBODY);
             let body = stimulus.map(|_| Stimulus::default());
+            let params = self.flat(&fields);
+            self.event_fields.push(fields);
             self.s.events.push(Event { name: name.text.clone(), params, from, to, stimulus: body, span });
             self.bodies.push(stimulus);
         }
     }
 
-    fn declare_agent(&mut self, agent: &'a ast::Agent, span: Span) {
-        let actor = self.actor(&agent.plays).unwrap_or(NOBODY);
-        if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, &agent.name).is_some() {
+    fn declare_agent(&mut self, agent: Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Agent(id));
+            self.push_agent(&agent, name, span);
             self.agent_decls.push(agent);
-            self.beliefs.push(Table::default());
-            self.s.agents.push(Agent {
-                name: agent.name.text.clone(),
-                actor,
-                beliefs: Vec::new(),
-                goals: Vec::new(),
-                initial_beliefs: Vec::new(),
-                initial_goals: Vec::new(),
-                plans: Vec::new(),
-                span,
-            });
         }
     }
 
-    fn declare_automaton(&mut self, automaton: &'a ast::Automaton, span: Span) {
-        let actor = self.actor(&automaton.plays).unwrap_or(NOBODY);
-        if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, &automaton.name).is_some() {
+    /// An agent that has nothing yet.
+    pub(super) fn push_agent(&mut self, agent: &Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        let plays = &agent.syntax.plays;
+        let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
+        self.beliefs.push(Table::default());
+        self.belief_fields.push(Vec::new());
+        self.s.agents.push(Agent {
+            name: name.text.clone(),
+            actor,
+            beliefs: Vec::new(),
+            goals: Vec::new(),
+            initial_beliefs: Vec::new(),
+            initial_goals: Vec::new(),
+            plans: Vec::new(),
+            span,
+        });
+    }
+
+    fn declare_automaton(&mut self, automaton: Declared<'a, ast::Automaton>, name: &Name, span: Span) {
+        if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Automaton(id));
+            self.push_automaton(&automaton, name, span);
             self.automaton_decls.push(automaton);
-            self.s.automata.push(Automaton {
-                name: automaton.name.text.clone(),
-                actor,
-                clocks: Vec::new(),
-                vars: Vec::new(),
-                locations: Vec::new(),
-                initial: LocationId(0),
-                edges: Vec::new(),
-                span,
-            });
         }
+    }
+
+    /// An automaton that has nothing yet.
+    pub(super) fn push_automaton(
+        &mut self,
+        automaton: &Declared<'a, ast::Automaton>,
+        name: &Name,
+        span: Span,
+    ) {
+        let plays = &automaton.syntax.plays;
+        let actor = self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
+        self.s.automata.push(Automaton {
+            name: name.text.clone(),
+            actor,
+            clocks: Vec::new(),
+            vars: Vec::new(),
+            locations: Vec::new(),
+            initial: LocationId(0),
+            edges: Vec::new(),
+            span,
+        });
     }
 
     fn declare_shared(&mut self, var: &ast::Var) {
         self.check_free(&Env::constants(), Noun::Variable, &var.name);
-        let resolved = self.var(var);
-        if Self::declare(&mut self.issues, &mut self.shared, Noun::Variable, &var.name).is_some() {
-            self.s.shared.push(resolved);
+        if let Err(first) = self.shared_names.insert(&var.name.text, var.name.span) {
+            let issue = names::duplicate(Noun::Variable, &var.name.text, var.name.span, Some(first));
+            return self.report(issue);
+        }
+        let (layout, vars) = self.var(var);
+        for var in vars {
+            // The parts of one variable have names that no other can have.
+            let _ = self.shared.insert(&var.name, var.span);
+            self.s.shared.push(var);
+        }
+        if !matches!(layout, Layout::Scalar(_)) {
+            self.shared_layouts.push((var.name.text.clone(), layout));
         }
     }
 
-    /// A variable of an automaton or shared: of a finite type, with a value at the start.
-    pub(super) fn var(&mut self, var: &ast::Var) -> Var {
-        let ty = self.ty(&var.ty).filter(|ty| self.finite(*ty, "a variable of automata", var.name.span));
-        let ty = ty.unwrap_or(Type::Bool);
-        let init = var.init.as_ref().and_then(|e| {
-            let e = self.expr_for(e, ty, &mut Env::constants());
-            if e.constant().is_none() && e.ty != Kind::Unknown {
+    /// A variable of an automaton or shared: of finite types, each part with a value at the start.
+    pub(super) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
+        let span = var.name.span;
+        let layout = self.layout(&var.ty).filter(|l| self.finite_layout(l, "a variable of automata", span));
+        let layout = layout.unwrap_or(Layout::Scalar(Type::Bool));
+        let mut values = Vec::new();
+        if let Some(e) = &var.init {
+            self.item_for(e, &layout, &mut Env::constants()).flatten(&mut values);
+        }
+        for e in &values {
+            if e.constant().is_none() && e.ty != crate::Kind::Unknown {
                 self.report(types::not_constant(e.span));
             }
-            e.constant()
+        }
+        let mut leaves = Vec::new();
+        self.leaves(&var.name.text, &layout, &mut leaves);
+        let mut values = values.into_iter();
+        let vars = leaves.into_iter().map(|(name, ty)| {
+            let init = values.next().and_then(|e: Expr| e.constant());
+            Var { name, ty, init: init.unwrap_or(nearest_to_zero(ty)), span }
         });
-        let nearest_to_0 = match ty {
-            Type::Bool | Type::Float(_) => Value::Bool(false),
-            Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
-        };
-        Var { name: var.name.text.clone(), ty, init: init.unwrap_or(nearest_to_0) }
+        (layout, vars.collect())
     }
+}
 
-    /// Parameters; names are distinct.
-    pub(super) fn params(&mut self, params: &[SyntaxParam]) -> Vec<Param> {
-        let mut table = Table::default();
-        let mut resolved = Vec::new();
-        for param in params {
-            let ty = self.ty(&param.ty).unwrap_or(Type::Bool);
-            Self::declare(&mut self.issues, &mut table, Noun::Parameter, &param.name);
-            resolved.push(Param { name: param.name.text.clone(), ty });
-        }
-        resolved
-    }
-
-    pub(super) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
-        match ty {
-            TypeExpr::Named(name) => {
-                let found = Type::named(&name.text);
-                if found.is_none() {
-                    let all: Vec<String> = Type::names().map(str::to_owned).collect();
-                    self.unknown(Noun::Type, name, &all, None);
-                }
-                found
-            }
-            TypeExpr::Range(lo, hi) => {
-                let span = lo.span.to(hi.span);
-                let lo = self.constant(lo, Kind::Int, &mut Env::constants());
-                let hi = self.constant(hi, Kind::Int, &mut Env::constants());
-                let (Some(Value::Int(lo)), Some(Value::Int(hi))) = (lo, hi) else { return None };
-                if lo > hi {
-                    self.report(types::empty_range(Value::Int(lo), Value::Int(hi), span));
-                    return None;
-                }
-                Some(Type::Int { lo, hi })
-            }
-        }
+/// What a variable holds that is given no value.
+fn nearest_to_zero(ty: Type) -> Value {
+    match ty {
+        Type::Bool | Type::Float(_) => Value::Bool(false),
+        Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
+        Type::Enum(of) => Value::Symbol { of, index: 0 },
     }
 }

@@ -58,7 +58,11 @@ impl<'a> Checker<'a> {
             Self::rules,
         ];
         for pass in passes {
-            placed.iter().for_each(|p| pass(self, p));
+            for p in &placed {
+                let outer = std::mem::replace(&mut self.given, p.given.clone());
+                pass(self, p);
+                self.given = outer;
+            }
         }
     }
 
@@ -75,7 +79,15 @@ impl<'a> Checker<'a> {
             let kept_names = std::mem::take(&mut self.in_world);
             let kept_world = self.s.world.take();
             let kept_flag = std::mem::replace(&mut self.has_world, true);
+            let params = part.params.as_deref();
+            let outer = params.map(|params| {
+                let given = self.placeholders(params);
+                self.given.replace(given)
+            });
             self.build(&part.members, part.name.span);
+            if let Some(outer) = outer {
+                self.given = outer;
+            }
             self.in_world = kept_names;
             self.s.world = kept_world;
             self.has_world = kept_flag;
@@ -115,6 +127,7 @@ impl<'a> Checker<'a> {
             | Member::Current { .. }
             | Member::Signal { .. }
             | Member::Rule(_)
+            | Member::Allow(_)
             | Member::Error => {}
         }
     }
@@ -327,15 +340,22 @@ impl<'a> Checker<'a> {
             c.world_name(Noun::Gripper, &path.names, &p.prefix).map_or(GripperId(0), GripperId)
         };
         let on = match &rule.on {
-            SyntaxRuleOn::Event(call) => self.pattern(call, &mut Env::constants()).map(RuleOn::Event),
+            SyntaxRuleOn::Event(call) => {
+                let mut patterns = self.patterns(std::slice::from_ref(call)).into_iter();
+                let first = patterns.next();
+                if patterns.next().is_some() {
+                    self.report(types::several_events(&call.name.text, call.span));
+                }
+                first.map(RuleOn::Event)
+            }
             SyntaxRuleOn::Closes(path) => Some(RuleOn::Closes(gripper(self, path))),
             SyntaxRuleOn::Opens(path) => Some(RuleOn::Opens(gripper(self, path))),
         };
         let mut env = Env::measured(&p.prefix);
         let guard = rule.when.as_ref().map(|e| self.expr_of(e, Kind::Bool, &mut env));
         let Some(event) = self.event(Noun::Event, &rule.emit.name, None) else { return };
-        let params = self.params_of(event);
-        let args = self.args(Noun::Event, &rule.emit, &params, &mut env);
+        let fields = self.fields_of(event);
+        let args = self.args(Noun::Event, &rule.emit, &fields, &mut env);
         if let Some(on) = on {
             self.world_mut().rules.push(Rule { on, guard, event, args, span: p.member.span });
         }

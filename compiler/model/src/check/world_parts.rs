@@ -1,9 +1,11 @@
 //! Names of the world, and the instantiation of parts.
 
+use std::rc::Rc;
+
 use hrdsl_source::{Diagnostic, Span};
 use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
 
-use super::{Checker, table::Table};
+use super::{Checker, Env, given::Givens, item::Item, table::Table};
 use crate::{
     BodyId, CurrentId, Dim, Kind,
     noun::Noun,
@@ -56,10 +58,6 @@ impl WorldNames {
         body.or_else(|| self.currents.get(full).map(|id| BodyRef::Current(CurrentId(id))))
     }
 
-    pub fn is_body(&self, prefix: &str, name: &str) -> bool {
-        self.body_ref(&format!("{prefix}{name}")).is_some()
-    }
-
     pub fn is_instance(&self, full: &str) -> bool {
         self.instances.get(full).is_some()
     }
@@ -80,6 +78,8 @@ pub(crate) struct Placed<'a> {
     pub prefix: String,
     pub frame: Frame,
     pub member: &'a WorldMember,
+    /// What the parameters of its part stand for.
+    pub given: Option<Rc<Givens>>,
 }
 
 impl<'a> Checker<'a> {
@@ -94,7 +94,7 @@ impl<'a> Checker<'a> {
         let mut all = Vec::new();
         for member in members {
             match &member.kind {
-                Member::Part { name, of, at, rotated } => {
+                Member::Part { name, of, args, at, rotated } => {
                     let inner = self.frame(at, rotated.as_ref());
                     let full = format!("{prefix}{}", name.text);
                     let instances = &mut self.in_world.instances;
@@ -104,9 +104,16 @@ impl<'a> Checker<'a> {
                         self.in_world.broken.push(full);
                         continue;
                     };
+                    let Ok(given) = self.given_part(part, of, args.as_deref(), prefix) else {
+                        self.in_world.broken.push(full);
+                        continue;
+                    };
                     if new {
                         let frame = compose(frame, inner);
-                        all.extend(self.flatten(&part.members, &format!("{full}."), frame, depth + 1));
+                        let outer = std::mem::replace(&mut self.given, given);
+                        let inner = self.flatten(&part.members, &format!("{full}."), frame, depth + 1);
+                        self.given = outer;
+                        all.extend(inner);
                     }
                 }
                 Member::Step(_)
@@ -119,10 +126,33 @@ impl<'a> Checker<'a> {
                 | Member::Current { .. }
                 | Member::Signal { .. }
                 | Member::Rule(_)
-                | Member::Error => all.push(Placed { prefix: prefix.to_owned(), frame, member }),
+                | Member::Error => {
+                    let given = self.given.clone();
+                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given });
+                }
+                Member::Allow(_) => {}
             }
         }
         all
+    }
+
+    /// What the arguments give for a part's parameters.
+    fn given_part(
+        &mut self,
+        part: &ast::Part,
+        of: &Name,
+        args: Option<&[ast::Expr]>,
+        prefix: &str,
+    ) -> Result<Option<Rc<Givens>>, ()> {
+        match (&part.params, args) {
+            (None, None) => Ok(None),
+            (params, args) => {
+                let (params, args) = (params.as_deref().unwrap_or_default(), args.unwrap_or_default());
+                let span = of.span.to(args.last().map_or(of.span, |a| a.span));
+                // What is named in the world may not be there yet.
+                self.bind(&part.name, params, args, span, &Env::measured(prefix), false).map(Some).ok_or(())
+            }
+        }
     }
 
     fn part(&mut self, of: &Name, depth: usize) -> Option<&'a ast::Part> {
@@ -160,19 +190,33 @@ impl<'a> Checker<'a> {
 
     /// Three constants of one kind.
     pub(super) fn vector(&mut self, e: &ast::Expr, want: Kind) -> Option<[f64; 3]> {
-        let ast::ExprKind::Tuple(parts) = &e.kind else {
-            if e.kind != ast::ExprKind::Error {
+        if let ast::ExprKind::Tuple(parts) = &e.kind
+            && parts.len() == 3
+        {
+            let mut vector = [0.0; 3];
+            for (slot, part) in vector.iter_mut().zip(parts) {
+                *slot = self.constant(part, want, &mut Env::constants())?.number()?;
+            }
+            return Some(vector);
+        }
+        let mut values = Vec::new();
+        let known = self.issues.len();
+        let item = self.item(e, &mut Env::constants());
+        let whole = matches!(item, Item::Array(..) | Item::Tuple(..));
+        item.flatten(&mut values);
+        if !whole || values.len() != 3 {
+            if self.issues.len() == known && e.kind != ast::ExprKind::Error {
                 self.report(not_a_vector(want, e.span));
             }
             return None;
-        };
-        if parts.len() != 3 {
-            self.report(not_a_vector(want, e.span));
-            return None;
         }
         let mut vector = [0.0; 3];
-        for (slot, part) in vector.iter_mut().zip(parts) {
-            *slot = self.constant(part, want, &mut super::Env::constants())?.number()?;
+        for (slot, value) in vector.iter_mut().zip(values) {
+            let value = self.fit(value, want, &mut Env::constants());
+            if value.constant().is_none() && value.ty != Kind::Unknown {
+                self.report(types::not_constant(value.span));
+            }
+            *slot = value.constant()?.number()?;
         }
         Some(vector)
     }

@@ -45,6 +45,12 @@ pub(crate) fn with_nearest<'a>(
     }
 }
 
+/// HR0101: a bare name that several enumerations have.
+pub(crate) fn ambiguous(text: &str, of: &[String], span: Span) -> Diagnostic {
+    let message = format!("`{text}` is a value of several enumerations: `{}`", of.join("`, `"));
+    Diagnostic::error(Code::UNKNOWN_NAME, span, message).help(format!("write `{}.{text}`", of[0]))
+}
+
 /// HR0102: a second declaration.
 pub(crate) fn duplicate(noun: Noun, text: &str, span: Span, first: Option<Span>) -> Diagnostic {
     let message = format!("{} is called `{text}` already", noun.with_article());

@@ -3,8 +3,47 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::{
-    Dim, Kind, Param, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
+    Dim, Enum, Expr, Kind, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
 };
+
+/// A kind in words, an enumeration by its name.
+pub(crate) fn shown(kind: Kind, enums: &[Enum]) -> String {
+    match kind {
+        Kind::Enum(id) => match enums.get(usize::from(id.0)) {
+            Some(of) => format!("a value of `{}`", of.name),
+            None => kind.to_string(),
+        },
+        Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Unknown => kind.to_string(),
+    }
+}
+
+/// HR0201: something of another shape.
+pub(crate) fn other_shape(want: &str, got: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+}
+
+/// HR0201: operands that cannot be combined.
+pub(crate) fn shapes(op: &str, left: (&str, Span), right: (&str, Span)) -> Diagnostic {
+    let span = left.1.to(right.1);
+    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("`{op}` between {} and {}", left.0, right.0))
+        .label(left.1, format!("this is {}", left.0))
+        .label(right.1, format!("this is {}", right.0))
+}
+
+/// HR0201
+pub(crate) fn no_elements(message: String, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("only an array is indexed: `a[0]`")
+}
+
+/// HR0206: an index that may lie outside of its array.
+pub(crate) fn bad_index(at: &Expr, last: i64) -> Diagnostic {
+    let message = match at.constant() {
+        Some(n) => format!("the index {n} is outside of the array, whose last is {last}"),
+        None => format!("the index may be outside of the array, whose last is {last}"),
+    };
+    Diagnostic::error(Code::OUT_OF_RANGE, at.span, message)
+        .help(format!("the first element is 0; the index must be of a type within 0..{last}"))
+}
 
 /// HR0202
 pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
@@ -19,14 +58,26 @@ pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
 }
 
 /// HR0201, HR0203 or the bare number: `want` is needed and `got` is there.
-pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) -> Diagnostic {
+pub(crate) fn mismatch(
+    want: Kind,
+    got: Kind,
+    value: Option<Value>,
+    span: Span,
+    enums: &[Enum],
+) -> Diagnostic {
+    let message = format!("{} is needed here, but this is {}", shown(want, enums), shown(got, enums));
     match (want, got.dim()) {
         (Kind::Float(dim), Some(_)) if got.is_bare() => bare_number(dim, value, span),
-        (Kind::Float(_), Some(_)) => {
-            Diagnostic::error(Code::UNIT_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+        (Kind::Float(_), Some(_)) => Diagnostic::error(Code::UNIT_MISMATCH, span, message),
+        (Kind::Enum(id), _) => {
+            let error = Diagnostic::error(Code::TYPE_MISMATCH, span, message);
+            match enums.get(usize::from(id.0)) {
+                Some(of) => error.help(format!("its values are: `{}`", of.values.join("`, `"))),
+                None => error,
+            }
         }
         (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Unknown, _) => {
-            Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+            Diagnostic::error(Code::TYPE_MISMATCH, span, message)
         }
     }
 }
@@ -55,8 +106,8 @@ pub(crate) fn dimensions(op: &str, left: (Kind, Span), right: (Kind, Span)) -> D
 }
 
 /// HR0201: the operands have different types.
-pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
-    let (l, r) = (left.0, right.0);
+pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span), enums: &[Enum]) -> Diagnostic {
+    let (l, r) = (shown(left.0, enums), shown(right.0, enums));
     Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
         .label(left.1, format!("this is {l}"))
         .label(right.1, format!("this is {r}"))
@@ -77,6 +128,17 @@ pub(crate) fn not_finite(what: &str, span: Span) -> Diagnostic {
 pub(crate) fn not_constant(span: Span) -> Diagnostic {
     Diagnostic::error(Code::NOT_CONSTANT, span, "a constant is needed here")
         .help("use a literal or a name declared by `const`")
+}
+
+/// HR0208
+pub(crate) fn record_cycle(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::CONSTANT_CYCLE, span, format!("the record `{name}` contains itself"))
+}
+
+/// HR0103: a parameter that stands for several events, or for an event with certain arguments.
+pub(crate) fn several_events(name: &str, span: Span) -> Diagnostic {
+    let message = format!("`{name}` stands for a pattern, and one event is needed here");
+    Diagnostic::error(Code::WRONG_KIND, span, message).help("give the template the name of one event alone")
 }
 
 /// HR0208
@@ -108,9 +170,8 @@ pub(crate) fn empty_range(lo: Value, hi: Value, span: Span) -> Diagnostic {
 }
 
 /// HR0205
-pub(crate) fn arity(noun: Noun, name: &str, params: &[Param], got: usize, span: Span) -> Diagnostic {
-    let names: Vec<&str> = params.iter().map(|p| p.name.as_str()).collect();
-    counts(noun, name, params.len(), got, span).help(if names.is_empty() {
+pub(crate) fn arity(noun: Noun, name: &str, names: &[&str], got: usize, span: Span) -> Diagnostic {
+    counts(noun, name, names.len(), got, span).help(if names.is_empty() {
         format!("write `{name}`")
     } else {
         format!("write `{name}({})`", names.join(", "))

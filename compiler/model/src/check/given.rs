@@ -1,0 +1,325 @@
+//! Templates: declarations with parameters, what an instance gives for them, and the check of a template by itself.
+
+use std::rc::Rc;
+
+use hrdsl_source::{Diagnostic, Span};
+use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
+use indexmap::IndexMap;
+
+use super::{Checker, Env, item::Item};
+use crate::{
+    ActorId, EventPattern, Expr, PointId, Type, Value,
+    noun::Noun,
+    report::{names, types},
+    types::Layout,
+};
+
+/// What a parameter of a template stands for.
+#[derive(Clone, Debug)]
+pub(crate) enum Given {
+    Value(Item),
+    /// One event or several alternatives.
+    Events(Vec<EventPattern>),
+    Actor(ActorId),
+    /// Something of the world, by its full name.
+    Thing(Noun, String),
+    Point(PointId),
+    /// Not known: in the check of the template by itself, or after a wrong argument. Nothing is said about it.
+    Unknown,
+}
+
+pub(crate) type Givens = IndexMap<String, Given>;
+
+/// A declaration with parameters.
+#[derive(Clone, Copy)]
+pub(crate) struct Template<'a> {
+    pub kind: &'a ItemKind,
+    pub name: &'a Name,
+    pub params: &'a [ast::Param],
+}
+
+/// A kind of parameter that is no type of values.
+fn kind_word(text: &str) -> Option<Noun> {
+    Some(match text {
+        "event" => Noun::Event,
+        "actor" => Noun::Actor,
+        "cover" => Noun::Point,
+        "place" => Noun::Body,
+        "arm" => Noun::Arm,
+        "gripper" => Noun::Gripper,
+        _ => return None,
+    })
+}
+
+pub(super) fn is_kind_word(text: &str) -> bool {
+    kind_word(text).is_some()
+}
+
+/// The kind of a parameter that is no value.
+fn kind_of_param(param: &ast::Param) -> Option<Noun> {
+    match &param.ty {
+        TypeExpr::Named(name) => kind_word(&name.text),
+        TypeExpr::Range(..) | TypeExpr::Array(..) | TypeExpr::Error => None,
+    }
+}
+
+/// The template that an item declares, if it has parameters.
+pub(super) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)> {
+    let (sort, name, params) = match kind {
+        ItemKind::Agent(a) => (Sort::Agent, &a.name, &a.params),
+        ItemKind::Automaton(a) => (Sort::Automaton, &a.name, &a.params),
+        ItemKind::Require(r) => (Sort::Require, &r.name, &r.params),
+        ItemKind::Cover(c) => (Sort::Cover, &c.name, &c.params),
+        ItemKind::Cross(c) => (Sort::Cross, &c.name, &c.params),
+        ItemKind::Use(_)
+        | ItemKind::Allow(_)
+        | ItemKind::Enum { .. }
+        | ItemKind::Record { .. }
+        | ItemKind::Actor { .. }
+        | ItemKind::Const { .. }
+        | ItemKind::Event(_)
+        | ItemKind::Stimulus(_)
+        | ItemKind::Var(_)
+        | ItemKind::Network { .. }
+        | ItemKind::Assume(_)
+        | ItemKind::Suite(_)
+        | ItemKind::Part(_)
+        | ItemKind::World(_)
+        | ItemKind::System(_)
+        | ItemKind::Test(_)
+        | ItemKind::Instance(_)
+        | ItemKind::Error => return None,
+    };
+    params.as_deref().map(|params| (sort, Template { kind, name, params }))
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn declare_templates(&mut self) {
+        for (item, _) in self.each_item() {
+            let Some((sort, template)) = template(item) else { continue };
+            let name = template.name;
+            let key = (sort as u8, name.text.as_str());
+            if let Some(first) = self.templates.get(&key) {
+                let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
+                self.report(issue);
+                continue;
+            }
+            self.templates.insert(key, template);
+        }
+    }
+
+    pub(super) fn is_template(&self, text: &str) -> bool {
+        self.templates.keys().any(|(_, name)| *name == text)
+    }
+
+    /// What a name stands for in the instance that is being checked.
+    pub(super) fn given(&self, name: &str) -> Option<&Given> {
+        self.given.as_ref()?.get(name)
+    }
+
+    /// A name that is never bound by a pattern: a constant, a value of an enumeration, a parameter of the template.
+    pub(super) fn has_value(&self, text: &str) -> bool {
+        self.consts.contains_key(text) || self.values.contains_key(text) || self.given(text).is_some()
+    }
+
+    /// The template that an instance is of, and what is given for its parameters.
+    pub(super) fn instance(
+        &mut self,
+        instance: &'a ast::Instance,
+        env: &Env,
+    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        let Some(template) = self.templates.get(&(instance.sort as u8, instance.of.text.as_str())).copied()
+        else {
+            let sort = instance.sort as u8;
+            let all: Vec<String> =
+                self.templates.keys().filter(|(s, _)| *s == sort).map(|(_, n)| (*n).to_owned()).collect();
+            // That the name is one of a plain declaration says that it has no parameters.
+            self.unknown(Noun::Template, &instance.of, &all, None);
+            return None;
+        };
+        self.used_templates.insert((instance.sort as u8, template.name.text.clone()));
+        let given = self.bind(template.name, template.params, &instance.args, instance.span, env, true)?;
+        Some((template, given))
+    }
+
+    /// What the arguments give for the parameters. `whole`: the world is there, and what they name must be in it.
+    pub(super) fn bind(
+        &mut self,
+        name: &Name,
+        params: &[ast::Param],
+        args: &[ast::Expr],
+        span: Span,
+        env: &Env,
+        whole: bool,
+    ) -> Option<Rc<Givens>> {
+        if args.len() != params.len() {
+            let names: Vec<&str> = params.iter().map(|p| p.name.text.as_str()).collect();
+            self.report(types::arity(Noun::Template, &name.text, &names, args.len(), span));
+            return None;
+        }
+        let mut given = Givens::default();
+        for (param, arg) in params.iter().zip(args) {
+            let bound = match kind_of_param(param) {
+                Some(kind) => self.given_thing(kind, arg, env, whole),
+                None => {
+                    let layout = self.inside(&given, |c| c.layout(&param.ty));
+                    match layout {
+                        Some(layout) => Given::Value(self.item_for(arg, &layout, &mut env.clone())),
+                        None => Given::Unknown,
+                    }
+                }
+            };
+            given.insert(param.name.text.clone(), bound);
+        }
+        Some(Rc::new(given))
+    }
+
+    /// Something that sees these parameters.
+    fn inside<T>(&mut self, given: &Givens, f: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = self.given.replace(Rc::new(given.clone()));
+        let result = f(self);
+        self.given = outer;
+        result
+    }
+
+    fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &Env, whole: bool) -> Given {
+        if let (Noun::Event, Some(patterns)) = (kind, self.alternatives(arg)) {
+            return patterns.map_or(Given::Unknown, Given::Events);
+        }
+        let Syntax::Path(path) = &arg.kind else {
+            if arg.kind != Syntax::Error {
+                let issue = types::no_value("this", arg.span);
+                self.report(issue.help(format!("name {} here", kind.with_article())));
+            }
+            return Given::Unknown;
+        };
+        if let [name] = path.names.as_slice()
+            && let Some(outer) = self.given(&name.text)
+        {
+            return outer.clone();
+        }
+        match kind {
+            Noun::Actor => self.actor(&path.names[0]).map_or(Given::Unknown, Given::Actor),
+            Noun::Point => self.point_named(&path.names[0]).map_or(Given::Unknown, Given::Point),
+            _ => {
+                let prefix = env.world.clone().unwrap_or_default();
+                let known = !whole
+                    || match kind {
+                        Noun::Body => self.body_ref(&path.names, &prefix).is_some(),
+                        _ => self.world_name(kind, &path.names, &prefix).is_some(),
+                    };
+                let full = format!("{prefix}{}", super::measure::text(&path.names));
+                if known { Given::Thing(kind, full) } else { Given::Unknown }
+            }
+        }
+    }
+
+    /// `a`, `a(true)`, `a or b(_)`: `None` if it is nothing of this form.
+    fn alternatives(&mut self, arg: &ast::Expr) -> Option<Option<Vec<EventPattern>>> {
+        match &arg.kind {
+            Syntax::Binary { op: BinaryOp::Or, left, right } => {
+                let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
+                Some(left.zip(right).map(|(mut l, r)| {
+                    l.extend(r);
+                    l
+                }))
+            }
+            Syntax::Path(path) if path.names.len() == 1 => {
+                let call = ast::Call { name: path.names[0].clone(), args: None, span: arg.span };
+                Some(self.pattern_of(&call))
+            }
+            Syntax::Call { callee, args } if callee.names.len() == 1 => {
+                let args = Some(args.clone());
+                let call = ast::Call { name: callee.names[0].clone(), args, span: arg.span };
+                Some(self.pattern_of(&call))
+            }
+            _ => None,
+        }
+    }
+
+    fn pattern_of(&mut self, call: &ast::Call) -> Option<Vec<EventPattern>> {
+        let before = self.issues.len();
+        let patterns = self.patterns(std::slice::from_ref(call));
+        (self.issues.len() == before && !patterns.is_empty()).then_some(patterns)
+    }
+
+    // ── the template by itself ──
+
+    /// What the parameters are in the check of the template by itself: some value of their type, or nothing known.
+    pub(super) fn placeholders(&mut self, params: &[ast::Param]) -> Rc<Givens> {
+        let mut given = Givens::default();
+        for param in params {
+            let bound = if kind_of_param(param).is_some() {
+                Given::Unknown
+            } else {
+                match self.inside(&given, |c| c.layout(&param.ty)) {
+                    Some(layout) => Given::Value(self.some_value(&layout, param.name.span)),
+                    None => Given::Unknown,
+                }
+            };
+            if given.insert(param.name.text.clone(), bound).is_some() {
+                self.report(names::duplicate(Noun::Parameter, &param.name.text, param.name.span, None));
+            }
+        }
+        Rc::new(given)
+    }
+
+    fn some_value(&self, layout: &Layout, span: Span) -> Item {
+        let one = |ty: Type| {
+            let value = match ty {
+                Type::Bool => Value::Bool(true),
+                Type::Int { hi, .. } => Value::Int(hi),
+                Type::Float(_) => Value::Float(1.0),
+                Type::Enum(of) => Value::Symbol { of, index: 0 },
+            };
+            Item::One(Expr::value(value, ty.kind(), span))
+        };
+        match layout {
+            Layout::Scalar(ty) => one(*ty),
+            Layout::Record(id) => {
+                let fields = &self.records[usize::from(*id)].fields;
+                Item::Record(*id, fields.iter().map(|(_, l)| self.some_value(l, span)).collect(), span)
+            }
+            Layout::Array(of, n) => Item::Array((0..*n).map(|_| self.some_value(of, span)).collect(), span),
+        }
+    }
+
+    /// Checks each template of a sort by itself.
+    pub(super) fn templates_of(&mut self, sort: Sort, check: impl Fn(&mut Self, Template<'a>)) {
+        let of_sort = |((s, _), t): (&(u8, &'a str), &Template<'a>)| (*s == sort as u8).then_some(*t);
+        let templates: Vec<Template<'a>> = self.templates.iter().filter_map(of_sort).collect();
+        for template in templates {
+            let given = self.placeholders(template.params);
+            let outer = self.given.replace(given);
+            check(self, template);
+            self.given = outer;
+        }
+    }
+
+    /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with
+    /// the instance that it is wrong in.
+    pub(super) fn as_instance<T>(
+        &mut self,
+        given: Option<Rc<Givens>>,
+        instance: Option<(&Name, Span)>,
+        check: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let Some(given) = given else { return check(self) };
+        let outer = self.given.replace(given);
+        let before = self.issues.len();
+        let result = check(self);
+        self.given = outer;
+        let new = self.issues.split_off(before);
+        for issue in new {
+            let said = |known: &Diagnostic| known.code == issue.code && known.span() == issue.span();
+            if self.issues.iter().any(said) {
+                continue;
+            }
+            self.issues.push(match instance {
+                Some((name, span)) => issue.label(span, format!("in the instance `{}`", name.text)),
+                None => issue,
+            });
+        }
+        result
+    }
+}

@@ -1,0 +1,230 @@
+//! Declared types: enumerations, records, arrays, and what a type expression means.
+
+use std::rc::Rc;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
+
+use super::{Checker, Env, table::Table};
+use crate::{
+    Enum, EnumId, Kind, Param, Type, Value,
+    noun::Noun,
+    report::{names, types},
+    types::Layout,
+};
+
+/// The most single values that something of a record or array type has.
+pub(super) const MAX_PARTS: usize = 256;
+
+/// Parameters or fields as they were declared: names and layouts.
+pub(super) type Fields = Rc<[(String, Layout)]>;
+
+/// How far the fields of a record are known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum RecordState {
+    Unseen,
+    /// Its own fields are being worked out.
+    Open,
+    Done,
+}
+
+pub(super) struct RecordEntry<'a> {
+    pub name: &'a Name,
+    pub syntax: &'a [SyntaxParam],
+    pub fields: Vec<(String, Layout)>,
+    pub state: RecordState,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn declare_enum(&mut self, name: &'a Name, values: &'a [Name], span: Span) {
+        if self.type_is_taken(name) {
+            return;
+        }
+        if values.is_empty() {
+            let help = format!("write `enum {} {{ first, second }}`", name.text);
+            self.report(names::missing(name.span, "an enumeration has values", help));
+        }
+        let mut table = Table::default();
+        let Some(id) = Self::declare(&mut self.issues, &mut self.enums, Noun::Enum, name) else { return };
+        for value in values {
+            let Some(index) = Self::declare(&mut self.issues, &mut table, Noun::EnumValue, value) else {
+                continue;
+            };
+            self.values.entry(&value.text).or_default().push((EnumId(id), index));
+        }
+        let values = table.names().map(str::to_owned).collect();
+        self.s.enums.push(Enum { name: name.text.clone(), values, span });
+    }
+
+    pub(super) fn declare_record(&mut self, name: &'a Name, syntax: &'a [SyntaxParam]) {
+        if self.type_is_taken(name) {
+            return;
+        }
+        if Self::declare(&mut self.issues, &mut self.record_names, Noun::Record, name).is_some() {
+            let state = RecordState::Unseen;
+            self.records.push(RecordEntry { name, syntax, fields: Vec::new(), state });
+        }
+    }
+
+    /// Types have one namespace, which the language's own are in too.
+    fn type_is_taken(&mut self, name: &Name) -> bool {
+        let first = self.enums.get(&name.text).and_then(|id| self.enums.span(id));
+        let first =
+            first.or_else(|| self.record_names.get(&name.text).and_then(|id| self.record_names.span(id)));
+        let taken = first.is_some() || Type::named(&name.text).is_some();
+        if taken {
+            self.report(names::duplicate(Noun::Type, &name.text, name.span, first));
+        }
+        taken
+    }
+
+    pub(super) fn all_records(&mut self) {
+        for id in 0..self.records.len() {
+            self.resolve_record(id);
+        }
+    }
+
+    fn resolve_record(&mut self, id: usize) {
+        if self.records[id].state != RecordState::Unseen {
+            return;
+        }
+        self.records[id].state = RecordState::Open;
+        let (name, syntax) = (self.records[id].name, self.records[id].syntax);
+        if syntax.is_empty() {
+            let help = format!("write `record {} {{ x: length, y: length }}`", name.text);
+            self.report(names::missing(name.span, "a record has fields", help));
+        }
+        let fields = self.fields(syntax);
+        self.records[id].fields = fields.to_vec();
+        self.records[id].state = RecordState::Done;
+    }
+
+    /// Parameters or fields; names are distinct.
+    pub(super) fn fields(&mut self, params: &[SyntaxParam]) -> Fields {
+        let mut table = Table::default();
+        let mut resolved = Vec::new();
+        for param in params {
+            let layout = self.layout(&param.ty).unwrap_or(Layout::Scalar(Type::Bool));
+            Self::declare(&mut self.issues, &mut table, Noun::Parameter, &param.name);
+            resolved.push((param.name.text.clone(), layout));
+        }
+        resolved.into()
+    }
+
+    /// The single values of parameters.
+    pub(super) fn flat(&self, fields: &[(String, Layout)]) -> Vec<Param> {
+        let mut leaves = Vec::new();
+        for (name, layout) in fields {
+            self.leaves(name, layout, &mut leaves);
+        }
+        leaves.into_iter().map(|(name, ty)| Param { name, ty }).collect()
+    }
+
+    /// The type of one value.
+    pub(super) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
+        match self.layout(ty)? {
+            Layout::Scalar(ty) => Some(ty),
+            layout @ (Layout::Record(_) | Layout::Array(..)) => {
+                let issue = types::no_value(&self.shown_layout(&layout), type_span(ty));
+                self.report(issue.help("the type of one value is needed here"));
+                None
+            }
+        }
+    }
+
+    /// What a type expression means.
+    pub(super) fn layout(&mut self, ty: &TypeExpr) -> Option<Layout> {
+        let layout = match ty {
+            TypeExpr::Error => return None,
+            TypeExpr::Named(name) => self.named_type(name)?,
+            TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
+            TypeExpr::Array(of, size) => {
+                let of = self.layout(of);
+                let n = self.count(size, "the size of an array", 1)?;
+                let n = u16::try_from(n).ok().filter(|n| usize::from(*n) <= MAX_PARTS);
+                if n.is_none() {
+                    self.report(types::must_be(
+                        "the size of an array",
+                        &format!("at most {MAX_PARTS}"),
+                        size.span,
+                    ));
+                }
+                Layout::Array(Box::new(of?), n?)
+            }
+        };
+        if self.size(&layout) > MAX_PARTS {
+            let rule = format!("at most {MAX_PARTS}");
+            self.report(types::must_be("the number of single values in it", &rule, type_span(ty)));
+            return None;
+        }
+        Some(layout)
+    }
+
+    /// How many single values there are.
+    fn size(&self, layout: &Layout) -> usize {
+        match layout {
+            Layout::Scalar(_) => 1,
+            Layout::Record(id) => {
+                let fields = &self.records[usize::from(*id)].fields;
+                fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)))
+            }
+            Layout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
+        }
+    }
+
+    fn named_type(&mut self, name: &Name) -> Option<Layout> {
+        if let Some(ty) = Type::named(&name.text) {
+            return Some(Layout::Scalar(ty));
+        }
+        if let Some(id) = self.enums.get(&name.text) {
+            return Some(Layout::Scalar(Type::Enum(EnumId(id))));
+        }
+        if let Some(id) = self.record_names.get(&name.text) {
+            self.resolve_record(usize::from(id));
+            if self.records[usize::from(id)].state == RecordState::Open {
+                self.report(types::record_cycle(&name.text, name.span));
+                return None;
+            }
+            return Some(Layout::Record(id));
+        }
+        let all = self.type_names();
+        let issue_before = self.issues.len();
+        self.unknown(Noun::Type, name, &all, None);
+        if super::given::is_kind_word(&name.text)
+            && let Some(issue) = self.issues.get_mut(issue_before)
+        {
+            issue.help = Some("only a template has parameters of this kind".to_owned());
+        }
+        None
+    }
+
+    pub(super) fn type_names(&self) -> Vec<String> {
+        let own = self.enums.names().chain(self.record_names.names()).map(str::to_owned);
+        Type::names().map(str::to_owned).chain(own).collect()
+    }
+
+    fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
+        let span = lo.span.to(hi.span);
+        let lo = self.constant(lo, Kind::Int, &mut Env::constants());
+        let hi = self.constant(hi, Kind::Int, &mut Env::constants());
+        let (Some(Value::Int(lo)), Some(Value::Int(hi))) = (lo, hi) else { return None };
+        if lo > hi {
+            self.report(types::empty_range(Value::Int(lo), Value::Int(hi), span));
+            return None;
+        }
+        Some(Type::Int { lo, hi })
+    }
+}
+
+/// Where a type is written.
+pub(super) fn type_span(ty: &TypeExpr) -> Span {
+    match ty {
+        TypeExpr::Named(name) => name.span,
+        TypeExpr::Range(lo, hi) => lo.span.to(hi.span),
+        TypeExpr::Array(of, size) => match of.as_ref() {
+            TypeExpr::Error => size.span,
+            of => type_span(of).to(size.span),
+        },
+        TypeExpr::Error => Span::default(),
+    }
+}
