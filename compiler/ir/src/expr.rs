@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Value;
+use crate::{Symbol, Value};
 
 /// An expression over constants and the variables of its context.
 ///
@@ -54,6 +54,8 @@ pub enum Function {
     Abs,
     Min,
     Max,
+    /// Of one or more numbers: the square root of the sum of their squares, always a float. Of one it is the magnitude.
+    Norm,
 }
 
 /// Why an expression has no value.
@@ -104,7 +106,8 @@ impl Expr {
     /// The value, with `var(i)` giving the variables' values.
     ///
     /// `&&` and `||` are short-circuit; `/` on integers truncates towards zero; a comparison of an integer with a float
-    /// compares them as floats; floats compare by IEEE 754 (nothing is less than or equal to NaN).
+    /// compares them as floats; floats compare by IEEE 754 (nothing is less than or equal to NaN); symbols know `==` and `!=`
+    /// only.
     ///
     /// # Errors
     /// See [`EvalError`].
@@ -175,9 +178,8 @@ pub fn unary(op: UnaryOp, v: Value) -> Result<Value, EvalError> {
         (UnaryOp::Not, Value::Bool(b)) => Ok(Value::Bool(!b)),
         (UnaryOp::Neg, Value::Int(n)) => n.checked_neg().map(Value::Int).ok_or(EvalError::Overflow),
         (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
-        (UnaryOp::Not, Value::Int(_) | Value::Float(_)) | (UnaryOp::Neg, Value::Bool(_)) => {
-            Err(EvalError::Type)
-        }
+        (UnaryOp::Not, Value::Int(_) | Value::Float(_) | Value::Symbol(_))
+        | (UnaryOp::Neg, Value::Bool(_) | Value::Symbol(_)) => Err(EvalError::Type),
     }
 }
 
@@ -189,7 +191,10 @@ pub fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, EvalError> {
     match (a, b) {
         (Value::Bool(a), Value::Bool(b)) => on_bools(op, a, b),
         (Value::Int(a), Value::Int(b)) => on_ints(op, a, b),
-        (Value::Bool(_), _) | (_, Value::Bool(_)) => Err(EvalError::Type),
+        (Value::Symbol(a), Value::Symbol(b)) => on_symbols(op, a, b),
+        (Value::Bool(_) | Value::Symbol(_), _) | (_, Value::Bool(_) | Value::Symbol(_)) => {
+            Err(EvalError::Type)
+        }
         (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
             let (Some(a), Some(b)) = (a.as_f64(), b.as_f64()) else { return Err(EvalError::Type) };
             on_floats(op, a, b)
@@ -213,6 +218,24 @@ fn on_bools(op: BinaryOp, a: bool, b: bool) -> Result<Value, EvalError> {
         | BinaryOp::Gt
         | BinaryOp::Ge => return Err(EvalError::Type),
     }))
+}
+
+fn on_symbols(op: BinaryOp, a: Symbol, b: Symbol) -> Result<Value, EvalError> {
+    match op {
+        BinaryOp::Eq => Ok(Value::Bool(a == b)),
+        BinaryOp::Ne => Ok(Value::Bool(a != b)),
+        BinaryOp::Add
+        | BinaryOp::Sub
+        | BinaryOp::Mul
+        | BinaryOp::Div
+        | BinaryOp::Rem
+        | BinaryOp::Lt
+        | BinaryOp::Le
+        | BinaryOp::Gt
+        | BinaryOp::Ge
+        | BinaryOp::And
+        | BinaryOp::Or => Err(EvalError::Type),
+    }
 }
 
 fn on_ints(op: BinaryOp, a: i64, b: i64) -> Result<Value, EvalError> {
@@ -262,10 +285,98 @@ pub fn call(f: Function, args: &[Value]) -> Result<Value, EvalError> {
         (Function::Abs, [Value::Float(x)]) => Ok(Value::Float(x.abs())),
         (Function::Min, [a, b]) => pick(*a, *b, BinaryOp::Le),
         (Function::Max, [a, b]) => pick(*a, *b, BinaryOp::Ge),
+        (Function::Norm, args) => norm(args),
         (Function::Abs | Function::Min | Function::Max, _) => Err(EvalError::Type),
     }
 }
 
 fn pick(a: Value, b: Value, keep_first: BinaryOp) -> Result<Value, EvalError> {
     Ok(if boolean(binary(keep_first, a, b)?)? { a } else { b })
+}
+
+/// Summed from the left, so that it is the same on every machine.
+fn norm(args: &[Value]) -> Result<Value, EvalError> {
+    let numbers: Vec<f64> =
+        args.iter().map(|a| a.as_f64().ok_or(EvalError::Type)).collect::<Result<_, _>>()?;
+    match numbers.as_slice() {
+        [] => Err(EvalError::Type),
+        // Its square could leave the range of floats.
+        [x] => Ok(Value::Float(x.abs())),
+        many => Ok(Value::Float(many.iter().fold(0.0, |sum, x| sum + x * x).sqrt())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn symbol(name: &str) -> Value {
+        Value::Symbol(Symbol::intern(name))
+    }
+
+    const OPS: [BinaryOp; 13] = [
+        BinaryOp::Add,
+        BinaryOp::Sub,
+        BinaryOp::Mul,
+        BinaryOp::Div,
+        BinaryOp::Rem,
+        BinaryOp::Eq,
+        BinaryOp::Ne,
+        BinaryOp::Lt,
+        BinaryOp::Le,
+        BinaryOp::Gt,
+        BinaryOp::Ge,
+        BinaryOp::And,
+        BinaryOp::Or,
+    ];
+
+    #[test]
+    fn symbols_are_equal_or_not_and_nothing_else() {
+        let (slow, fast) = (symbol("slow"), symbol("fast"));
+        assert_eq!(binary(BinaryOp::Eq, slow, symbol("slow")), Ok(Value::Bool(true)));
+        assert_eq!(binary(BinaryOp::Eq, slow, fast), Ok(Value::Bool(false)));
+        assert_eq!(binary(BinaryOp::Ne, slow, fast), Ok(Value::Bool(true)));
+        for op in OPS {
+            if !matches!(op, BinaryOp::Eq | BinaryOp::Ne) {
+                assert_eq!(binary(op, slow, fast), Err(EvalError::Type), "{op:?}");
+            }
+            for other in [Value::Bool(true), Value::Int(1), Value::Float(1.0)] {
+                assert_eq!(binary(op, slow, other), Err(EvalError::Type), "{op:?}");
+                assert_eq!(binary(op, other, slow), Err(EvalError::Type), "{op:?}");
+            }
+        }
+        for op in [UnaryOp::Not, UnaryOp::Neg] {
+            assert_eq!(unary(op, slow), Err(EvalError::Type));
+        }
+        for f in [Function::Abs, Function::Min, Function::Max, Function::Norm] {
+            assert_eq!(call(f, &[slow]), Err(EvalError::Type));
+            assert_eq!(call(f, &[slow, fast]), Err(EvalError::Type));
+        }
+    }
+
+    #[test]
+    fn a_condition_can_choose_a_symbol() {
+        let is_slow = Expr::binary(BinaryOp::Eq, Expr::Var(0), Expr::Const(symbol("slow")));
+        let other =
+            Expr::If(Box::new(is_slow), Box::new(Expr::Const(symbol("fast"))), Box::new(Expr::Var(0)));
+        assert_eq!(other.eval(&|_| Some(symbol("slow"))), Ok(symbol("fast")));
+        assert_eq!(other.eval(&|_| Some(symbol("still"))), Ok(symbol("still")));
+    }
+
+    #[test]
+    fn the_norm_is_the_root_of_the_sum_of_squares() {
+        let norm =
+            |args: &[f64]| call(Function::Norm, &args.iter().map(|x| Value::Float(*x)).collect::<Vec<_>>());
+        assert_eq!(norm(&[3.0, -4.0]), Ok(Value::Float(5.0)));
+        assert_eq!(norm(&[2.0, 3.0, 6.0]), Ok(Value::Float(7.0)));
+        assert_eq!(call(Function::Norm, &[Value::Int(-3), Value::Float(4.0)]), Ok(Value::Float(5.0)));
+        assert_eq!(norm(&[1.0, 1.0]), Ok(Value::Float(std::f64::consts::SQRT_2)));
+        // Exact, where squaring would overflow or vanish.
+        for x in [0.1, -0.1, 1e300, -1e-300, f64::MAX, f64::MIN_POSITIVE] {
+            assert_eq!(norm(&[x]), Ok(Value::Float(x.abs())));
+        }
+        assert_eq!(call(Function::Norm, &[Value::Int(-2)]), Ok(Value::Float(2.0)));
+        assert_eq!(call(Function::Norm, &[]), Err(EvalError::Type));
+        assert_eq!(call(Function::Norm, &[Value::Bool(true)]), Err(EvalError::Type));
+    }
 }

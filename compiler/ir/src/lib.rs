@@ -3,7 +3,7 @@
 //! This is the waist between the compiler, which makes it, and the runtime, which executes it. It has no behaviour but
 //! the evaluation of expressions ([`expr`]), so that every engine means the same by `+`.
 //!
-//! All quantities are in SI units (metre, second, radian, kilogram, newton) as `f64`; all times that an engine counts
+//! All quantities are in SI units (metre, second, radian, kilogram, newton and what is made of them) as `f64`; all times that an engine counts
 //! with are integer nanoseconds ([`Nanos`]).
 
 pub mod bdi;
@@ -12,6 +12,7 @@ pub mod event;
 pub mod expr;
 pub mod monitor;
 pub mod suite;
+pub mod symbol;
 pub mod system;
 pub mod ta;
 pub mod test;
@@ -23,6 +24,7 @@ use serde::{Deserialize, Serialize};
 pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
 pub use expr::Expr;
 pub use hrdsl_source::Span;
+pub use symbol::{Enumeration, Symbol};
 pub use value::{Nanos, Type, Unit, Value};
 
 /// A whole scenario, ready to generate tests from and to run.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, ArgPattern, EventId, Expr, Nanos, Span};
+use crate::{ActorId, ArgPattern, Enumeration, EventId, Expr, Nanos, Span, Value};
 
 /// Index into [`Program::automata`](crate::Program::automata).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -24,7 +24,8 @@ pub struct Network {
     pub origin: Span,
 }
 
-/// A variable of a bounded integer type; a bool is `0..=1`.
+/// A variable of a finite type, kept as a number of `lo..=hi`: a bool as one of `0..=1`, a symbol as its index in the
+/// enumeration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Var {
     pub name: String,
@@ -33,6 +34,33 @@ pub struct Var {
     pub init: i64,
     /// Declared as bool: it evaluates to `Value::Bool`.
     pub is_bool: bool,
+    /// Declared as an enumeration: it evaluates to `Value::Symbol`. Then `is_bool` is false and the range is that of the
+    /// enumeration's indices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub enumeration: Option<Enumeration>,
+}
+
+impl Var {
+    /// The value that a number kept for the variable stands for. `None`: the enumeration has no such index.
+    #[must_use]
+    pub fn value(&self, n: i64) -> Option<Value> {
+        match self.enumeration {
+            Some(e) => usize::try_from(n).ok().and_then(|n| e.values().get(n)).copied().map(Value::Symbol),
+            None if self.is_bool => Some(Value::Bool(n != 0)),
+            None => Some(Value::Int(n)),
+        }
+    }
+
+    /// The number to keep for a value; it may lie outside the range. `None`: the value is of another type.
+    #[must_use]
+    pub fn number(&self, value: Value) -> Option<i64> {
+        match (self.enumeration, value) {
+            (Some(e), Value::Symbol(s)) => e.index_of(s).and_then(|n| i64::try_from(n).ok()),
+            (None, Value::Bool(b)) if self.is_bool => Some(i64::from(b)),
+            (None, Value::Int(n)) if !self.is_bool => Some(n),
+            (_, Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_)) => None,
+        }
+    }
 }
 
 /// One timed automaton.
@@ -94,7 +122,7 @@ pub enum ClockOp {
 pub struct Edge {
     pub from: LocationId,
     pub to: LocationId,
-    /// Nondeterministic choices, each an integer of `lo..=hi` (a bool: 0..=1 with `is_bool`).
+    /// Nondeterministic choices, each an integer of `lo..=hi`, a bool or a symbol, as a variable is.
     pub selects: Vec<Var>,
     pub clock_guard: Vec<ClockConstraint>,
     /// A boolean expression over variables, selects and received arguments.

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::{Enumeration, Symbol};
+
 /// Simulated or virtual time since the start of a run, or a duration, in nanoseconds.
 pub type Nanos = i64;
 
@@ -35,6 +37,11 @@ pub enum Unit {
     Newton,
     MetrePerSecond,
     RadianPerSecond,
+    MetrePerSecondSquared,
+    RadianPerSecondSquared,
+    Pascal,
+    Hertz,
+    NewtonMetre,
 }
 
 impl Unit {
@@ -50,6 +57,11 @@ impl Unit {
             Unit::Newton => "N",
             Unit::MetrePerSecond => "m/s",
             Unit::RadianPerSecond => "rad/s",
+            Unit::MetrePerSecondSquared => "m/s^2",
+            Unit::RadianPerSecondSquared => "rad/s^2",
+            Unit::Pascal => "Pa",
+            Unit::Hertz => "Hz",
+            Unit::NewtonMetre => "Nm",
         }
     }
 }
@@ -66,26 +78,30 @@ pub enum Type {
     },
     /// A quantity in an SI unit, or a bare float.
     Float(Unit),
+    Enum(Enumeration),
 }
 
 impl Type {
-    /// All values of a finite type, in order: `false` before `true`, integers upwards. `None` for floats.
+    /// All values of a finite type, in order: `false` before `true`, integers upwards, symbols as they
+    /// are declared. `None` for floats.
     #[must_use]
     pub fn domain(self) -> Option<Vec<Value>> {
         match self {
             Type::Bool => Some(vec![Value::Bool(false), Value::Bool(true)]),
             Type::Int { lo, hi } => Some((lo..=hi).map(Value::Int).collect()),
+            Type::Enum(e) => Some(e.values().iter().copied().map(Value::Symbol).collect()),
             Type::Float(_) => None,
         }
     }
 
-    /// Whether the value is of this type and, for an integer, within its range.
+    /// Whether the value is of this type: an integer within its range, a symbol of this enumeration.
     #[must_use]
     pub fn admits(self, value: Value) -> bool {
         match (self, value) {
             (Type::Bool, Value::Bool(_)) | (Type::Float(_), Value::Float(_)) => true,
             (Type::Int { lo, hi }, Value::Int(n)) => (lo..=hi).contains(&n),
-            (Type::Bool | Type::Int { .. } | Type::Float(_), _) => false,
+            (Type::Enum(e), Value::Symbol(s)) => e.index_of(s).is_some(),
+            (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), _) => false,
         }
     }
 }
@@ -97,6 +113,8 @@ pub enum Value {
     Bool(bool),
     Int(i64),
     Float(f64),
+    /// A value of an enumeration.
+    Symbol(Symbol),
 }
 
 impl Value {
@@ -104,7 +122,7 @@ impl Value {
     pub fn as_bool(self) -> Option<bool> {
         match self {
             Value::Bool(b) => Some(b),
-            Value::Int(_) | Value::Float(_) => None,
+            Value::Int(_) | Value::Float(_) | Value::Symbol(_) => None,
         }
     }
 
@@ -112,7 +130,15 @@ impl Value {
     pub fn as_int(self) -> Option<i64> {
         match self {
             Value::Int(n) => Some(n),
-            Value::Bool(_) | Value::Float(_) => None,
+            Value::Bool(_) | Value::Float(_) | Value::Symbol(_) => None,
+        }
+    }
+
+    #[must_use]
+    pub fn as_symbol(self) -> Option<Symbol> {
+        match self {
+            Value::Symbol(s) => Some(s),
+            Value::Bool(_) | Value::Int(_) | Value::Float(_) => None,
         }
     }
 
@@ -122,17 +148,19 @@ impl Value {
         match self {
             Value::Int(n) => Some(n as f64),
             Value::Float(x) => Some(x),
-            Value::Bool(_) => None,
+            Value::Bool(_) | Value::Symbol(_) => None,
         }
     }
 
-    /// Equality as the language's `==` means it: bit for bit, so that it can key maps.
+    /// Equality as the language's `==` means it: bit for bit, so that it can key maps. A symbol counts as
+    /// a number made from its name.
     #[must_use]
     pub fn key(self) -> (u8, u64) {
         match self {
             Value::Bool(b) => (0, u64::from(b)),
             Value::Int(n) => (1, n as u64),
             Value::Float(x) => (2, x.to_bits()),
+            Value::Symbol(s) => (3, s.number()),
         }
     }
 }
@@ -143,6 +171,45 @@ impl fmt::Display for Value {
             Value::Bool(b) => write!(f, "{b}"),
             Value::Int(n) => write!(f, "{n}"),
             Value::Float(x) => write!(f, "{x}"),
+            Value::Symbol(s) => write!(f, "{s}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_enumeration_admits_its_symbols_only() {
+        let pace = Enumeration::intern("Pace", &["slow", "fast", "crawl"]);
+        let symbol = |name| Value::Symbol(Symbol::intern(name));
+        let all = vec![symbol("slow"), symbol("fast"), symbol("crawl")];
+        assert_eq!(Type::Enum(pace).domain(), Some(all));
+        assert!(Type::Enum(pace).admits(symbol("fast")));
+        for other in [symbol("Fast"), Value::Bool(true), Value::Int(0), Value::Float(0.0)] {
+            assert!(!Type::Enum(pace).admits(other));
+        }
+        for ty in [Type::Bool, Type::Int { lo: 0, hi: 9 }, Type::Float(Unit::None)] {
+            assert!(!ty.admits(symbol("fast")));
+        }
+        let fast = symbol("fast");
+        assert_eq!((fast.as_bool(), fast.as_int(), fast.as_f64()), (None, None, None));
+        assert_eq!(fast.as_symbol().map(Symbol::name), Some("fast"));
+        assert_eq!(fast.to_string(), "fast");
+    }
+
+    #[test]
+    fn units_are_written_with_their_symbols() {
+        let written = [
+            (Unit::MetrePerSecondSquared, "m/s^2", "\"metre_per_second_squared\""),
+            (Unit::RadianPerSecondSquared, "rad/s^2", "\"radian_per_second_squared\""),
+            (Unit::Pascal, "Pa", "\"pascal\""),
+            (Unit::Hertz, "Hz", "\"hertz\""),
+            (Unit::NewtonMetre, "Nm", "\"newton_metre\""),
+        ];
+        for (unit, symbol, data) in written {
+            assert_eq!((unit.symbol(), serde_json::to_string(&unit).unwrap().as_str()), (symbol, data));
         }
     }
 }

@@ -29,12 +29,13 @@ pub(crate) fn var(v: &model::Var) -> Var {
 
 /// A variable over a finite type, starting with its first value.
 fn bounded(name: &str, ty: model::Type) -> Var {
-    let (lo, hi, is_bool) = match expr::ty(ty) {
-        Type::Int { lo, hi } => (lo, hi, false),
+    let (lo, hi, is_bool, enumeration) = match expr::ty(ty) {
+        Type::Int { lo, hi } => (lo, hi, false, None),
+        Type::Enum(e) => (0, e.values().len() as i64 - 1, false, Some(e)),
         // INVARIANT: the checker has ruled floats out.
-        Type::Bool | Type::Float(_) => (0, 1, true),
+        Type::Bool | Type::Float(_) => (0, 1, true, None),
     };
-    Var { name: name.to_owned(), lo, hi, init: lo, is_bool }
+    Var { name: name.to_owned(), lo, hi, init: lo, is_bool, enumeration }
 }
 
 pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Automaton {
@@ -338,7 +339,7 @@ impl Slots {
     fn forget(&self, chain: &Chain<'_>, lowered: &Automaton) -> Vec<Update> {
         let back = |own: u16| {
             let var = &lowered.vars[usize::from(own)];
-            let value = if var.is_bool { Expr::bool(var.init != 0) } else { Expr::int(var.init) };
+            let value = Expr::Const(var.value(var.init).unwrap_or(hrdsl_ir::Value::Int(var.init)));
             Update::Assign { slot: self.slot(Leaf::Own(own)), value }
         };
         let kept = |a: &After| if let After::Kept(own) = a { Some(*own) } else { None };

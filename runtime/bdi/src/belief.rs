@@ -104,7 +104,7 @@ pub(crate) fn typed(params: &[Param], mut args: Ground) -> Option<Ground> {
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::Unit;
+    use hrdsl_ir::{Enumeration, Symbol, Unit};
 
     use super::*;
 
@@ -165,5 +165,11 @@ mod tests {
         assert_eq!(typed(&params, args(Value::Int(2), Value::Int(5))), None);
         assert_eq!(typed(&params, args(Value::Bool(true), Value::Int(1))), None);
         assert_eq!(typed(&params, Ground::from_slice(&[Value::Int(1)])), None);
+        let hand = Type::Enum(Enumeration::intern("Hand", &["left", "right"]));
+        let params = [Param { name: "hand".into(), ty: hand }];
+        let arg = |name| Ground::from_slice(&[Value::Symbol(Symbol::intern(name))]);
+        assert_eq!(typed(&params, arg("left")), Some(arg("left")));
+        assert_eq!(typed(&params, arg("middle")), None);
+        assert_eq!(typed(&params, Ground::from_slice(&[Value::Int(0)])), None);
     }
 }

@@ -103,7 +103,7 @@ impl Search<'_> {
             Context::Test(expr) => match eval(expr, self.slots)? {
                 Value::Bool(true) => self.go_on(rest),
                 Value::Bool(false) => Ok(false),
-                Value::Int(_) | Value::Float(_) => Err(EvalError::Type),
+                Value::Int(_) | Value::Float(_) | Value::Symbol(_) => Err(EvalError::Type),
             },
         }
     }

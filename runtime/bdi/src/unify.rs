@@ -14,7 +14,8 @@ pub(crate) type Trail = Vec<u16>;
 pub(crate) fn same(a: Value, b: Value) -> bool {
     match (a, b) {
         (Value::Int(n), Value::Float(x)) | (Value::Float(x), Value::Int(n)) => n as f64 == x,
-        (Value::Bool(_) | Value::Int(_) | Value::Float(_), _) => a.key() == b.key(),
+        (Value::Symbol(a), Value::Symbol(b)) => a == b,
+        (Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_), _) => a.key() == b.key(),
     }
 }
 
@@ -116,7 +117,7 @@ pub(crate) fn first_match(
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::expr::BinaryOp;
+    use hrdsl_ir::{Symbol, expr::BinaryOp};
     use proptest::prelude::*;
 
     use super::*;
@@ -126,6 +127,7 @@ mod tests {
             any::<bool>().prop_map(Value::Bool),
             (-2i64..3).prop_map(Value::Int),
             (-2i8..3).prop_map(|n| Value::Float(f64::from(n) / 2.0)),
+            prop::sample::select(vec!["slow", "fast"]).prop_map(|s| Value::Symbol(Symbol::intern(s))),
         ]
     }
 

@@ -5,8 +5,9 @@ mod build;
 use build::*;
 use hrdsl_bdi::{Cause, Logged, Machine, Malformed, Status};
 use hrdsl_ir::{
-    EventPattern, Expr, Type, Unit, Value,
-    bdi::{AgentId, BeliefId, Context, StepKind, Term},
+    ArgPattern, Enumeration, EventPattern, Expr, Type, Unit, Value,
+    bdi::{AgentId, BeliefId, Context, Fact, StepKind, Term},
+    expr::BinaryOp,
     value::SECOND,
 };
 
@@ -534,6 +535,82 @@ fn an_integer_serves_where_a_float_is_due() {
     let mut m = s.machine();
     m.run(0, &mut vec![]);
     assert_eq!(m.beliefs().next().unwrap().args, [Value::Float(3.0)]);
+}
+
+// ── symbols ──
+
+fn pace() -> Type {
+    Type::Enum(Enumeration::intern("Pace", &["slow", "normal", "fast"]))
+}
+
+#[test]
+fn an_agent_believes_compares_and_says_symbols() {
+    let mut s = Scene::new();
+    let (likes, g) = (s.belief_of("likes", &[pace()]), s.goal("g", 0));
+    let (asked, say) = (s.event_of("asked", &[pace()]), s.event_of("say", &[pace()]));
+    // On what it likes it agrees; if asked for `normal`, it changes its mind; else it says what it likes.
+    s.plan(Perceived(asked), [v(0)], holds(likes, [v(0)]), [act(say, [x(0)])]);
+    let normal = Context::Test(op(BinaryOp::Eq, x(0), is("normal")));
+    let changes = [replace(likes, [x(0)]), query(likes, [v(1)]), act(say, [x(1)])];
+    s.plan(Perceived(asked), [v(0)], normal, changes);
+    let other = all([holds(likes, [v(1)]), Context::Test(op(BinaryOp::Ne, x(0), x(1)))]);
+    s.plan(Perceived(asked), [v(0)], other, [act(say, [x(1)])]);
+    s.plan(GoalAdded(g), [], holds(likes, [named("fast")]), []);
+    s.agent().initial_beliefs.push(Fact { belief: likes, args: vec![symbol("slow")] });
+    for (second, name) in [(1, "slow"), (2, "fast"), (3, "normal"), (4, "normal")] {
+        s.inputs.push((second * SECOND, asked, vec![symbol(name)]));
+    }
+    s.start(g, []);
+    s.tells(
+        "0 #1 failed !g: no plan is applicable
+         0 #1 dropped !g: no plan is applicable
+         1 #2 on asked(slow) by asked#1
+         1 do say slow
+         2 #3 on asked(fast) by asked#3
+         2 do say slow
+         3 #4 on asked(normal) by asked#2
+         3 do say normal
+         4 #5 on asked(normal) by asked#1
+         4 do say normal
+         Idle",
+    );
+    let mut m = s.machine();
+    m.run(0, &mut vec![]);
+    assert_eq!(m.beliefs().map(|f| f.args).collect::<Vec<_>>(), [[symbol("slow")]]);
+}
+
+#[test]
+fn a_wait_is_for_one_symbol() {
+    let mut s = Scene::new();
+    let (g, asked, say) = (s.goal("g", 0), s.event_of("asked", &[pace()]), s.event("say", 1));
+    let args = vec![ArgPattern::Is(symbol("fast"))];
+    let wait = StepKind::Await { events: vec![EventPattern { event: asked, args }], within: None };
+    s.plan(GoalAdded(g), [], TRUE, [wait, act(say, [i(1)])]);
+    s.inputs.push((SECOND, asked, vec![symbol("slow")]));
+    s.inputs.push((2 * SECOND, asked, vec![symbol("fast")]));
+    s.start(g, []);
+    s.tells(
+        "0 #1 +!g by g#1
+         2 do say 1
+         Idle",
+    );
+}
+
+#[test]
+fn symbols_of_another_enumeration_are_refused() {
+    let mut s = Scene::new();
+    let (likes, g) = (s.belief_of("likes", &[pace()]), s.goal("g", 0));
+    s.plan(GoalAdded(g), [], TRUE, [add(likes, [is("left")])]);
+    s.chosen = vec![Fact { belief: likes, args: vec![symbol("right")] }, fact(likes, [1])];
+    s.start(g, []);
+    s.tells(
+        "0 refused likes
+         0 refused likes
+         0 #1 +!g by g#1
+         0 #1 failed !g in g#1: value out of range
+         0 #1 dropped !g in g#1: value out of range
+         Idle",
+    );
 }
 
 // ── test goals ──

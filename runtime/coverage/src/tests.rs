@@ -1,7 +1,7 @@
 //! Tests of counting, sorting, merging, naming and assuming.
 
 use hrdsl_ir::{
-    ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Value,
+    ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Symbol, Value,
     coverage::{self as ir, Bin, Condition, Cross, CrossBin, Point, PointId},
     monitor::Assumption,
     world::SignalId,
@@ -92,6 +92,21 @@ fn events_are_counted_once_per_point() {
     assert_eq!(covered.numbers, [1, 2]);
     assert_eq!(covered.points, [vec![1], vec![1]]);
     assert_eq!(covered.crosses, [vec![2]]);
+}
+
+#[test]
+fn events_are_told_apart_by_symbols() {
+    let symbol = |name: &str| Value::Symbol(Symbol::intern(name));
+    let of = |name: &str| point(name, vec![pattern(DECIDED, &[ArgPattern::Is(symbol(name))])], Vec::new());
+    let declared = ir::Coverage { points: vec![of("slow"), of("fast")], crosses: Vec::new() };
+    let went = |time, name| {
+        let args = vec![symbol(name)];
+        Step { time, what: What::Event { event: EventId(DECIDED), args } }
+    };
+    let mut collector = Collector::new(&program(declared, Vec::new()));
+    let steps = vec![went(0, "fast"), went(1, "slow"), went(2, "fast"), went(3, "still")];
+    Trace { steps, end: 9 }.replay(&mut collector);
+    assert_eq!(collector.finish().numbers, [1, 2]);
 }
 
 #[test]

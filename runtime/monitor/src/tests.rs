@@ -1,7 +1,7 @@
 //! Unit tests of the checker on small automata built by hand.
 
 use hrdsl_ir::{
-    ActorId, ArgPattern, Event, EventId, Expr, Span, Type, Unit,
+    ActorId, ArgPattern, Event, EventId, Expr, Span, Symbol, Type, Unit,
     expr::BinaryOp,
     monitor::{Edge, Effect, Margin, Monitor, RequirementKind, State, StateId},
     world::Signal,
@@ -265,6 +265,24 @@ fn arguments_are_matched() {
     let edges = vec![edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger])];
     let yes_no = |b| Step { time: 0, what: What::Event { event: EventId(0), args: vec![Value::Bool(b)] } };
     let verdict = check(monitor(&[(false, None)], edges), vec![yes_no(true), yes_no(false)], 1);
+    assert_eq!(verdict.triggered, 1);
+}
+
+#[test]
+fn symbols_are_matched_and_guard() {
+    let symbol = |name: &str| Value::Symbol(Symbol::intern(name));
+    let pattern = EventPattern { event: EventId(0), args: vec![ArgPattern::Is(symbol("go"))] };
+    let is_fast = Expr::binary(BinaryOp::Eq, Expr::Var(0), Expr::Const(symbol("fast")));
+    let trigger = Edge { guard: Some(is_fast), ..edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger]) };
+    let said = |time, name| Step { time, what: What::Event { event: EventId(0), args: vec![symbol(name)] } };
+    let feed = |time, name| {
+        let value = symbol(name);
+        Step { time, what: What::Sample { signal: SignalId(0), value } }
+    };
+    // Only the one that is said while the signal is `fast` and says `go`.
+    let steps =
+        vec![said(0, "go"), feed(1, "slow"), said(2, "go"), feed(3, "fast"), said(4, "stop"), said(5, "go")];
+    let verdict = check(monitor(&[(false, None)], vec![trigger]), steps, 9);
     assert_eq!(verdict.triggered, 1);
 }
 

@@ -170,7 +170,7 @@ impl Sim {
     /// The value of a signal at the last physics step.
     ///
     /// Where its expression has no value (a division by zero, a signal that does not exist) it is `false`, the least
-    /// integer of its range, or not a number.
+    /// integer of its range, not a number, or the first symbol of its enumeration.
     #[must_use]
     pub fn read(&self, signal: SignalId) -> Value {
         match self.signals.get(usize::from(signal.0)) {

@@ -40,6 +40,7 @@ impl View<'_> {
             Type::Bool => Value::Bool(false),
             Type::Int { lo, .. } => Value::Int(lo),
             Type::Float(_) => Value::Float(f64::NAN),
+            Type::Enum(e) => e.values().first().map_or(Value::Float(f64::NAN), |s| Value::Symbol(*s)),
         })
     }
 

@@ -206,7 +206,7 @@ fn the_hand_near_the_closing_gripper_is_seen() {
 }
 
 #[test]
-fn an_expression_without_a_value_reads_as_not_a_number_or_false() {
+fn an_expression_without_a_value_reads_as_not_a_number_or_false_or_the_first_symbol() {
     let world = scene(None, false);
     let zero = Expr::binary(BinaryOp::Div, Expr::float(1.0), Expr::float(0.0));
     let number = Signal {
@@ -218,8 +218,15 @@ fn an_expression_without_a_value_reads_as_not_a_number_or_false() {
         recorded: true,
         origin: Span::default(),
     };
-    let truth = signal("t", Type::Bool, Vec::new(), le(zero, 1.0));
-    let sim = Sim::new(&world, &[number, truth]).unwrap();
+    let truth = signal("t", Type::Bool, Vec::new(), le(zero.clone(), 1.0));
+    let pace = Type::Enum(Enumeration::intern("Pace", &["slow", "fast"]));
+    let name = |s: &str| Box::new(Expr::Const(Value::Symbol(Symbol::intern(s))));
+    let choice = |yes: Expr| Expr::If(Box::new(yes), name("fast"), name("slow"));
+    let symbol = signal("s", pace, Vec::new(), choice(le(zero, 1.0)));
+    let known = signal("k", pace, Vec::new(), choice(Expr::bool(true)));
+    let sim = Sim::new(&world, &[number, truth, symbol, known]).unwrap();
     assert!(float(&sim, 0).is_nan());
     assert!(!boolean(&sim, 1));
+    assert_eq!(sim.read(SignalId(2)).to_string(), "slow");
+    assert_eq!(sim.read(SignalId(3)).to_string(), "fast");
 }

@@ -30,6 +30,10 @@ fn fault(program: &Program, a: &Automaton) -> Option<String> {
     if let Some(v) = program.shared.iter().chain(&a.vars).find(|v| !range_is_sound(v)) {
         return Some(format!("the range of `{}` does not hold its initial value", v.name));
     }
+    let selects = a.edges.iter().flat_map(|e| &e.selects);
+    if let Some(v) = program.shared.iter().chain(&a.vars).chain(selects).find(|v| !range_has_values(v)) {
+        return Some(format!("the range of `{}` is not that of its enumeration", v.name));
+    }
     if a.locations.iter().any(|l| l.invariant.iter().any(|c| !clocks_exist(a, c))) {
         return Some("an invariant has an unknown clock".into());
     }
@@ -52,6 +56,11 @@ fn fault(program: &Program, a: &Automaton) -> Option<String> {
 
 fn range_is_sound(v: &Var) -> bool {
     v.lo <= v.init && v.init <= v.hi
+}
+
+/// Whether the range is that of the enumeration's indices, if there is one: then no symbol can leave it.
+fn range_has_values(v: &Var) -> bool {
+    v.enumeration.is_none_or(|e| v.lo == 0 && i64::try_from(e.values().len()) == Ok(v.hi.saturating_add(1)))
 }
 
 fn clocks_exist(a: &Automaton, c: &ClockConstraint) -> bool {

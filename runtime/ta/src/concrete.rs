@@ -8,7 +8,7 @@ use std::fmt;
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
     expr::EvalError,
-    ta::{Automaton, ClockConstraint, ClockId, ClockOp, Edge, LocationId, LocationKind, Sync, Update},
+    ta::{Automaton, ClockConstraint, ClockId, ClockOp, Edge, LocationId, LocationKind, Sync, Update, Var},
 };
 
 use crate::{
@@ -142,26 +142,27 @@ impl<'p> Machine<'p> {
 
     fn eval(&self, m: &Move, e: &Expr) -> Result<Value, EvalError> {
         let own = &self.members[m.automaton].vars;
-        let value = |n: i64, is_bool: bool| if is_bool { Value::Bool(n != 0) } else { Value::Int(n) };
         e.eval(&|i| {
             let i = usize::from(i);
             if let Some(var) = self.program.shared.get(i) {
-                return Some(value(self.shared[i], var.is_bool));
+                return var.value(self.shared[i]);
             }
             let i = i - self.shared.len();
             match own.get(i) {
-                Some(var) => Some(value(self.own[m.automaton][i], var.is_bool)),
+                Some(var) => var.value(self.own[m.automaton][i]),
                 None => m.binders.get(i - own.len()).copied(),
             }
         })
     }
 
     /// The variable that a member's expressions call `slot`.
-    pub(crate) fn variable(&self, member: usize, slot: usize) -> Option<i64> {
-        match self.shared.get(slot) {
-            Some(n) => Some(*n),
-            None => self.own.get(member)?.get(slot - self.shared.len()).copied(),
+    pub(crate) fn variable(&self, member: usize, slot: usize) -> Option<Value> {
+        if let Some(var) = self.program.shared.get(slot) {
+            return var.value(self.shared[slot]);
         }
+        let own = slot - self.shared.len();
+        let n = *self.own.get(member)?.get(own)?;
+        self.members[member].vars[own].value(n)
     }
 
     fn names(&self, m: &Move) -> Box<EdgeName> {
@@ -216,31 +217,31 @@ impl fmt::Display for Mismatch {
 }
 
 /// The discrete state after a replay.
-pub(crate) struct Final {
+pub(crate) struct Final<'p> {
     locations: Vec<LocationId>,
-    /// Numbers and whether they are bools.
-    slots: Vec<(i64, bool)>,
+    /// Variables and the numbers that they keep.
+    slots: Vec<(&'p Var, i64)>,
     counters: Vec<i64>,
     /// No automaton is in a committed location.
     pub(crate) settled: bool,
 }
 
-impl Final {
+impl Final<'_> {
     /// Locations, variables, counters, in the search's order.
     pub(crate) fn numbers(&self) -> Vec<i64> {
         let locations = self.locations.iter().map(|l| i64::from(l.0));
-        locations.chain(self.slots.iter().map(|s| s.0)).chain(self.counters.iter().copied()).collect()
+        locations.chain(self.slots.iter().map(|s| s.1)).chain(self.counters.iter().copied()).collect()
     }
 }
 
-impl View for Final {
+impl View for Final<'_> {
     fn location(&self, automaton: usize) -> Option<LocationId> {
         self.locations.get(automaton).copied()
     }
 
     fn slot(&self, slot: u16) -> Option<Value> {
-        let (n, is_bool) = *self.slots.get(usize::from(slot))?;
-        Some(if is_bool { Value::Bool(n != 0) } else { Value::Int(n) })
+        let (var, n) = self.slots.get(usize::from(slot))?;
+        var.value(*n)
     }
 
     fn counter(&self, counter: usize) -> i64 {
@@ -249,13 +250,13 @@ impl View for Final {
 }
 
 /// Runs a witness and checks each rule of the semantics on the way.
-pub(crate) fn replay(
-    program: &Program,
-    automata: &[&Automaton],
+pub(crate) fn replay<'p>(
+    program: &'p Program,
+    automata: &[&'p Automaton],
     counters: &[Counter],
     limits: &[Limit],
     witness: &Witness,
-) -> Result<Final, Mismatch> {
+) -> Result<Final<'p>, Mismatch> {
     let mut machine = Machine::new(program, automata, witness.ticks);
     let mut counted = vec![0; counters.len()];
     let mut used = vec![0; limits.len()];
@@ -278,9 +279,10 @@ pub(crate) fn replay(
         }
     }
     let shared = program.shared.iter().zip(&machine.shared);
-    let own = automata.iter().zip(&machine.own).flat_map(|(a, own)| a.vars.iter().zip(own));
+    let own = automata.iter().zip(&machine.own);
+    let own = own.flat_map(|(a, own)| a.vars.iter().zip(own));
     Ok(Final {
-        slots: shared.chain(own).map(|(v, n)| (*n, v.is_bool)).collect(),
+        slots: shared.chain(own).map(|(v, n)| (v, *n)).collect(),
         counters: counted,
         settled: (0..automata.len()).all(|m| machine.kind(m) != LocationKind::Committed),
         locations: machine.location,

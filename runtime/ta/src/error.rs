@@ -1,7 +1,7 @@
 //! What can be wrong with a model, and how a search can fail.
 
 use hrdsl_ir::{
-    Span,
+    Span, Value,
     expr::EvalError,
     ta::{Automaton, Edge, LocationId},
 };
@@ -48,9 +48,9 @@ pub enum ModelError {
     /// An update leaves the range of a variable.
     #[error("{edge}: `{variable}` becomes {value}, outside {lo}..{hi}")]
     Range { edge: Box<EdgeName>, variable: String, value: i64, lo: i64, hi: i64 },
-    /// An argument of a sent event is outside the range of its parameter.
+    /// An argument of a sent event is outside the range of its parameter, or no value of its enumeration.
     #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
-    Argument { edge: Box<EdgeName>, event: String, parameter: String, value: i64 },
+    Argument { edge: Box<EdgeName>, event: String, parameter: String, value: Value },
     /// A player's invariant (or urgent location) lets no time pass, yet time passed: nothing it could do was enabled.
     #[error("automaton `{automaton}` may not stay in `{location}` and has no enabled edge")]
     Timelock { automaton: String, location: String },

@@ -247,9 +247,8 @@ impl<'p> Model<'p> {
     }
 
     /// A slot's number as the value that expressions see.
-    pub(crate) fn slot_value(&self, state: &[i64], slot: usize) -> Value {
-        let n = state[self.slot_at(slot)];
-        if self.slots[slot].is_bool { Value::Bool(n != 0) } else { Value::Int(n) }
+    pub(crate) fn slot_value(&self, state: &[i64], slot: usize) -> Option<Value> {
+        self.slots[slot].value(state[self.slot_at(slot)])
     }
 }
 

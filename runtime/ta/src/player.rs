@@ -57,9 +57,9 @@ impl<'p> Player<'p> {
         self.machine.location.first().copied()
     }
 
-    /// The number of a variable; slots count the shared variables, then the automaton's own.
+    /// The value of a variable; slots count the shared variables, then the automaton's own.
     #[must_use]
-    pub fn variable(&self, slot: u16) -> Option<i64> {
+    pub fn variable(&self, slot: u16) -> Option<Value> {
         self.machine.variable(0, usize::from(slot))
     }
 

@@ -354,7 +354,7 @@ impl View for StateView<'_, '_> {
 
     fn slot(&self, slot: u16) -> Option<Value> {
         let slot = usize::from(slot);
-        (slot < self.model.slots.len()).then(|| self.model.slot_value(self.state, slot))
+        if slot < self.model.slots.len() { self.model.slot_value(self.state, slot) } else { None }
     }
 
     fn counter(&self, counter: usize) -> i64 {

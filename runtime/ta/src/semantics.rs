@@ -60,9 +60,9 @@ pub(crate) fn choices(selects: &[Var]) -> Vec<Binders> {
     for s in selects {
         let mut longer = Vec::new();
         for chosen in &all {
-            for n in s.lo..=s.hi {
+            for value in (s.lo..=s.hi).filter_map(|n| s.value(n)) {
                 let mut next = chosen.clone();
-                next.push(if s.is_bool { Value::Bool(n != 0) } else { Value::Int(n) });
+                next.push(value);
                 longer.push(next);
             }
         }
@@ -323,7 +323,7 @@ impl Model<'_> {
         e.eval(&|i| {
             let i = usize::from(i);
             if i < known {
-                Some(self.slot_value(state, self.own_slot(step.automaton, i)))
+                self.slot_value(state, self.own_slot(step.automaton, i))
             } else {
                 step.binders.get(i - known).copied()
             }
@@ -347,26 +347,23 @@ impl Model<'_> {
 
 /// The number that a variable keeps for a value.
 pub(crate) fn stored(var: &Var, value: Value) -> Result<i64, EvalError> {
-    match value {
-        Value::Bool(b) if var.is_bool => Ok(i64::from(b)),
-        Value::Int(n) if !var.is_bool => Ok(n),
-        Value::Bool(_) | Value::Int(_) | Value::Float(_) => Err(EvalError::Type),
-    }
+    var.number(value).ok_or(EvalError::Type)
 }
 
 pub(crate) fn range_fault(edge: Box<EdgeName>, var: &Var, value: i64) -> ModelError {
     ModelError::Range { edge, variable: var.name.clone(), value, lo: var.lo, hi: var.hi }
 }
 
-/// The first argument outside its parameter's range, if any.
-pub(crate) fn argument_fault<'e>(event: &'e hrdsl_ir::Event, args: &[Value]) -> Option<(&'e str, i64)> {
+/// The first argument outside its parameter's range or enumeration, if any.
+pub(crate) fn argument_fault<'e>(event: &'e hrdsl_ir::Event, args: &[Value]) -> Option<(&'e str, Value)> {
     event.params.iter().zip(args).find_map(|(p, v)| match (p.ty, v) {
-        (Type::Int { lo, hi }, Value::Int(n)) if *n < lo || *n > hi => Some((p.name.as_str(), *n)),
-        (Type::Int { .. } | Type::Bool | Type::Float(_), _) => None,
+        (Type::Int { lo, hi }, Value::Int(n)) if *n < lo || *n > hi => Some((p.name.as_str(), *v)),
+        (Type::Enum(e), Value::Symbol(s)) if e.index_of(*s).is_none() => Some((p.name.as_str(), *v)),
+        (Type::Int { .. } | Type::Bool | Type::Float(_) | Type::Enum(_), _) => None,
     })
 }
 
-pub(crate) fn bad_argument(edge: Box<EdgeName>, event: &str, parameter: &str, value: i64) -> ModelError {
+pub(crate) fn bad_argument(edge: Box<EdgeName>, event: &str, parameter: &str, value: Value) -> ModelError {
     let (event, parameter) = (event.to_owned(), parameter.to_owned());
     ModelError::Argument { edge, event, parameter, value }
 }

@@ -42,8 +42,8 @@ pub struct WitnessStep {
     pub moves: Vec<Move>,
     /// Which automata changed their location: index in the network, from, to.
     pub locations: Vec<(usize, LocationId, LocationId)>,
-    /// Which variables changed: slot of the network, from, to (a bool: 0 or 1).
-    pub variables: Vec<(usize, i64, i64)>,
+    /// Which variables changed: slot of the network, from, to.
+    pub variables: Vec<(usize, Value, Value)>,
 }
 
 impl Witness {
@@ -156,7 +156,7 @@ fn believe(model: &Model, witness: &Witness, state: &[i64], goal: Option<&Goal>)
     }
 }
 
-fn meets(goal: &Goal, witness: &Witness, end: &Final) -> bool {
+fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> bool {
     match &goal.what {
         GoalKind::Edge { automaton, edge } => witness
             .steps
@@ -218,12 +218,15 @@ fn step(
     let changed = |i: &usize| before[*i] != after[*i];
     let locations = (0..model.members.len()).filter(changed);
     let slots = (0..model.slots.len()).filter(|&s| changed(&model.slot_at(s)));
+    let value = |state: &[i64], slot: usize| model.slot_value(state, slot);
     WitnessStep {
         time: 0,
         event,
         moves,
         locations: locations.map(|m| (m, location(before[m]), location(after[m]))).collect(),
-        variables: slots.map(|s| (s, before[model.slot_at(s)], after[model.slot_at(s)])).collect(),
+        variables: slots
+            .filter_map(|s| value(before, s).zip(value(after, s)).map(|(a, b)| (s, a, b)))
+            .collect(),
     }
 }
 

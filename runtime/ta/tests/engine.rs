@@ -4,9 +4,9 @@ mod common;
 
 use common::{add, automaton, bin, clock, edge, event, location, n, normal, program, shared, v, var};
 use hrdsl_ir::{
-    ArgPattern, EventId, EventPattern, Program, Type, Value,
+    ArgPattern, Enumeration, EventId, EventPattern, Expr, Program, Symbol, Type, Value,
     expr::BinaryOp,
-    ta::{ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg},
+    ta::{AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg},
     value::SECOND,
 };
 use hrdsl_ta::{
@@ -226,4 +226,128 @@ fn receivers_update_after_the_sender_in_order() {
     let report = search(&p, &[is(19), is(99)], &[], &[]).unwrap();
     reached(&report.goals[0]);
     assert_eq!(report.goals[1], Outcome::Unreachable);
+}
+
+fn pace() -> Enumeration {
+    Enumeration::intern("Pace", &["slow", "normal", "fast"])
+}
+
+fn symbol(name: &str) -> Value {
+    Value::Symbol(Symbol::intern(name))
+}
+
+fn is(name: &str) -> Expr {
+    Expr::Const(symbol(name))
+}
+
+fn over(name: &str, e: Enumeration, init: &str) -> hrdsl_ir::ta::Var {
+    let init = e.index_of(Symbol::intern(init)).unwrap() as i64;
+    hrdsl_ir::ta::Var { enumeration: Some(e), ..var(name, 0, e.values().len() as i64 - 1, init) }
+}
+
+/// A person asks for any pace but its last, once a second; a robot takes the pace asked for, but is never `fast` at once.
+/// The shared variable is what was asked for last.
+fn walkers() -> (Program, EventId, EventId) {
+    let mut p = program();
+    let ask = event(&mut p, "ask", &[Type::Enum(pace())]);
+    let halt = event(&mut p, "halt", &[Type::Enum(pace())]);
+    p.shared.push(over("last", pace(), "slow"));
+    let mut person = automaton("Person", &["x"]);
+    let l = location(&mut person, "asks", LocationKind::Normal, &[clock(0, ClockOp::Le, 1)]);
+    edge(l, l)
+        .clock(0, ClockOp::Ge, 1)
+        .select(over("want", pace(), "slow"))
+        .when(bin(BinaryOp::Ne, v(1), v(0)))
+        .send_args(ask, &[v(1)])
+        .set(0, v(1))
+        .reset(0)
+        .to(&mut person);
+    add(&mut p, person);
+    let mut robot = automaton("Robot", &[]);
+    robot.vars.push(over("feed", pace(), "slow"));
+    let l = normal(&mut robot, "walks");
+    let to = |name| ReceiveArg::Match(ArgPattern::Is(symbol(name)));
+    let step =
+        Expr::If(Box::new(bin(BinaryOp::Eq, v(1), is("slow"))), Box::new(is("normal")), Box::new(is("fast")));
+    edge(l, l).on_args(ask, &[to("fast")]).set(1, step).to(&mut robot);
+    let bound = bin(BinaryOp::Ne, v(2), is("fast"));
+    edge(l, l).on_args(ask, &[ReceiveArg::Bind]).when(bound).set(1, v(2)).to(&mut robot);
+    let still = location(&mut robot, "still", LocationKind::Normal, &[]);
+    edge(l, still).when(bin(BinaryOp::Eq, v(1), is("fast"))).send_args(halt, &[v(1)]).to(&mut robot);
+    add(&mut p, robot);
+    (p, ask, halt)
+}
+
+#[test]
+fn symbols_are_chosen_sent_received_and_reached() {
+    let (p, ask, halt) = walkers();
+    let fast = StateFormula::Data(bin(BinaryOp::Eq, v(1), is("fast")));
+    let both = bin(BinaryOp::And, bin(BinaryOp::Eq, v(0), is("fast")), bin(BinaryOp::Eq, v(1), is("slow")));
+    let goals = [condition(fast), condition(StateFormula::Data(both)), at(1, 1)];
+    let report = search(&p, &goals, &[], &[]).unwrap();
+    assert_eq!(slot_names(&p, &p.networks[0]), ["last", "Robot.feed"]);
+    // A witness is given only if the interpreter has replayed it.
+    let w = reached(&report.goals[0]);
+    let sent: Vec<_> = w.steps.iter().filter_map(|s| s.event.clone()).collect();
+    assert_eq!(sent, [(ask, vec![symbol("normal")]), (ask, vec![symbol("fast")])]);
+    let (normal, fast) = (symbol("normal"), symbol("fast"));
+    assert_eq!(w.steps[1].variables, [(0, normal, fast), (1, normal, fast)]);
+    let text = w.text(&p, &p.networks[0]);
+    assert!(text.contains("Robot.feed normal -> fast"), "{text}");
+    assert_eq!(report.goals[1], Outcome::Unreachable);
+    let last = reached(&report.goals[2]).steps.last().cloned().unwrap();
+    assert_eq!(last.event, Some((halt, vec![symbol("fast")])));
+    assert!(report.complete);
+}
+
+#[test]
+fn faults_with_symbols_are_said() {
+    let hand = || Enumeration::intern("Hand", &["left", "right", "both"]);
+    let fault = |change: &dyn Fn(&mut Program)| {
+        let (mut p, ..) = walkers();
+        change(&mut p);
+        match search(&p, &[at(1, 1)], &[], &[]) {
+            Err(Error::Model { error, .. }) => error.to_string(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let sent = fault(&|p| p.events[1].params[0].ty = Type::Enum(hand()));
+    assert_eq!(sent, "automaton `Robot`, edge walks -> still: argument `p` of `halt` is fast");
+    let other = fault(&|p| p.automata[1].edges[1].updates = edge_update(1, is("left")));
+    assert_eq!(other, "automaton `Robot`, edge walks -> walks: operand of the wrong type");
+    let range = "the range of `feed` is not that of its enumeration";
+    for (lo, hi) in [(0, 3), (0, 1), (-1, 2)] {
+        let found = fault(&|p| {
+            let feed = &mut p.automata[1].vars[0];
+            (feed.lo, feed.hi) = (lo, hi);
+        });
+        assert_eq!(found, format!("malformed automaton `Robot`: {range}"));
+    }
+}
+
+fn edge_update(slot: u16, value: Expr) -> Vec<hrdsl_ir::ta::Update> {
+    vec![hrdsl_ir::ta::Update::Assign { slot, value }]
+}
+
+#[test]
+fn a_player_hears_and_says_symbols() {
+    let (p, ask, halt) = walkers();
+    let mut player = hrdsl_ta::Player::new(&p, AutomatonId(1));
+    let mut out = Vec::new();
+    for (second, pace, feed) in [(1, "slow", "slow"), (2, "fast", "normal"), (3, "normal", "normal")] {
+        player.receive(ask, &[symbol(pace)], second * SECOND).unwrap();
+        player.run(second * SECOND, &mut out).unwrap();
+        assert_eq!((player.variable(1), out.len()), (Some(symbol(feed)), 0));
+    }
+    player.receive(ask, &[symbol("fast")], 4 * SECOND).unwrap();
+    player.run(4 * SECOND, &mut out).unwrap();
+    assert_eq!(out, [(halt, vec![symbol("fast")])]);
+    // What others do to shared variables, a player does not see.
+    assert_eq!((player.variable(0), player.variable(2)), (Some(symbol("slow")), None));
+    // The person asks by itself; the first select that the guard allows is not the pace of the start.
+    let mut person = hrdsl_ta::Player::new(&p, AutomatonId(0));
+    let mut asked = Vec::new();
+    person.run(0, &mut asked).unwrap();
+    person.run(SECOND, &mut asked).unwrap();
+    assert_eq!(asked, [(ask, vec![symbol("normal")])]);
 }

@@ -54,7 +54,7 @@ fn plays_as_early_as_the_model_lets_it() {
     let mut player = Player::new(&r.p, AutomatonId(0));
     assert_eq!(player.next_wake(), None);
     player.receive(r.request, &[Value::Int(2)], 3 * SECOND).unwrap();
-    assert_eq!((player.location(), player.variable(0)), (Some(LocationId(1)), Some(2)));
+    assert_eq!((player.location(), player.variable(0)), (Some(LocationId(1)), Some(Value::Int(2))));
     let offered = 5 * SECOND + 1;
     assert_eq!(player.next_wake(), Some(offered));
     assert_eq!(

@@ -213,6 +213,8 @@ fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, Problem> {
             Some(_) => None,
             None => json.as_f64().map(Value::Float),
         },
+        // Looked up, not interned: what a recording says must not stay in memory.
+        Type::Enum(e) => json.as_str().and_then(|name| e.symbol(name)).map(Value::Symbol),
     };
     value.filter(|v| ty.admits(*v)).ok_or_else(|| Problem::Type {
         of: of.to_owned(),
@@ -227,6 +229,7 @@ fn described(ty: Type) -> String {
         Type::Int { lo, hi } => format!("a whole number in {lo}..{hi}"),
         Type::Float(Unit::None) => "a number".to_owned(),
         Type::Float(unit) => format!("a number ({})", unit.symbol()),
+        Type::Enum(e) => format!("the name of a value of `{e}` ({})", e.listed()),
     }
 }
 

@@ -144,5 +144,6 @@ fn value(value: Value) -> String {
             None if x > 0.0 => "\"inf\"".to_owned(),
             None => "\"-inf\"".to_owned(),
         },
+        Value::Symbol(s) => text(s.name()),
     }
 }

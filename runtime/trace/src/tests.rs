@@ -1,7 +1,8 @@
 //! Tests of the recording format: what is written is read back, and what is wrong is said.
 
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, Expr, Nanos, Param, Program, Role, Span, Type, Unit, Value,
+    Actor, ActorId, Enumeration, Event, EventId, Expr, Nanos, Param, Program, Role, Span, Symbol, Type, Unit,
+    Value,
     world::{Signal, SignalId},
 };
 use proptest::prelude::*;
@@ -37,6 +38,15 @@ fn signal(name: &str, ty: Type) -> Signal {
     }
 }
 
+/// With names that look like other values.
+fn pace() -> Type {
+    Type::Enum(Enumeration::intern("Pace", &["slow", "fast", "nan", "true"]))
+}
+
+fn symbol(name: &str) -> Value {
+    Value::Symbol(Symbol::intern(name))
+}
+
 fn program() -> Program {
     let actor = |name: &str, role| Actor { name: name.to_owned(), role, origin: Span::default() };
     let sensed =
@@ -50,11 +60,13 @@ fn program() -> Program {
             event("decided", 1, &[("ready", Type::Bool)]),
             event("sensed", 0, &sensed),
             event("counted", 1, &any),
+            event("paced", 1, &[("pace", pace()), ("far", Type::Float(Unit::Metre))]),
         ],
         signals: vec![
             signal("gaze", Type::Bool),
             signal("distance(person.hand, \"λ\")", Type::Float(Unit::Metre)),
             signal("legs", Type::Int { lo: 0, hi: 4 }),
+            signal("pace", pace()),
         ],
         ..Program::default()
     }
@@ -203,6 +215,40 @@ fn floats_that_are_no_json_numbers_are_kept() {
 }
 
 #[test]
+fn symbols_are_names_and_read_by_their_type() {
+    let trace = Trace {
+        steps: vec![
+            happens(0, 4, vec![symbol("nan"), Value::Float(f64::NAN)]),
+            reads(1, 3, symbol("fast")),
+            reads(2, 3, symbol("true")),
+        ],
+        end: 2,
+    };
+    let text = record::write(&program(), &Header::default(), &trace);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[1], r#"{"t":0,"event":"paced","args":{"pace":"nan","far":"nan"}}"#);
+    assert_eq!(lines[2], r#"{"t":0.000000001,"signal":"pace","value":"fast"}"#);
+    let (_, read) = parse(&program(), &text).unwrap();
+    assert_eq!(format!("{read:?}"), format!("{trace:?}"));
+    assert!(print::line(&program(), &read.steps[0]).ends_with("paced(pace: nan, far: NaN m)"));
+    assert!(print::line(&program(), &read.steps[1]).ends_with("pace = fast"));
+}
+
+#[test]
+fn a_value_that_an_enumeration_lacks_is_refused_with_those_it_has() {
+    for wrong in ["\"quick\"", "\"Fast\"", "true", "1", "null"] {
+        let (line, says) = fault(&[HEADER, &format!(r#"{{"t":0,"signal":"pace","value":{wrong}}}"#)]);
+        let expected = "the name of a value of `Pace` (`slow`, `fast`, `nan`, `true`)";
+        let expected = match wrong {
+            // Taken for a value that is left out.
+            "null" => "the sample lacks its `value`".to_owned(),
+            wrong => format!("`pace` has to be {expected}, not {wrong}"),
+        };
+        assert_eq!((line, says), (2, expected));
+    }
+}
+
+#[test]
 fn people_see_aligned_lines() {
     let shown = |step| print::line(&program(), &step);
     let decided = happens(12_500_000_000, 1, vec![Value::Bool(true)]);
@@ -267,6 +313,7 @@ fn values(ty: Type) -> BoxedStrategy<Value> {
         Type::Bool => any::<bool>().prop_map(Value::Bool).boxed(),
         Type::Int { lo, hi } => (lo..=hi).prop_map(Value::Int).boxed(),
         Type::Float(_) => floats().prop_map(Value::Float).boxed(),
+        Type::Enum(e) => prop::sample::select(e.values()).prop_map(Value::Symbol).boxed(),
     }
 }
 

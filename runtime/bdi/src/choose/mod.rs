@@ -146,6 +146,7 @@ fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
         let size = match param.ty {
             Type::Bool => 2,
             Type::Int { lo, hi } => i128::from(hi) - i128::from(lo) + 1,
+            Type::Enum(e) => i128::try_from(e.values().len()).unwrap_or(i128::MAX),
             Type::Float(_) => return Err(ChooseError::Infinite { belief: name, param: param_name }),
         };
         if size <= 0 {
@@ -173,7 +174,7 @@ fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::{
-        ActorId, Param, Type, Unit,
+        ActorId, Enumeration, Param, Symbol, Type, Unit,
         bdi::{Agent, BeliefId},
     };
 
@@ -182,6 +183,10 @@ mod tests {
     fn belief(name: &str, params: &[(&str, Type)]) -> Belief {
         let params = params.iter().map(|(n, ty)| Param { name: (*n).into(), ty: *ty }).collect();
         Belief { name: name.into(), params, origin: Default::default() }
+    }
+
+    fn pace() -> Type {
+        Type::Enum(Enumeration::intern("Pace", &["slow", "fast", "crawl"]))
     }
 
     fn program() -> Program {
@@ -197,6 +202,8 @@ mod tests {
                 belief("near", &[("by", Type::Float(Unit::Metre))]),
                 belief("huge", &[("n", Type::Int { lo: i64::MIN, hi: i64::MAX })]),
                 belief("void", &[("n", Type::Int { lo: 1, hi: 0 })]),
+                belief("prefers", &[("pace", pace()), ("gaze", Type::Bool)]),
+                belief("nameless", &[("n", Type::Enum(Enumeration::intern("Nothing", &[])))]),
             ],
             goals: vec![],
             initial_beliefs: vec![],
@@ -246,6 +253,18 @@ mod tests {
     }
 
     #[test]
+    fn symbols_are_chosen_in_the_order_of_their_declaration() {
+        let found = factors(&program(), &[choose(7, ChoiceKind::OnePer(0))]).unwrap();
+        let names: Vec<&str> = found.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(names, ["prefers(pace = slow)", "prefers(pace = fast)", "prefers(pace = crawl)"]);
+        assert_eq!(texts(&found[2]), ["prefers(crawl, false)", "prefers(crawl, true)"]);
+        let crawl = Value::Symbol(Symbol::intern("crawl"));
+        assert_eq!(found[2].alternatives[1].facts[0].args, [crawl, Value::Bool(true)]);
+        let one = factors(&program(), &[choose(7, ChoiceKind::One)]).unwrap();
+        assert_eq!(texts(&one[0])[1..3], ["prefers(slow, true)", "prefers(fast, false)"]);
+    }
+
+    #[test]
     fn any_is_a_factor_for_each_instance() {
         let found = factors(&program(), &[choose(1, ChoiceKind::Any)]).unwrap();
         assert_eq!(found.len(), 4);
@@ -275,6 +294,10 @@ mod tests {
         assert_eq!(
             refused(choose(6, ChoiceKind::One)),
             ChooseError::Empty { belief: belief("void"), param: param("n") }
+        );
+        assert_eq!(
+            refused(choose(8, ChoiceKind::One)),
+            ChooseError::Empty { belief: belief("nameless"), param: param("n") }
         );
     }
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use hrdsl_bdi::{Action, ActionToken, Machine, Status};
 use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span, Type,
-    Value,
+    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span,
+    Symbol, Type, Value,
     bdi::{
         Agent, AgentId, Belief, BeliefId, Context, Fact, Goal, GoalId, Plan, Step, StepKind, Term, Trigger,
         TriggerOn,
@@ -31,6 +31,16 @@ pub fn n(value: i64) -> Term {
 }
 pub fn i(value: i64) -> Expr {
     Expr::int(value)
+}
+/// A symbol as a value, as a term, and as an expression.
+pub fn symbol(name: &str) -> Value {
+    Value::Symbol(Symbol::intern(name))
+}
+pub fn named(name: &str) -> Term {
+    Term::Expr(is(name))
+}
+pub fn is(name: &str) -> Expr {
+    Expr::Const(symbol(name))
 }
 pub fn op(op: BinaryOp, a: Expr, b: Expr) -> Expr {
     Expr::binary(op, a, b)
@@ -89,7 +99,7 @@ pub struct Scene {
     pub chosen: Vec<Fact>,
     /// How long stimuli hold; others are done at once.
     holds: BTreeMap<EventId, Nanos>,
-    inputs: Vec<(Nanos, EventId, Vec<Value>)>,
+    pub inputs: Vec<(Nanos, EventId, Vec<Value>)>,
     pub cycle_limit: u64,
 }
 
@@ -134,10 +144,13 @@ impl Scene {
     }
 
     pub fn event(&mut self, name: &str, arity: usize) -> EventId {
-        let param = Param { name: "p".into(), ty: Type::Int { lo: -999_999, hi: 999_999 } };
+        self.event_of(name, &vec![Type::Int { lo: -999_999, hi: 999_999 }; arity])
+    }
+
+    pub fn event_of(&mut self, name: &str, types: &[Type]) -> EventId {
         self.program.events.push(Event {
             name: name.into(),
-            params: vec![param; arity],
+            params: types.iter().map(|ty| Param { name: "p".into(), ty: *ty }).collect(),
             from: ActorId(0),
             to: vec![],
             stimulus: None,

@@ -29,7 +29,7 @@ pub fn shared(p: &mut Program, name: &str, lo: i64, hi: i64, init: i64) -> u16 {
 }
 
 pub fn var(name: &str, lo: i64, hi: i64, init: i64) -> Var {
-    Var { name: name.into(), lo, hi, init, is_bool: false }
+    Var { name: name.into(), lo, hi, init, is_bool: false, enumeration: None }
 }
 
 pub fn event(p: &mut Program, name: &str, params: &[Type]) -> EventId {

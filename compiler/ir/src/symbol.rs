@@ -1,0 +1,313 @@
+//! Symbols, the values of enumerations: names kept once in a table of the process, so that a value is as small as a number.
+//!
+//! The table only grows. It holds each distinct name that a program declares; whoever reads names from elsewhere (a
+//! recording, the robot's code) looks them up in the [`Enumeration`] that is due, and does not intern them.
+
+use std::{
+    cmp::Ordering,
+    collections::BTreeMap,
+    fmt,
+    hash::{Hash, Hasher},
+    sync::{Mutex, PoisonError},
+};
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A name kept for as long as the process lives.
+struct Entry {
+    name: Box<str>,
+    hash: u64,
+}
+
+struct EnumEntry {
+    name: Box<str>,
+    values: Box<[Symbol]>,
+}
+
+static SYMBOLS: Mutex<BTreeMap<&'static str, Symbol>> = Mutex::new(BTreeMap::new());
+static ENUMERATIONS: Mutex<BTreeMap<(String, Vec<Symbol>), Enumeration>> = Mutex::new(BTreeMap::new());
+
+/// A value of an enumeration: a name. Symbols of the same name are equal, whatever enumeration they come from, and are
+/// ordered by name.
+#[derive(Clone, Copy)]
+pub struct Symbol(&'static Entry);
+
+impl Symbol {
+    /// The symbol of this name.
+    #[must_use]
+    pub fn intern(name: &str) -> Self {
+        let mut table = SYMBOLS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = table.get(name) {
+            return *known;
+        }
+        let entry: &'static Entry = Box::leak(Box::new(Entry { name: name.into(), hash: hash(name) }));
+        table.insert(&entry.name, Symbol(entry));
+        Symbol(entry)
+    }
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        &self.0.name
+    }
+
+    /// A number that depends on the name only: the same in every process and on every machine.
+    pub(crate) fn number(self) -> u64 {
+        self.0.hash
+    }
+}
+
+/// FNV-1a. Not `std`'s hash, which may change from version to version.
+fn hash(name: &str) -> u64 {
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+impl PartialEq for Symbol {
+    fn eq(&self, other: &Self) -> bool {
+        // The table makes most comparisons one of addresses.
+        std::ptr::eq(self.0, other.0) || self.name() == other.name()
+    }
+}
+
+impl Eq for Symbol {}
+
+impl Ord for Symbol {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.name().cmp(other.name())
+    }
+}
+
+impl PartialOrd for Symbol {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Hash for Symbol {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name().hash(state);
+    }
+}
+
+impl fmt::Debug for Symbol {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl fmt::Display for Symbol {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl Serialize for Symbol {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Symbol {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer).map(|name| Self::intern(&name))
+    }
+}
+
+/// A declared enumeration: its name, and its symbols in the order of the declaration.
+#[derive(Clone, Copy)]
+pub struct Enumeration(&'static EnumEntry);
+
+impl Enumeration {
+    /// The enumeration of this name and these values.
+    ///
+    /// Of equal values the first stands; the checker refuses such a declaration.
+    #[must_use]
+    pub fn intern(name: &str, values: &[&str]) -> Self {
+        Self::of(name, values.iter().map(|v| Symbol::intern(v)))
+    }
+
+    fn of(name: &str, values: impl Iterator<Item = Symbol>) -> Self {
+        let mut distinct: Vec<Symbol> = Vec::new();
+        for value in values {
+            if !distinct.contains(&value) {
+                distinct.push(value);
+            }
+        }
+        let mut table = ENUMERATIONS.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = |(name, values): &(String, Vec<Symbol>)| {
+            let (name, values) = (name.as_str().into(), values.as_slice().into());
+            Enumeration(Box::leak(Box::new(EnumEntry { name, values })))
+        };
+        *table.entry((name.to_owned(), distinct)).or_insert_with_key(make)
+    }
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        &self.0.name
+    }
+
+    /// The symbols, in the order of the declaration.
+    #[must_use]
+    pub fn values(self) -> &'static [Symbol] {
+        &self.0.values
+    }
+
+    /// The place of a symbol among the values.
+    #[must_use]
+    pub fn index_of(self, symbol: Symbol) -> Option<usize> {
+        self.values().iter().position(|v| *v == symbol)
+    }
+
+    /// The value of this name.
+    #[must_use]
+    pub fn symbol(self, name: &str) -> Option<Symbol> {
+        self.values().iter().copied().find(|v| v.name() == name)
+    }
+
+    /// The values as a message lists them: `` `slow`, `fast` ``.
+    #[must_use]
+    pub fn listed(self) -> String {
+        let names: Vec<String> = self.values().iter().map(|v| format!("`{v}`")).collect();
+        names.join(", ")
+    }
+}
+
+impl PartialEq for Enumeration {
+    fn eq(&self, other: &Self) -> bool {
+        let same = || self.name() == other.name() && self.values() == other.values();
+        std::ptr::eq(self.0, other.0) || same()
+    }
+}
+
+impl Eq for Enumeration {}
+
+impl fmt::Debug for Enumeration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ", self.name())?;
+        f.debug_set().entries(self.values()).finish()
+    }
+}
+
+impl fmt::Display for Enumeration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// How an enumeration is written as data.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Enumeration")]
+struct Written {
+    name: String,
+    values: Vec<Symbol>,
+}
+
+impl Serialize for Enumeration {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Written { name: self.name().to_owned(), values: self.values().to_vec() }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Enumeration {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Written::deserialize(deserializer).map(|w| Self::of(&w.name, w.values.into_iter()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Type, Value};
+
+    #[test]
+    fn values_stay_small() {
+        assert_eq!(size_of::<Value>(), 16);
+        fn copies<T: Copy>() {}
+        copies::<Value>();
+        copies::<Type>();
+    }
+
+    #[test]
+    fn a_name_is_kept_once() {
+        let (a, b) = (Symbol::intern("kept_once"), Symbol::intern("kept_once"));
+        assert!(std::ptr::eq(a.0, b.0));
+        assert_ne!(a, Symbol::intern("kept_twice"));
+        assert_eq!((format!("{a}"), format!("{a:?}")), ("kept_once".into(), "kept_once".into()));
+    }
+
+    #[test]
+    fn entries_of_the_same_name_are_equal() {
+        let entry: &'static Entry = Box::leak(Box::new(Entry { name: "same".into(), hash: hash("same") }));
+        assert_eq!(Symbol(entry), Symbol::intern("same"));
+        let values = vec![Symbol(entry)].into();
+        let made = Enumeration(Box::leak(Box::new(EnumEntry { name: "Same".into(), values })));
+        assert_eq!(made, Enumeration::intern("Same", &["same"]));
+    }
+
+    #[test]
+    fn an_enumeration_keeps_its_order() {
+        let pace = Enumeration::intern("Pace", &["slow", "normal", "fast"]);
+        let names: Vec<&str> = pace.values().iter().map(|v| v.name()).collect();
+        assert_eq!((pace.name(), names), ("Pace", vec!["slow", "normal", "fast"]));
+        assert_eq!(pace.index_of(Symbol::intern("fast")), Some(2));
+        assert_eq!(pace.index_of(Symbol::intern("stopped")), None);
+        assert_eq!(pace.symbol("normal"), Some(Symbol::intern("normal")));
+        assert_eq!(pace.symbol("Normal"), None);
+        assert_eq!(pace.listed(), "`slow`, `normal`, `fast`");
+        assert_eq!(format!("{pace:?}"), "Pace {slow, normal, fast}");
+        assert_ne!(pace, Enumeration::intern("Pace", &["slow", "fast"]));
+        assert_ne!(pace, Enumeration::intern("Speed", &["slow", "normal", "fast"]));
+        assert_eq!(Enumeration::intern("Twice", &["a", "b", "a"]).values().len(), 2);
+    }
+
+    #[test]
+    fn an_enumeration_is_written_with_its_values() {
+        let ty = Type::Enum(Enumeration::intern("Hand", &["left", "right"]));
+        let text = serde_json::to_string(&ty).unwrap();
+        assert_eq!(text, r#"{"enum":{"name":"Hand","values":["left","right"]}}"#);
+        assert_eq!(serde_json::from_str::<Type>(&text).unwrap(), ty);
+    }
+
+    /// The numbers are part of what makes a run reproducible: they must not change.
+    #[test]
+    fn keys_depend_on_the_name_only() {
+        assert_eq!(Value::Symbol(Symbol::intern("")).key(), (3, 0xcbf2_9ce4_8422_2325));
+        assert_eq!(Value::Symbol(Symbol::intern("a")).key(), (3, 0xaf63_dc4c_8601_ec8c));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_symbol_is_its_name(a in "\\PC{0,12}", b in "[ab]{0,3}", c in "[ab]{0,3}") {
+            prop_assert_eq!(Symbol::intern(&a).name(), a.as_str());
+            let (x, y) = (Symbol::intern(&b), Symbol::intern(&c));
+            prop_assert_eq!(x == y, b == c);
+            prop_assert_eq!(x.cmp(&y), b.cmp(&c));
+            prop_assert_eq!(Value::Symbol(x).key() == Value::Symbol(y).key(), b == c);
+        }
+
+        #[test]
+        fn values_are_read_back(name in "\\PC{0,12}", b in any::<bool>(), n in any::<i64>(), x in -1e300f64..1e300) {
+            for value in [Value::Symbol(Symbol::intern(&name)), Value::Bool(b), Value::Int(n), Value::Float(x)] {
+                let text = serde_json::to_string(&value).unwrap();
+                let read: Value = serde_json::from_str(&text).unwrap();
+                prop_assert_eq!(read.key(), value.key(), "{}", text);
+            }
+        }
+
+        #[test]
+        fn enumerations_are_read_back(name in "[A-Z][a-z]{0,2}", values in prop::collection::vec("[a-d]{1,2}", 0..6)) {
+            let values: Vec<&str> = values.iter().map(String::as_str).collect();
+            let made = Enumeration::intern(&name, &values);
+            let text = serde_json::to_string(&made).unwrap();
+            prop_assert_eq!(serde_json::from_str::<Enumeration>(&text).unwrap(), made);
+            for (i, value) in made.values().iter().enumerate() {
+                prop_assert_eq!(made.index_of(*value), Some(i));
+                prop_assert_eq!(made.symbol(value.name()), Some(*value));
+                prop_assert!(Type::Enum(made).admits(Value::Symbol(*value)));
+            }
+        }
+    }
+}
