@@ -2,13 +2,14 @@
 //!
 //! # Steps
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
-//! 2. [`modules::load`]: the standard modules that are used, and those that they use
+//! 2. [`modules::load`]: the modules that are used, and those that they use
 //! 3. [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
-//! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant
+//! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant; `allow` takes away what is
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!
 //! [`compile`] does them all.
 
+mod allow;
 pub mod lower;
 pub mod modules;
 
@@ -16,6 +17,8 @@ use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
 use hrdsl_syntax::ast;
+
+pub use modules::{Loader, NoFiles, Source};
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +30,7 @@ pub struct Input<'a> {
 /// What became of a scenario and its tests.
 #[derive(Clone, Debug)]
 pub struct Compilation {
-    /// The scenario (always [`FileId`] 0), the files of tests, then the modules.
+    /// The scenario or module (always [`FileId`] 0), the files of tests, then the modules that are used.
     pub files: Files,
     /// By [`FileId`].
     pub ast: Vec<ast::File>,
@@ -45,11 +48,23 @@ impl Compilation {
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(Diagnostic::is_error)
     }
+
+    /// Whether the first file is a module, which is checked by itself and has nothing to run.
+    #[must_use]
+    pub fn is_module(&self) -> bool {
+        modules::is_module(&self.ast[0])
+    }
 }
 
-/// Compiles a scenario with the tests that belong to it.
+/// Compiles a scenario with the tests that belong to it; it can use modules of the library.
 #[must_use]
 pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
+    compile_with(scenario, tests, &NoFiles)
+}
+
+/// Compiles a scenario, or a module by itself; `loader` reads the files that it uses.
+#[must_use]
+pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loader) -> Compilation {
     let mut files = Files::default();
     let mut diagnostics = Vec::new();
     let mut ast = Vec::new();
@@ -60,16 +75,20 @@ pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
         diagnostics.extend(issues);
     }
     let first_module = ast.len();
-    modules::load(&mut files, &mut ast, &mut diagnostics);
+    modules::load(&mut files, &mut ast, &mut diagnostics, loader);
 
     let tests: Vec<&ast::File> = ast[1..first_module].iter().collect();
     let used: Vec<&ast::File> = ast[first_module..].iter().collect();
-    diagnostics.extend(unnamed(&ast[0], &diagnostics));
+    let alone = modules::is_module(&ast[0]);
+    if !alone {
+        diagnostics.extend(unnamed(&ast[0], &diagnostics));
+    }
     let (resolved, issues) = hrdsl_model::resolve(&ast[0], &used, &tests);
     diagnostics.extend(issues);
-    if !diagnostics.iter().any(Diagnostic::is_error) {
+    if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));
     }
+    allow::apply(&ast, &mut diagnostics);
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));

@@ -1,36 +1,156 @@
-//! `use`: the standard modules that a scenario needs, each once, in the order in which they are first used.
+//! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
-use hrdsl_source::{Code, Diagnostic, Files};
-use hrdsl_syntax::ast::{self, ItemKind};
+use hrdsl_source::{Code, Diagnostic, Files, Span};
+use hrdsl_syntax::ast::{self, ItemKind, Module};
+
+/// The most modules that one scenario uses, its modules' modules included.
+const MAX_MODULES: usize = 1000;
+
+/// The text of a file that `use "…"` names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// As it is to be shown; two of the same name are one module.
+    pub name: String,
+    pub text: String,
+}
+
+/// Reads the files that are used; the compiler itself touches none.
+pub trait Loader {
+    /// The file that `path` means in the file called `from`.
+    ///
+    /// # Errors
+    /// Why it cannot be read, as the end of a sentence: "there is no such file".
+    fn load(&self, from: &str, path: &str) -> Result<Source, String>;
+}
+
+/// Where there are no files: only modules of the library can be used.
+pub struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, _from: &str, _path: &str) -> Result<Source, String> {
+        Err("there are no files here".to_owned())
+    }
+}
 
 /// Adds the modules used by the files so far, and by modules.
-pub fn load(files: &mut Files, ast: &mut Vec<ast::File>, diagnostics: &mut Vec<Diagnostic>) {
-    let mut loaded: Vec<String> = Vec::new();
+pub fn load(
+    files: &mut Files,
+    ast: &mut Vec<ast::File>,
+    diagnostics: &mut Vec<Diagnostic>,
+    loader: &dyn Loader,
+) {
+    let mut known: Vec<String> = files.iter().map(|(_, f)| f.name.clone()).collect();
+    let first = ast.len();
     let mut next = 0;
     while next < ast.len() {
-        for path in uses(&ast[next]) {
-            let name = path.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
-            if loaded.contains(&name) {
+        for used in uses(&ast[next]) {
+            let from = known[next].clone();
+            let source = match find(&used, &from, loader) {
+                Ok(source) => source,
+                Err(issue) => {
+                    diagnostics.push(issue);
+                    continue;
+                }
+            };
+            if known.contains(&source.name) {
                 continue;
             }
-            let Some(text) = hrdsl_stdlib::module(&name) else {
-                diagnostics.push(unknown(&name, &path));
-                continue;
-            };
-            let id = files.add(name.clone(), text);
-            loaded.push(name);
-            let (file, issues) = hrdsl_syntax::parse(id, text);
-            ast.push(file);
+            if ast.len() - first >= MAX_MODULES {
+                let message = format!("more than {MAX_MODULES} modules are used");
+                diagnostics.push(Diagnostic::error(Code::TOO_DEEP, span_of(&used), message));
+                return;
+            }
+            let id = files.add(source.name.clone(), source.text.as_str());
+            known.push(source.name);
+            let (file, issues) = hrdsl_syntax::parse(id, &source.text);
             diagnostics.extend(issues);
+            diagnostics.extend(misplaced(&file));
+            ast.push(file);
         }
         next += 1;
     }
 }
 
-fn uses(file: &ast::File) -> Vec<ast::Path> {
-    let path =
-        |item: &ast::Item| if let ItemKind::Use(path) = &item.kind { Some(path.clone()) } else { None };
-    file.items.iter().filter_map(path).collect()
+/// Whether a file that stands alone is a module: it has no name, and nothing that only a scenario has.
+#[must_use]
+pub fn is_module(file: &ast::File) -> bool {
+    let of_scenario =
+        |item: &ast::Item| only_in_scenario(&item.kind).is_some() || item.kind == ItemKind::Error;
+    file.scenario.is_none() && !file.items.is_empty() && !file.items.iter().any(of_scenario)
+}
+
+/// What only a scenario can have.
+fn only_in_scenario(kind: &ItemKind) -> Option<&'static str> {
+    match kind {
+        ItemKind::World(_) => Some("a `world`"),
+        ItemKind::System(_) => Some("a `system`"),
+        ItemKind::Suite(_) => Some("a `suite`"),
+        ItemKind::Test(_) => Some("a `test`"),
+        ItemKind::Use(_)
+        | ItemKind::Allow(_)
+        | ItemKind::Enum { .. }
+        | ItemKind::Record { .. }
+        | ItemKind::Actor { .. }
+        | ItemKind::Const { .. }
+        | ItemKind::Event(_)
+        | ItemKind::Stimulus(_)
+        | ItemKind::Agent(_)
+        | ItemKind::Var(_)
+        | ItemKind::Automaton(_)
+        | ItemKind::Network { .. }
+        | ItemKind::Require(_)
+        | ItemKind::Assume(_)
+        | ItemKind::Cover(_)
+        | ItemKind::Cross(_)
+        | ItemKind::Part(_)
+        | ItemKind::Instance(_)
+        | ItemKind::Error => None,
+    }
+}
+
+/// HR0106
+fn misplaced(module: &ast::File) -> Vec<Diagnostic> {
+    let line = module.scenario.iter().map(|name| (name.span, "a `scenario` line"));
+    let items = module.items.iter().filter_map(|i| Some((i.span, only_in_scenario(&i.kind)?)));
+    let error = |(span, what): (Span, &str)| {
+        Diagnostic::error(
+            Code::MODULE_ITEM,
+            span,
+            format!("a module has no {}", what.trim_start_matches("a ")),
+        )
+        .here("this file is used as a module")
+        .help("move this to the scenario, or share a template that the scenario makes an instance of")
+    };
+    line.chain(items).map(error).collect()
+}
+
+fn find(used: &Module, from: &str, loader: &dyn Loader) -> Result<Source, Diagnostic> {
+    match used {
+        Module::Library(path) => {
+            let name = path.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
+            match hrdsl_stdlib::module(&name) {
+                Some(text) => Ok(Source { name, text: text.to_owned() }),
+                None => Err(unknown(&name, path)),
+            }
+        }
+        Module::File(path) => loader.load(from, &path.text).map_err(|why| {
+            let message = format!("cannot use `{}`: {why}", path.text);
+            Diagnostic::error(Code::UNKNOWN_MODULE, path.span, message)
+                .help("the path is relative to the file that uses it")
+        }),
+    }
+}
+
+fn uses(file: &ast::File) -> Vec<Module> {
+    let used = |i: &ast::Item| if let ItemKind::Use(used) = &i.kind { Some(used.clone()) } else { None };
+    file.items.iter().filter_map(used).collect()
+}
+
+fn span_of(used: &Module) -> Span {
+    match used {
+        Module::Library(path) => path.span,
+        Module::File(path) => path.span,
+    }
 }
 
 /// HR0104, at the first name that differs from those of the nearest module.

@@ -12,7 +12,6 @@ pub mod event;
 pub mod expr;
 pub mod monitor;
 pub mod suite;
-pub mod symbol;
 pub mod system;
 pub mod ta;
 pub mod test;
@@ -23,8 +22,7 @@ use serde::{Deserialize, Serialize};
 
 pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
 pub use expr::Expr;
-pub use hrdsl_source::Span;
-pub use symbol::{Enumeration, Symbol};
+pub use hrdsl_source::{Enumeration, Span, Symbol};
 pub use value::{Nanos, Type, Unit, Value};
 
 /// A whole scenario, ready to generate tests from and to run.

@@ -3,7 +3,7 @@
 //! It still has the language's own constructs (requirement patterns, stimuli on edges, parts' frames); lowering turns
 //! them into what the engines execute.
 
-use hrdsl_source::Span;
+use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::LocationKind;
 use serde::Serialize;
 
@@ -23,8 +23,6 @@ macro_rules! ids {
 ids! {
     /// Index into [`Scenario::actors`].
     ActorId,
-    /// Index into [`Scenario::enums`].
-    EnumId,
     /// Index into [`Scenario::events`].
     EventId,
     /// Index into [`Scenario::agents`].
@@ -97,8 +95,7 @@ pub struct Actor {
 /// An enumeration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Enum {
-    pub name: String,
-    pub values: Vec<String>,
+    pub of: Enumeration,
     pub span: Span,
 }
 

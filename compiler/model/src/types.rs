@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::EnumId;
+use hrdsl_source::Enumeration;
 
 /// A physical dimension: exponents of metre, kilogram, second and radian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -102,7 +102,7 @@ pub enum Type {
     /// A quantity, in SI units.
     Float(Dim),
     /// One of the values of an enumeration.
-    Enum(EnumId),
+    Enum(Enumeration),
 }
 
 /// A declared type, perhaps of several parts. Everything behind the checker knows the parts alone.
@@ -167,7 +167,7 @@ pub enum Kind {
     Bool,
     Int,
     Float(Dim),
-    Enum(EnumId),
+    Enum(Enumeration),
     /// Not known: a goal's argument, or an expression that already has a diagnostic. It fits everywhere.
     Unknown,
 }
@@ -204,7 +204,7 @@ impl fmt::Display for Kind {
             Kind::Bool => f.write_str("a bool"),
             Kind::Int => f.write_str("a whole number"),
             Kind::Float(dim) => dim.fmt(f),
-            Kind::Enum(_) => f.write_str("a value of an enumeration"),
+            Kind::Enum(of) => write!(f, "a value of `{of}`"),
             Kind::Unknown => f.write_str("a value"),
         }
     }

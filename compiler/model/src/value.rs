@@ -2,10 +2,11 @@
 
 use std::fmt;
 
+use hrdsl_source::Symbol;
 use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use serde::Serialize;
 
-use crate::{EnumId, Function};
+use crate::Function;
 
 /// A value of a scalar type; quantities in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -14,7 +15,7 @@ pub enum Value {
     Bool(bool),
     Int(i64),
     Float(f64),
-    Symbol { of: EnumId, index: u16 },
+    Symbol(Symbol),
 }
 
 /// Why a constant has no value.
@@ -43,7 +44,7 @@ impl Value {
         match self {
             Value::Int(n) => Some(n as f64),
             Value::Float(x) => Some(x),
-            Value::Bool(_) | Value::Symbol { .. } => None,
+            Value::Bool(_) | Value::Symbol(_) => None,
         }
     }
 }
@@ -54,7 +55,7 @@ impl fmt::Display for Value {
             Value::Bool(b) => write!(f, "{b}"),
             Value::Int(n) => write!(f, "{n}"),
             Value::Float(x) => write!(f, "{x}"),
-            Value::Symbol { of, index } => write!(f, "enum {} value {index}", of.0),
+            Value::Symbol(symbol) => write!(f, "{symbol}"),
         }
     }
 }
@@ -66,7 +67,7 @@ pub(crate) fn unary(op: UnaryOp, v: Value) -> Result<Value, FoldError> {
         (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
         (UnaryOp::Not, Value::Int(_) | Value::Float(_))
         | (UnaryOp::Neg, Value::Bool(_))
-        | (UnaryOp::Not | UnaryOp::Neg, Value::Symbol { .. }) => Err(FoldError::Type),
+        | (UnaryOp::Not | UnaryOp::Neg, Value::Symbol(_)) => Err(FoldError::Type),
     }
 }
 
@@ -74,7 +75,7 @@ pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldErro
     match (a, b) {
         (Value::Bool(a), Value::Bool(b)) => bools(op, a, b),
         (Value::Int(a), Value::Int(b)) => ints(op, a, b),
-        (Value::Symbol { .. }, Value::Symbol { .. }) => match op {
+        (Value::Symbol(_), Value::Symbol(_)) => match op {
             BinaryOp::Eq => Ok(Value::Bool(a == b)),
             BinaryOp::Ne => Ok(Value::Bool(a != b)),
             BinaryOp::Add
@@ -89,7 +90,7 @@ pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldErro
             | BinaryOp::And
             | BinaryOp::Or => Err(FoldError::Type),
         },
-        (Value::Bool(_) | Value::Symbol { .. }, _) | (_, Value::Bool(_) | Value::Symbol { .. }) => {
+        (Value::Bool(_) | Value::Symbol(_), _) | (_, Value::Bool(_) | Value::Symbol(_)) => {
             Err(FoldError::Type)
         }
         (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {

@@ -51,6 +51,8 @@ codes! {
     WRONG_KIND = 103 "a name of another kind than the place needs",
     UNKNOWN_MODULE = 104 "a module that does not exist",
     MISSING_DECLARATION = 105 "a declaration that the scenario needs",
+    MODULE_ITEM = 106 "a declaration that a module cannot have",
+    USELESS_ALLOW = 109 "an allowance for nothing",
     TYPE_MISMATCH = 201 "a value of the wrong type",
     UNKNOWN_UNIT = 202 "a unit that does not exist",
     UNIT_MISMATCH = 203 "a quantity of the wrong dimension",

@@ -4,8 +4,10 @@ mod codes;
 mod diagnostic;
 mod files;
 mod span;
+mod symbol;
 
 pub use codes::{Code, CodeInfo, REGISTRY};
 pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
 pub use span::{FileId, Span};
+pub use symbol::{Enumeration, Symbol};

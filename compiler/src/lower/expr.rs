@@ -9,6 +9,7 @@ pub(crate) fn value(v: model::Value) -> ir::Value {
         model::Value::Bool(b) => ir::Value::Bool(b),
         model::Value::Int(n) => ir::Value::Int(n),
         model::Value::Float(x) => ir::Value::Float(x),
+        model::Value::Symbol(symbol) => ir::Value::Symbol(symbol),
     }
 }
 
@@ -21,6 +22,7 @@ pub(crate) fn ty(ty: model::Type) -> ir::Type {
         model::Type::Bool => ir::Type::Bool,
         model::Type::Int { lo, hi } => ir::Type::Int { lo, hi },
         model::Type::Float(dim) => ir::Type::Float(unit(dim)),
+        model::Type::Enum(of) => ir::Type::Enum(of),
     }
 }
 
@@ -34,6 +36,11 @@ pub(crate) fn unit(dim: Dim) -> Unit {
         (Dim::FORCE, Unit::Newton),
         (Dim::SPEED, Unit::MetrePerSecond),
         (Dim::ANGULAR_SPEED, Unit::RadianPerSecond),
+        (Dim::ACCELERATION, Unit::MetrePerSecondSquared),
+        (Dim::ANGULAR_ACCELERATION, Unit::RadianPerSecondSquared),
+        (Dim::PRESSURE, Unit::Pascal),
+        (Dim::TORQUE, Unit::NewtonMetre),
+        (Dim::FREQUENCY, Unit::Hertz),
     ];
     units.into_iter().find(|(d, _)| *d == dim).map_or(Unit::None, |(_, unit)| unit)
 }
@@ -74,6 +81,7 @@ pub(crate) fn expr(e: &model::Expr, read: &mut dyn FnMut(Source) -> Expr) -> Exp
                 model::Function::Abs => ir::expr::Function::Abs,
                 model::Function::Min => ir::expr::Function::Min,
                 model::Function::Max => ir::expr::Function::Max,
+                model::Function::Norm => ir::expr::Function::Norm,
             };
             Expr::Call(f, args.iter().map(|a| expr(a, read)).collect())
         }

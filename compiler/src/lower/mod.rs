@@ -14,10 +14,10 @@ use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::Files;
 
-/// Lowers a scenario without errors. `files` gives the text of requirements and of the terms that they measure.
+/// Lowers a scenario without errors. `files` gives the text of requirements.
 #[must_use]
 pub fn lower(scenario: &Scenario, files: &Files) -> Program {
-    let mut signals = world::Signals::declared(scenario, files);
+    let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &mut signals));
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
     Program {

@@ -22,6 +22,10 @@ pub(crate) fn var(v: &model::Var) -> Var {
     let init = match v.init {
         model::Value::Bool(b) => i64::from(b),
         model::Value::Int(n) => n,
+        model::Value::Symbol(symbol) => match v.ty {
+            model::Type::Enum(of) => of.index_of(symbol).map_or(0, |i| i as i64),
+            model::Type::Bool | model::Type::Int { .. } | model::Type::Float(_) => 0,
+        },
         model::Value::Float(_) => 0,
     };
     Var { init, ..bounded(&v.name, v.ty) }

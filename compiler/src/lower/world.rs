@@ -9,7 +9,6 @@ use hrdsl_ir::{
     },
 };
 use hrdsl_model::{self as model, Leaf, world as from};
-use hrdsl_source::Files;
 
 use super::{
     expr::{self, Source},
@@ -166,14 +165,36 @@ fn type_of(t: Term) -> Type {
     }
 }
 
+/// A term as it is written in the scenario, with the full names of what it measures.
+fn written(term: model::Term, world: &from::World) -> String {
+    let body = |b: from::BodyRef| match b {
+        from::BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),
+        from::BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
+    };
+    let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
+    match term {
+        model::Term::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
+        model::Term::Range(a, b) => format!("range({}, {})", body(a), body(b)),
+        model::Term::Angle(a, b) => format!("angle({}, {})", body(a), body(b)),
+        model::Term::Visible(a, b) => format!("visible({}, {})", body(a), body(b)),
+        model::Term::Coordinate(b, axis) => {
+            format!("{}.{}", body(b), ["x", "y", "z"][usize::from(axis.min(2))])
+        }
+        model::Term::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
+        model::Term::HoldsAny(g) => format!("holds({})", gripper(g)),
+        model::Term::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
+        model::Term::Speed(b) => format!("speed({})", body(b)),
+    }
+}
+
 /// All signals: those declared, with their ids, then one for each other term that a requirement or rule reads.
 pub(crate) struct Signals<'a> {
     list: Vec<Signal>,
-    files: &'a Files,
+    world: Option<&'a from::World>,
 }
 
 impl<'a> Signals<'a> {
-    pub fn declared(scenario: &model::Scenario, files: &'a Files) -> Self {
+    pub fn declared(scenario: &'a model::Scenario) -> Self {
         let declared = scenario.world.as_ref().map_or(&[][..], |w| w.signals.as_slice());
         let signal = |s: &from::Signal| {
             let mut terms = Vec::new();
@@ -182,20 +203,21 @@ impl<'a> Signals<'a> {
             let (name, ty) = (s.name.clone(), expr::ty(s.ty));
             Signal { name, ty, to, terms, value, recorded: false, origin: s.span }
         };
-        Self { list: declared.iter().map(signal).collect(), files }
+        Self { list: declared.iter().map(signal).collect(), world: scenario.world.as_ref() }
     }
 
     pub fn into_list(self) -> Vec<Signal> {
         self.list
     }
 
-    /// The signal that measures just this term; a new one, named by its text, if there is none.
-    fn of_term(&mut self, term: Term, span: Span) -> usize {
+    /// The signal that measures just this term; a new one, named as the term is written, if there is none.
+    fn of_term(&mut self, measured: model::Term, span: Span) -> usize {
+        let term = term(measured);
         let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
         if let Some(at) = self.list.iter().position(is) {
             return at;
         }
-        let name = self.files.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+        let name = self.world.map_or_else(String::new, |world| written(measured, world));
         self.list.push(Signal {
             name,
             ty: type_of(term),
@@ -242,7 +264,7 @@ impl<'s, 'a> Reader<'s, 'a> {
     pub fn expr(&mut self, e: &model::Expr) -> Expr {
         expr::expr(e, &mut |source| {
             let at = match source {
-                Source::Term(t, e) => self.signals.of_term(term(t), e.span),
+                Source::Term(t, e) => self.signals.of_term(t, e.span),
                 Source::Leaf(Leaf::Signal(id)) => usize::from(id.0),
                 // INVARIANT: requirements and rules have no other variables.
                 Source::Leaf(Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_)) => return Expr::bool(false),

@@ -422,7 +422,7 @@ impl Checker<'_> {
     ) -> Expr {
         let Some(op) = op else { return self.expr_for(value, ty, env) };
         if !ty.kind().is_number() {
-            self.report(types::mismatch(Kind::Int, ty.kind(), None, target.span, &self.s.enums));
+            self.report(types::mismatch(Kind::Int, ty.kind(), None, target.span));
         }
         let by = self.expr_of(value, Kind::Int, env);
         let span = target.span.to(value.span);

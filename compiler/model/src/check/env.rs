@@ -114,7 +114,7 @@ impl Checker<'_> {
         let constant: Option<Span> = self.consts.get(name.text.as_str()).map(|c| c.name.span);
         let local = env.find(&name.text).map(|l| l.noun);
         let local = local.or_else(|| env.layout(&name.text).map(|_| Noun::Variable));
-        let value = self.values.get(name.text.as_str()).and_then(|of| of.first()).map(|(id, _)| *id);
+        let value = self.values.get(name.text.as_str()).and_then(|of| of.first()).copied();
         if let Some(local) = local {
             let issue = duplicate(local, &name.text, name.span, None);
             self.report(issue);
@@ -122,8 +122,8 @@ impl Checker<'_> {
             let issue = duplicate(Noun::Parameter, &name.text, name.span, None);
             self.report(issue);
         } else if let Some(of) = value {
-            let of = self.s.enums[usize::from(of.0)].span;
-            self.report(duplicate(Noun::EnumValue, &name.text, name.span, Some(of)));
+            let declared = self.s.enums.iter().find(|e| e.of == of).map(|e| e.span);
+            self.report(duplicate(Noun::EnumValue, &name.text, name.span, declared));
         } else if constant.is_some() {
             let issue = duplicate(Noun::Constant, &name.text, name.span, constant);
             self.report(issue);

@@ -1,11 +1,11 @@
 //! Expressions: types, dimensions, folding.
 
-use hrdsl_source::Span;
+use hrdsl_source::{Enumeration, Span, Symbol};
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
 
 use super::{Checker, ConstState, Env, given::Given, is_variable_name, item::Item, measure::text};
 use crate::{
-    Dim, EnumId, Expr, ExprKind, Function, Kind, Type, Unit, Value,
+    Dim, Expr, ExprKind, Function, Kind, Type, Unit, Value,
     noun::Noun,
     report::{agents::unbound, automata::clock_misused, names, types},
     value,
@@ -61,11 +61,10 @@ impl Checker<'_> {
     }
 
     /// A value of an enumeration by its bare name, where one of this enumeration is due.
-    fn symbol_of(&self, e: &ast::Expr, id: EnumId) -> Option<Expr> {
+    fn symbol_of(&self, e: &ast::Expr, of: Enumeration) -> Option<Expr> {
         let Syntax::Path(path) = &e.kind else { return None };
         let [name] = path.names.as_slice() else { return None };
-        let (_, index) = self.values.get(name.text.as_str())?.iter().find(|(of, _)| *of == id)?;
-        Some(symbol_value(id, *index, e.span))
+        of.symbol(&name.text).map(|symbol| symbol_value(of, symbol, e.span))
     }
 
     /// An expression that must be of this kind.
@@ -142,7 +141,7 @@ impl Checker<'_> {
             }
             (Kind::Float(Dim::NUMBER), Kind::Int) => as_float(e),
             (Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) | Kind::Unknown, _) => {
-                self.report(types::mismatch(want, e.ty, e.constant(), e.span, &self.s.enums));
+                self.report(types::mismatch(want, e.ty, e.constant(), e.span));
                 Expr::error(e.span)
             }
         }
@@ -176,7 +175,8 @@ impl Checker<'_> {
         }
         let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
         if let ([value], Some(of)) = (fields, self.enums.get(&first.text)) {
-            return Item::One(self.symbol_named(EnumId(of), value, path.span));
+            let of = self.s.enums[usize::from(of)].of;
+            return Item::One(self.symbol_named(of, value, path.span));
         }
         let Some(mut item) = self.named(first, env) else {
             let alone = fields.is_empty();
@@ -214,10 +214,12 @@ impl Checker<'_> {
             return Some(self.const_value(name));
         }
         match self.values.get(name.text.as_str()).map(Vec::as_slice) {
-            Some([(of, index)]) => return Some(Item::One(symbol_value(*of, *index, name.span))),
+            Some([of]) => {
+                let symbol = Symbol::intern(&name.text);
+                return Some(Item::One(symbol_value(*of, symbol, name.span)));
+            }
             Some(several) => {
-                let of: Vec<String> =
-                    several.iter().map(|(of, _)| self.s.enums[usize::from(of.0)].name.clone()).collect();
+                let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
                 self.report(names::ambiguous(&name.text, &of, name.span));
                 return Some(Item::error(name.span));
             }
@@ -235,12 +237,11 @@ impl Checker<'_> {
     }
 
     /// `Order.feed`
-    fn symbol_named(&mut self, of: EnumId, value: &Name, span: Span) -> Expr {
-        let values = self.s.enums[usize::from(of.0)].values.clone();
-        match values.iter().position(|v| *v == value.text) {
-            Some(index) => symbol_value(of, u16::try_from(index).unwrap_or(u16::MAX), span),
+    fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> Expr {
+        match of.symbol(&value.text) {
+            Some(symbol) => symbol_value(of, symbol, span),
             None => {
-                let near = values.iter().map(String::as_str);
+                let near = of.values().iter().map(|v| v.name());
                 self.report(names::unknown(Noun::EnumValue, &value.text, value.span, near));
                 Expr::error(span)
             }
@@ -319,7 +320,7 @@ impl Checker<'_> {
         for arg in &args {
             if !arg.ty.is_number() {
                 let want = Kind::Float(Dim::NUMBER);
-                self.report(types::mismatch(want, arg.ty, None, arg.span, &self.s.enums));
+                self.report(types::mismatch(want, arg.ty, None, arg.span));
                 return Item::error(span);
             }
         }
@@ -372,7 +373,7 @@ impl Checker<'_> {
         };
         if op == UnaryOp::Neg && !operand.ty.is_number() {
             let want = Kind::Float(Dim::NUMBER);
-            self.report(types::mismatch(want, operand.ty, None, operand.span, &self.s.enums));
+            self.report(types::mismatch(want, operand.ty, None, operand.span));
             return Item::error(span);
         }
         let ty = if op == UnaryOp::Not { Kind::Bool } else { operand.ty };
@@ -468,7 +469,7 @@ impl Checker<'_> {
 
     fn numbers(&mut self, op: BinaryOp, l: &Expr, r: &Expr) -> Option<()> {
         if !l.ty.is_number() || !r.ty.is_number() {
-            self.report(types::operands(symbol(op), (l.ty, l.span), (r.ty, r.span), &self.s.enums));
+            self.report(types::operands(symbol(op), (l.ty, l.span), (r.ty, r.span)));
             return None;
         }
         Some(())
@@ -485,7 +486,7 @@ impl Checker<'_> {
             (Kind::Unknown, other) | (other, Kind::Unknown) => Some(other),
             (a, b) if a == b => Some(a),
             (Kind::Bool | Kind::Enum(_), _) | (_, Kind::Bool | Kind::Enum(_)) => {
-                self.report(types::operands(op, (l.0, l.1), (r.0, r.1), &self.s.enums));
+                self.report(types::operands(op, (l.0, l.1), (r.0, r.1)));
                 None
             }
             (a, b) if a.dim() == b.dim() => Some(Kind::Float(Dim::NUMBER)),
@@ -535,8 +536,8 @@ impl Checker<'_> {
     }
 }
 
-fn symbol_value(of: EnumId, index: u16, span: Span) -> Expr {
-    Expr::value(Value::Symbol { of, index }, Kind::Enum(of), span)
+fn symbol_value(of: Enumeration, symbol: Symbol, span: Span) -> Expr {
+    Expr::value(Value::Symbol(symbol), Kind::Enum(of), span)
 }
 
 /// A whole number where a float is due.

@@ -270,7 +270,7 @@ impl<'a> Checker<'a> {
                 Type::Bool => Value::Bool(true),
                 Type::Int { hi, .. } => Value::Int(hi),
                 Type::Float(_) => Value::Float(1.0),
-                Type::Enum(of) => Value::Symbol { of, index: 0 },
+                Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
             };
             Item::One(Expr::value(value, ty.kind(), span))
         };

@@ -101,7 +101,7 @@ impl Checker<'_> {
     /// What it is, as a message says it.
     pub(super) fn shown(&self, item: &Item) -> String {
         match item {
-            Item::One(e) => types::shown(e.ty, &self.s.enums),
+            Item::One(e) => e.ty.to_string(),
             Item::Record(id, _, _) => format!("a `{}`", self.records[usize::from(*id)].name.text),
             Item::Array(parts, _) => format!("an array of {}", parts.len()),
             Item::Tuple(parts, _) => format!("a tuple of {}", parts.len()),
@@ -111,7 +111,7 @@ impl Checker<'_> {
     /// What is due, as a message says it.
     pub(super) fn shown_layout(&self, layout: &Layout) -> String {
         match layout {
-            Layout::Scalar(ty) => types::shown(ty.kind(), &self.s.enums),
+            Layout::Scalar(ty) => ty.kind().to_string(),
             Layout::Record(id) => format!("a `{}`", self.records[usize::from(*id)].name.text),
             Layout::Array(_, n) => format!("an array of {n}"),
         }
@@ -507,7 +507,7 @@ impl Checker<'_> {
         for part in parts {
             let want = if kind == Kind::Int { Kind::Float(Dim::NUMBER) } else { kind };
             if !part.ty.is_number() {
-                self.report(types::mismatch(want, part.ty, None, part.span, &self.s.enums));
+                self.report(types::mismatch(want, part.ty, None, part.span));
                 return Expr::error(span);
             }
             floats.push(self.fit(part, want, env));

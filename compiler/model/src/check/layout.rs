@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use hrdsl_source::Span;
+use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
 
 use super::{Checker, Env, table::Table};
 use crate::{
-    Enum, EnumId, Kind, Param, Type, Value,
+    Enum, Kind, Param, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
@@ -45,15 +45,17 @@ impl<'a> Checker<'a> {
             self.report(names::missing(name.span, "an enumeration has values", help));
         }
         let mut table = Table::default();
-        let Some(id) = Self::declare(&mut self.issues, &mut self.enums, Noun::Enum, name) else { return };
-        for value in values {
-            let Some(index) = Self::declare(&mut self.issues, &mut table, Noun::EnumValue, value) else {
-                continue;
-            };
-            self.values.entry(&value.text).or_default().push((EnumId(id), index));
+        if Self::declare(&mut self.issues, &mut self.enums, Noun::Enum, name).is_none() {
+            return;
         }
-        let values = table.names().map(str::to_owned).collect();
-        self.s.enums.push(Enum { name: name.text.clone(), values, span });
+        for value in values {
+            Self::declare(&mut self.issues, &mut table, Noun::EnumValue, value);
+        }
+        let of = Enumeration::intern(&name.text, &table.names().collect::<Vec<_>>());
+        for value in values.iter().filter(|v| table.span_of(&v.text) == Some(v.span)) {
+            self.values.entry(&value.text).or_default().push(of);
+        }
+        self.s.enums.push(Enum { of, span });
     }
 
     pub(super) fn declare_record(&mut self, name: &'a Name, syntax: &'a [SyntaxParam]) {
@@ -177,7 +179,7 @@ impl<'a> Checker<'a> {
             return Some(Layout::Scalar(ty));
         }
         if let Some(id) = self.enums.get(&name.text) {
-            return Some(Layout::Scalar(Type::Enum(EnumId(id))));
+            return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }
         if let Some(id) = self.record_names.get(&name.text) {
             self.resolve_record(usize::from(id));

@@ -26,12 +26,12 @@ mod world_parts;
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name};
 use indexmap::IndexMap;
 
 use crate::{
-    ActorId, EnumId, EventId, Player, PointId, Role, Scenario,
+    ActorId, EventId, Player, PointId, Role, Scenario,
     noun::Noun,
     report::{
         names::{duplicate, unknown, wrong_kind},
@@ -127,7 +127,7 @@ pub(crate) struct Checker<'a> {
     actors: Table,
     enums: Table,
     /// By their bare names: the values of enumerations.
-    values: IndexMap<&'a str, Vec<(EnumId, u16)>>,
+    values: IndexMap<&'a str, Vec<Enumeration>>,
     record_names: Table,
     records: Vec<RecordEntry<'a>>,
     /// By sort and name.

@@ -12,7 +12,7 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
     }
     match &e.kind {
         ExprKind::Const(Value::Int(n)) => Some((*n, *n)),
-        ExprKind::Const(Value::Bool(_) | Value::Float(_) | Value::Symbol { .. })
+        ExprKind::Const(Value::Bool(_) | Value::Float(_) | Value::Symbol(_))
         | ExprKind::Term(_)
         | ExprKind::Error => None,
         ExprKind::Leaf(leaf) => env.locals.iter().find(|l| l.leaf == Some(*leaf)).and_then(|l| l.range),

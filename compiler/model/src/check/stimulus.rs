@@ -113,7 +113,7 @@ impl Checker<'_> {
                 for end in [&lo, &hi] {
                     if !end.ty.is_number() {
                         let want = Kind::Float(Dim::NUMBER);
-                        self.report(types::mismatch(want, end.ty, None, end.span, &self.s.enums));
+                        self.report(types::mismatch(want, end.ty, None, end.span));
                     }
                 }
                 self.ordered(&lo, &hi, range.span);

@@ -31,6 +31,11 @@ impl Table {
         self.names().zip(0..=u16::MAX)
     }
 
+    /// Where a name was first declared.
+    pub fn span_of(&self, name: &str) -> Option<Span> {
+        self.entries.get(name).copied()
+    }
+
     pub fn span(&self, id: u16) -> Option<Span> {
         self.entries.get_index(usize::from(id)).map(|(_, span)| *span)
     }

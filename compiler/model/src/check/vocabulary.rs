@@ -261,6 +261,6 @@ fn nearest_to_zero(ty: Type) -> Value {
     match ty {
         Type::Bool | Type::Float(_) => Value::Bool(false),
         Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
-        Type::Enum(of) => Value::Symbol { of, index: 0 },
+        Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
     }
 }

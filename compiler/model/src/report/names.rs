@@ -46,7 +46,7 @@ pub(crate) fn with_nearest<'a>(
 }
 
 /// HR0101: a bare name that several enumerations have.
-pub(crate) fn ambiguous(text: &str, of: &[String], span: Span) -> Diagnostic {
+pub(crate) fn ambiguous(text: &str, of: &[&str], span: Span) -> Diagnostic {
     let message = format!("`{text}` is a value of several enumerations: `{}`", of.join("`, `"));
     Diagnostic::error(Code::UNKNOWN_NAME, span, message).help(format!("write `{}.{text}`", of[0]))
 }

@@ -3,19 +3,8 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::{
-    Dim, Enum, Expr, Kind, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
+    Dim, Expr, Kind, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
 };
-
-/// A kind in words, an enumeration by its name.
-pub(crate) fn shown(kind: Kind, enums: &[Enum]) -> String {
-    match kind {
-        Kind::Enum(id) => match enums.get(usize::from(id.0)) {
-            Some(of) => format!("a value of `{}`", of.name),
-            None => kind.to_string(),
-        },
-        Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Unknown => kind.to_string(),
-    }
-}
 
 /// HR0201: something of another shape.
 pub(crate) fn other_shape(want: &str, got: &str, span: Span) -> Diagnostic {
@@ -58,24 +47,13 @@ pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
 }
 
 /// HR0201, HR0203 or the bare number: `want` is needed and `got` is there.
-pub(crate) fn mismatch(
-    want: Kind,
-    got: Kind,
-    value: Option<Value>,
-    span: Span,
-    enums: &[Enum],
-) -> Diagnostic {
-    let message = format!("{} is needed here, but this is {}", shown(want, enums), shown(got, enums));
+pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) -> Diagnostic {
+    let message = format!("{want} is needed here, but this is {got}");
     match (want, got.dim()) {
         (Kind::Float(dim), Some(_)) if got.is_bare() => bare_number(dim, value, span),
         (Kind::Float(_), Some(_)) => Diagnostic::error(Code::UNIT_MISMATCH, span, message),
-        (Kind::Enum(id), _) => {
-            let error = Diagnostic::error(Code::TYPE_MISMATCH, span, message);
-            match enums.get(usize::from(id.0)) {
-                Some(of) => error.help(format!("its values are: `{}`", of.values.join("`, `"))),
-                None => error,
-            }
-        }
+        (Kind::Enum(of), _) => Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+            .help(format!("its values are: {}", of.listed())),
         (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Unknown, _) => {
             Diagnostic::error(Code::TYPE_MISMATCH, span, message)
         }
@@ -106,8 +84,8 @@ pub(crate) fn dimensions(op: &str, left: (Kind, Span), right: (Kind, Span)) -> D
 }
 
 /// HR0201: the operands have different types.
-pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span), enums: &[Enum]) -> Diagnostic {
-    let (l, r) = (shown(left.0, enums), shown(right.0, enums));
+pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
+    let (l, r) = (left.0, right.0);
     Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
         .label(left.1, format!("this is {l}"))
         .label(right.1, format!("this is {r}"))
