@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use hrdsl_ir::expr::{BinaryOp, Function};
 use hrdsl_ir::world::*;
-use hrdsl_ir::{Expr, Span, Type};
+use hrdsl_ir::{Enumeration, Expr, Span, Symbol, Type, Value};
 use hrdsl_sim::{Command, Sim};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));

@@ -182,7 +182,7 @@ impl<'p, 'r> ProgramPlayer<'p, 'r> {
     }
 
     /// The event and its arguments in order, if the program may make it.
-    fn emission(&self, name: &str, args: &BTreeMap<String, Value>) -> Result<(EventId, Vec<Value>), Answer> {
+    fn emission(&self, name: &str, args: &BTreeMap<String, Arg>) -> Result<(EventId, Vec<Value>), Answer> {
         let own = |e: &&hrdsl_ir::Event| e.from == self.actors[0] && !e.is_stimulus();
         let id = self.program.event_named(name).filter(|id| own(&self.program.event(*id)));
         let Some(id) = id else {
@@ -230,24 +230,27 @@ fn list<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Option<String> 
     (!names.is_empty()).then(|| format!("{what} it can use: {}", names.join(", ")))
 }
 
-fn argument(event: &str, param: &Param, given: Option<&Value>) -> Result<Value, Answer> {
-    let Some(value) = given.copied() else {
+fn argument(event: &str, param: &Param, given: Option<&Arg>) -> Result<Value, Answer> {
+    let Some(given) = given else {
         return Err(refuse(format!("`{event}` needs the argument `{}`", param.name), None));
     };
-    let value = match (param.ty, value) {
-        (Type::Float(_), Value::Int(n)) => Value::Float(n as f64),
-        (Type::Bool | Type::Int { .. } | Type::Float(_), value) => value,
+    let value = match (param.ty, given) {
+        (Type::Float(_), Arg::Scalar(Value::Int(n))) => Some(Value::Float(*n as f64)),
+        (Type::Enum(e), Arg::Text(name)) => e.symbol(name).map(Value::Symbol),
+        (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), Arg::Scalar(value)) => Some(*value),
+        (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), Arg::Text(_) | Arg::Numbers(_)) => {
+            None
+        }
     };
-    if param.ty.admits(value) {
-        Ok(value)
-    } else {
+    value.filter(|v| param.ty.admits(*v)).ok_or_else(|| {
         let ty = match param.ty {
             Type::Bool => "a bool".to_owned(),
             Type::Int { lo, hi } => format!("an integer of {lo}..{hi}"),
             Type::Float(_) => "a number".to_owned(),
+            Type::Enum(e) => format!("the name of a value of `{e}` ({})", e.listed()),
         };
-        Err(refuse(format!("`{event}`: `{}` is {value}, but must be {ty}", param.name), None))
-    }
+        refuse(format!("`{event}`: `{}` is {given}, but must be {ty}", param.name), None)
+    })
 }
 
 /// Whether the gripper holds something, or nothing, as it should.
@@ -346,5 +349,49 @@ impl Player for ProgramPlayer<'_, '_> {
 
     fn is_finished(&self) -> bool {
         matches!(self.waits, Waits::Ended)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{Enumeration, Symbol, Unit};
+
+    use super::*;
+
+    fn given(ty: Type, arg: &str) -> Result<Value, String> {
+        let param = Param { name: "p".into(), ty };
+        let arg: Arg = serde_json::from_str(arg).unwrap();
+        argument("e", &param, Some(&arg)).map_err(|answer| match answer {
+            Answer::Error { error, .. } => error,
+            other => panic!("{other:?}"),
+        })
+    }
+
+    #[test]
+    fn a_symbol_is_given_by_its_name() {
+        let pace = Enumeration::intern("Pace", &["slow", "fast"]);
+        let ty = Type::Enum(pace);
+        let fast = Value::Symbol(Symbol::intern("fast"));
+        assert_eq!(given(ty, "\"fast\""), Ok(fast));
+        // What goes out comes in again.
+        assert_eq!(given(ty, &serde_json::to_string(&fast).unwrap()), Ok(fast));
+        for wrong in ["\"quick\"", "\"\"", "1", "true", "[1.0]"] {
+            let must = "the name of a value of `Pace` (`slow`, `fast`)";
+            assert_eq!(given(ty, wrong), Err(format!("`e`: `p` is {wrong}, but must be {must}")));
+        }
+    }
+
+    #[test]
+    fn text_is_no_other_value() {
+        let (int, float) = (Type::Int { lo: 0, hi: 4 }, Type::Float(Unit::Metre));
+        assert_eq!(given(Type::Bool, "true"), Ok(Value::Bool(true)));
+        assert_eq!(given(int, "4"), Ok(Value::Int(4)));
+        assert_eq!(given(float, "4"), Ok(Value::Float(4.0)));
+        let error = |ty, arg| given(ty, arg).unwrap_err();
+        assert_eq!(error(Type::Bool, "\"true\""), "`e`: `p` is \"true\", but must be a bool");
+        assert_eq!(error(int, "\"1\""), "`e`: `p` is \"1\", but must be an integer of 0..4");
+        assert_eq!(error(int, "5"), "`e`: `p` is 5, but must be an integer of 0..4");
+        assert_eq!(error(float, "\"nan\""), "`e`: `p` is \"nan\", but must be a number");
+        assert_eq!(error(float, "[0.5]"), "`e`: `p` is [0.5], but must be a number");
     }
 }

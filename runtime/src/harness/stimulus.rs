@@ -48,11 +48,22 @@ fn draw(ty: Type, lo: Value, hi: Value, rng: &mut ChaCha8Rng) -> Value {
         (Type::Int { .. }, Value::Int(lo), Value::Int(hi)) if lo < hi => {
             Value::Int(rng.random_range(lo..=hi))
         }
-        (Type::Float(_) | Type::Int { .. } | Type::Bool, lo, hi) => match (lo.as_f64(), hi.as_f64()) {
-            // Micrometres, microradians: what a generated test's text says is exactly what runs.
-            (Some(lo), Some(hi)) if lo < hi => Value::Float(on_grid(rng.random_range(lo..hi)).clamp(lo, hi)),
-            (Some(_) | None, _) => lo,
+        // A range of symbols goes by the order of their declaration.
+        (Type::Enum(e), Value::Symbol(lo), Value::Symbol(hi)) => match (e.index_of(lo), e.index_of(hi)) {
+            (Some(first), Some(last)) if first < last => {
+                Value::Symbol(e.values()[rng.random_range(first..=last)])
+            }
+            (Some(_) | None, _) => Value::Symbol(lo),
         },
+        (Type::Float(_) | Type::Int { .. } | Type::Bool | Type::Enum(_), lo, hi) => {
+            match (lo.as_f64(), hi.as_f64()) {
+                // Micrometres, microradians: what a generated test's text says is exactly what runs.
+                (Some(lo), Some(hi)) if lo < hi => {
+                    Value::Float(on_grid(rng.random_range(lo..hi)).clamp(lo, hi))
+                }
+                (Some(_) | None, _) => lo,
+            }
+        }
     }
 }
 
@@ -129,5 +140,27 @@ impl Performance {
     #[must_use]
     pub fn is_done(&self, now: Nanos) -> bool {
         self.steps.is_empty() && self.until <= now
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use hrdsl_ir::{Enumeration, Symbol};
+    use rand::SeedableRng;
+
+    use super::*;
+
+    #[test]
+    fn symbols_are_drawn_between_their_bounds() {
+        let pace = Type::Enum(Enumeration::intern("Pace", &["still", "slow", "fast", "run"]));
+        let symbol = |name: &str| Value::Symbol(Symbol::intern(name));
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut drawn = |lo: &str, hi: &str| -> BTreeSet<String> {
+            (0..99).map(|_| draw(pace, symbol(lo), symbol(hi), &mut rng).to_string()).collect()
+        };
+        assert_eq!(drawn("slow", "run").into_iter().collect::<Vec<_>>(), ["fast", "run", "slow"]);
+        assert_eq!(drawn("slow", "slow").len(), 1);
     }
 }

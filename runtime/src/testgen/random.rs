@@ -115,3 +115,50 @@ fn makes(program: &Program, event: EventId, args: &[Value]) -> Vec<(EventId, Vec
     let made = extract::taken(program, event, args).into_iter().filter_map(made);
     std::iter::once((event, args.to_vec())).chain(made).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{ActorId, Enumeration, Event, Param, Span, Unit};
+
+    use super::*;
+
+    #[test]
+    fn every_symbol_is_a_choice() {
+        let pace = Type::Enum(Enumeration::intern("Pace", &["slow", "fast", "crawl"]));
+        let param = |name: &str, ty| Param { name: name.into(), ty };
+        let mut event = Event {
+            name: "go".into(),
+            params: vec![param("pace", pace), param("on", Type::Bool)],
+            from: ActorId(0),
+            to: Vec::new(),
+            stimulus: None,
+            origin: Span::default(),
+        };
+        let program = Program { events: vec![event.clone()], ..Program::default() };
+        let suite = Suite {
+            name: "s".into(),
+            method: Method::Random {
+                stimuli: vec![EventId(0)],
+                awaits: Vec::new(),
+                length_lo: 60,
+                length_hi: 60,
+                pause_lo: 0,
+                pause_hi: 0,
+            },
+            tests: 1,
+            horizon: 0,
+            patience: 0,
+            origin: Span::default(),
+        };
+        let drawn = harvest(&program, &suite, 1, 3).unwrap();
+        let mut seen: Vec<String> =
+            drawn.tests[0].steps.iter().map(|s| super::super::write::step_text(&program, s)).collect();
+        seen.sort();
+        seen.dedup();
+        let all = ["crawl, false", "crawl, true", "fast, false", "fast, true", "slow, false", "slow, true"];
+        assert_eq!(seen, all.map(|args| format!("go({args})")));
+        event.params.push(param("far", Type::Float(Unit::Metre)));
+        let program = Program { events: vec![event], ..Program::default() };
+        assert!(harvest(&program, &suite, 1, 3).is_err());
+    }
+}

@@ -48,9 +48,8 @@ pub fn step_text(program: &Program, step: &TestStep) -> String {
     match step {
         TestStep::Do { event, args, samples } => {
             let declared = program.event(*event);
-            let args: Vec<String> =
-                declared.params.iter().zip(args).map(|(p, v)| value_text(p.ty, *v)).collect();
-            let mut text = call(&declared.name, &args);
+            let args = declared.params.iter().zip(args).map(|(p, v)| (p.name.as_str(), value_text(p.ty, *v)));
+            let mut text = call(&declared.name, args);
             let names = declared.stimulus.iter().flat_map(|s| &s.samples);
             let with: Vec<String> =
                 names.zip(samples).map(|(s, v)| format!("{} = {}", s.name, value_text(s.ty, *v))).collect();
@@ -67,28 +66,122 @@ pub fn step_text(program: &Program, step: &TestStep) -> String {
     }
 }
 
-fn call(name: &str, args: &[String]) -> String {
-    if args.is_empty() { name.to_owned() } else { format!("{name}({})", args.join(", ")) }
+fn call<'p>(name: &str, args: impl Iterator<Item = (&'p str, String)>) -> String {
+    let parts: Vec<Part> = args.map(|(name, text)| Part { path: path(name), text }).collect();
+    if parts.is_empty() { name.to_owned() } else { format!("{name}({})", grouped(&parts, 0).join(", ")) }
+}
+
+/// An argument that is a number, a bool or a symbol: by itself, or a part of a record or an array.
+struct Part<'p> {
+    path: Vec<&'p str>,
+    text: String,
+}
+
+/// The names from the argument down to the part: `path[0].x` is `path`, `0`, `x`.
+fn path(name: &str) -> Vec<&str> {
+    name.split(['.', '[']).map(|n| n.strip_suffix(']').unwrap_or(n)).collect()
+}
+
+/// The arguments as they were before records and arrays were taken apart: consecutive parts of one name, at this depth,
+/// make one tuple.
+fn grouped(parts: &[Part], depth: usize) -> Vec<String> {
+    let is_inner = |p: &Part| p.path.len() > depth + 1;
+    let groups = parts.chunk_by(|a, b| is_inner(a) && is_inner(b) && a.path.get(depth) == b.path.get(depth));
+    let text = |group: &[Part]| match group {
+        [whole] if !is_inner(whole) => whole.text.clone(),
+        inner => format!("({})", grouped(inner, depth + 1).join(", ")),
+    };
+    groups.map(text).collect()
 }
 
 fn pattern_text(program: &Program, pattern: &EventPattern) -> String {
     let declared = program.event(pattern.event);
-    let arg = |(a, p): (&ArgPattern, &hrdsl_ir::Param)| match a {
+    let text = |a: &ArgPattern, ty: Type| match a {
         ArgPattern::Any => "_".to_owned(),
-        ArgPattern::Is(v) => value_text(p.ty, *v),
+        ArgPattern::Is(v) => value_text(ty, *v),
     };
-    let args: Vec<String> = pattern.args.iter().zip(&declared.params).map(arg).collect();
-    call(&declared.name, &args)
+    let args = pattern.args.iter().zip(&declared.params).map(|(a, p)| (p.name.as_str(), text(a, p.ty)));
+    call(&declared.name, args)
 }
 
 fn value_text(ty: Type, value: Value) -> String {
     match (ty, value) {
         (Type::Float(unit), Value::Float(x)) if unit != Unit::None => format!("{x:?} {}", unit.symbol()),
         (Type::Float(_), Value::Float(x)) => format!("{x:?}"),
-        (Type::Float(_) | Type::Bool | Type::Int { .. }, value) => value.to_string(),
+        (Type::Float(_) | Type::Bool | Type::Int { .. } | Type::Enum(_), value) => value.to_string(),
     }
 }
 
 fn time_text(time: Nanos) -> String {
     format!("{} s", decimal::seconds(time))
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{ActorId, Enumeration, Event, EventId, Param, Span, Symbol};
+
+    use super::*;
+
+    const METRE: Type = Type::Float(Unit::Metre);
+
+    fn program(params: &[(&str, Type)]) -> Program {
+        let param = |(name, ty): &(&str, Type)| Param { name: (*name).to_owned(), ty: *ty };
+        let event = Event {
+            name: "go".into(),
+            params: params.iter().map(param).collect(),
+            from: ActorId(0),
+            to: Vec::new(),
+            stimulus: None,
+            origin: Span::default(),
+        };
+        Program { events: vec![event], ..Program::default() }
+    }
+
+    /// The call with the numbers 1, 2, 3… as arguments.
+    fn written(names: &[&str]) -> String {
+        let params: Vec<(&str, Type)> = names.iter().map(|n| (*n, METRE)).collect();
+        let args = (1..=names.len()).map(|n| Value::Float(n as f64)).collect();
+        step_text(&program(&params), &TestStep::Do { event: EventId(0), args, samples: Vec::new() })
+    }
+
+    #[test]
+    fn records_and_arrays_are_tuples() {
+        assert_eq!(written(&[]), "go");
+        assert_eq!(written(&["x", "y"]), "go(1.0 m, 2.0 m)");
+        assert_eq!(written(&["to.x", "to.y"]), "go((1.0 m, 2.0 m))");
+        assert_eq!(written(&["a[0]", "a[1]", "speed"]), "go((1.0 m, 2.0 m), 3.0 m)");
+        assert_eq!(written(&["a[0][0]", "a[0][1]", "a[1][0]"]), "go(((1.0 m, 2.0 m), (3.0 m)))");
+        let path = ["path[0].x", "path[0].y", "path[1].x", "path[1].y"];
+        assert_eq!(written(&path), "go(((1.0 m, 2.0 m), (3.0 m, 4.0 m)))");
+        assert_eq!(
+            written(&["who", "from.at.x", "from.at.y", "from.up", "to.x"]),
+            "go(1.0 m, ((2.0 m, 3.0 m), 4.0 m), (5.0 m))"
+        );
+        // Names that only begin alike are not one argument.
+        assert_eq!(written(&["a.x", "ab.x", "a2"]), "go((1.0 m), (2.0 m), 3.0 m)");
+    }
+
+    #[test]
+    fn names_that_no_record_has_do_no_harm() {
+        for odd in
+            [vec!["a", "a.x"], vec!["a.x", "a"], vec!["a", "a"], vec![".", "[", "]"], vec!["a..b", "a."]]
+        {
+            let text = written(&odd);
+            assert_eq!(text.matches(" m").count(), odd.len(), "{text}");
+        }
+    }
+
+    #[test]
+    fn symbols_and_patterns_are_written_by_name() {
+        let pace = Type::Enum(Enumeration::intern("Pace", &["slow", "fast"]));
+        let push = Type::Float(Unit::MetrePerSecondSquared);
+        let program = program(&[("how.pace", pace), ("how.push", push), ("on", Type::Bool)]);
+        let fast = Value::Symbol(Symbol::intern("fast"));
+        let args = vec![fast, Value::Float(-0.5), Value::Bool(true)];
+        let step = TestStep::Do { event: EventId(0), args, samples: Vec::new() };
+        assert_eq!(step_text(&program, &step), "go((fast, -0.5 m/s^2), true)");
+        let args = vec![ArgPattern::Is(fast), ArgPattern::Any, ArgPattern::Any];
+        let step = TestStep::Await { events: vec![EventPattern { event: EventId(0), args }], within: 0 };
+        assert_eq!(step_text(&program, &step), "await go((fast, _), _) within 0 s");
+    }
 }

@@ -1,6 +1,6 @@
 //! The lock-step protocol, version 1, as data (`spec/protocol.md`): one JSON line each way.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 
 use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
@@ -21,7 +21,7 @@ pub enum Request {
     Emit {
         event: String,
         #[serde(default)]
-        args: BTreeMap<String, Value>,
+        args: BTreeMap<String, Arg>,
     },
     /// Let simulated time pass.
     Sleep { seconds: f64 },
@@ -57,14 +57,26 @@ fn yes() -> bool {
     true
 }
 
-/// An argument of an action.
+/// An argument of an event or an action, as the program wrote it: what it means, its declaration tells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Arg {
+    /// The name of a value of an enumeration, perhaps. First, so that no text becomes a symbol before it is known to be
+    /// one: symbols are kept for ever.
+    Text(String),
     Scalar(Value),
     /// A place (x, y, z; metres) or joint angles (radians).
     Numbers(Vec<f64>),
-    Text(String),
+}
+
+impl fmt::Display for Arg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Arg::Text(text) => write!(f, "{text:?}"),
+            Arg::Scalar(value) => write!(f, "{value}"),
+            Arg::Numbers(numbers) => write!(f, "{numbers:?}"),
+        }
+    }
 }
 
 impl Request {
@@ -182,6 +194,8 @@ pub(crate) fn parse(line: &[u8]) -> Line {
 
 #[cfg(test)]
 mod tests {
+    use hrdsl_ir::Symbol;
+
     use super::*;
 
     fn request(line: &str) -> Request {
@@ -204,9 +218,9 @@ mod tests {
             Request::Emit {
                 event: "decided".into(),
                 args: BTreeMap::from([
-                    ("n".into(), Value::Int(3)),
-                    ("ready".into(), Value::Bool(true)),
-                    ("x".into(), Value::Float(1.5)),
+                    ("n".into(), Arg::Scalar(Value::Int(3))),
+                    ("ready".into(), Arg::Scalar(Value::Bool(true))),
+                    ("x".into(), Arg::Scalar(Value::Float(1.5))),
                 ])
             }
         );
@@ -218,6 +232,34 @@ mod tests {
         assert_eq!((on.as_str(), action.as_str(), wait), ("robot.arm", "move_to", true));
         assert_eq!(args["to"], Arg::Numbers(vec![0.0, 1.0, 2.5]));
         assert_eq!(args["speed"], Arg::Scalar(Value::Float(0.2)));
+    }
+
+    #[test]
+    fn symbols_go_there_and_back_as_text() {
+        let Request::Emit { args, .. } =
+            request(r#"{"request":"emit","event":"paced","args":{"pace":"fast","odd":"\u00e4 \"b\""}}"#)
+        else {
+            panic!()
+        };
+        assert_eq!(args["pace"], Arg::Text("fast".into()));
+        assert_eq!(args["odd"], Arg::Text("ä \"b\"".into()));
+        let symbol = Value::Symbol(Symbol::intern("fast"));
+        let wire = |answer| serde_json::to_string(&Reply { time: 5, answer }).unwrap();
+        assert_eq!(wire(Answer::Value(symbol)), r#"{"t":5,"value":"fast"}"#);
+        let event =
+            Answer::Event { name: "paced".into(), args: BTreeMap::from([("pace".into(), symbol)]), time: 4 };
+        assert_eq!(wire(event), r#"{"t":5,"event":{"name":"paced","args":{"pace":"fast"},"time":4}}"#);
+        // What is written as a value is read as the argument of the same name.
+        let text = serde_json::to_string(&symbol).unwrap();
+        assert_eq!(serde_json::from_str::<Arg>(&text).unwrap(), Arg::Text("fast".into()));
+    }
+
+    #[test]
+    fn arguments_are_shown_as_they_were_written() {
+        let shown = |arg: Arg| arg.to_string();
+        assert_eq!(shown(Arg::Text("fast".into())), "\"fast\"");
+        assert_eq!(shown(Arg::Scalar(Value::Int(3))), "3");
+        assert_eq!(shown(Arg::Numbers(vec![1.0, 2.5])), "[1.0, 2.5]");
     }
 
     #[test]

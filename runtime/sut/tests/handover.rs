@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use common::{GRACE, launch, reply};
 use hrdsl_ir::{Nanos, Value, value::nanos, value::seconds};
-use hrdsl_sut::{Answer, Exit, Finished, Launch, Process, Request};
+use hrdsl_sut::{Answer, Arg, Exit, Finished, Launch, Process, Request};
 
 /// What the person does with one leg.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ struct Harness {
     /// Events to come, and those that came, in order of time.
     queue: Vec<(Nanos, &'static str)>,
     mailbox: Vec<(Nanos, &'static str)>,
-    emitted: Vec<(Nanos, String, BTreeMap<String, Value>)>,
+    emitted: Vec<(Nanos, String, BTreeMap<String, Arg>)>,
 }
 
 impl Harness {
@@ -170,9 +170,9 @@ fn four_legs_to_four_people() {
     let leg = |end| ["handover_offered", "sense", "decided", end];
     let expected = [leg("released"), leg("discarded"), leg("released")].concat();
     assert_eq!(order, [expected, vec!["handover_offered", "timed_out", "discarded"]].concat());
-    let ready: Vec<Value> =
-        harness.emitted.iter().filter_map(|(.., args)| args.get("ready").copied()).collect();
-    assert_eq!(ready, [true, false, true].map(Value::Bool));
+    let ready: Vec<Arg> =
+        harness.emitted.iter().filter_map(|(.., args)| args.get("ready").cloned()).collect();
+    assert_eq!(ready, [true, false, true].map(|b| Arg::Scalar(Value::Bool(b))));
 
     let late: Vec<f64> = harness
         .times("decided")

@@ -5,8 +5,8 @@ mod common;
 use std::{collections::BTreeMap, time::Duration};
 
 use common::{GRACE, environment, launch, reply, run};
-use hrdsl_ir::Value;
-use hrdsl_sut::{Answer, Exit, FileCoverage, Process, Reply, Request, SutError};
+use hrdsl_ir::{Symbol, Value};
+use hrdsl_sut::{Answer, Arg, Exit, FileCoverage, Process, Reply, Request, SutError};
 
 fn hello(process: &mut Process) {
     assert!(matches!(process.next().unwrap(), Request::Hello { version: 1, .. }));
@@ -32,6 +32,7 @@ fn a_good_program_is_answered() {
         Answer::Ok,
         Answer::Value(Value::Bool(false)),
         Answer::Value(Value::Float(1.25)),
+        Answer::Value(Value::Symbol(Symbol::intern("slow"))),
         Answer::Acted(Ok(())),
         Answer::Acted(Err("joint 2 is at its limit".into())),
         Answer::Acted(Ok(())),
@@ -46,16 +47,17 @@ fn a_good_program_is_answered() {
     assert_eq!(requests[0], Request::Hello { version: 1, name: "good".into() });
     assert_eq!(requests[2], Request::Sleep { seconds: 1.5 });
     let args = [("ready", Value::Bool(true)), ("n", Value::Int(3)), ("x", Value::Float(0.5))];
-    let args: BTreeMap<_, _> = args.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    let mut args: BTreeMap<_, _> = args.into_iter().map(|(k, v)| (k.to_owned(), Arg::Scalar(v))).collect();
+    args.insert("pace".into(), Arg::Text("fast".into()));
     assert_eq!(requests[3], Request::Emit { event: "decided".into(), args });
     assert_eq!(requests[4], Request::WaitFor { events: vec!["a".into(), "b".into()], timeout: Some(2.0) });
     assert_eq!(requests[5], Request::WaitFor { events: vec!["a".into()], timeout: None });
-    assert!(matches!(&requests[11], Request::Act { action, wait: true, .. } if action == "move_joints"));
+    assert!(matches!(&requests[12], Request::Act { action, wait: true, .. } if action == "move_joints"));
     assert_eq!(requests.last(), Some(&Request::Done));
     let finished = process.finish(GRACE);
     assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
     let expected = "seed 17 args ['one', '-m']\nnow 0.5\nfirst None\nsecond Event(a() at 1.250 s)\n\
-        third sensed True {'gaze': True} 2.0\nread False 1.25\nmove True False joint 2 is at its limit\n\
+        third sensed True {'gaze': True} 2.0\nread False 1.25 slow\nmove True False joint 2 is at its limit\n\
         grip True True\n";
     assert_eq!(finished.output.stdout.text(), expected);
     assert_eq!(finished.coverage, None);
@@ -192,7 +194,7 @@ fn a_child_left_behind_is_noticed_and_killed() {
     let mut process = Process::spawn(&launch(&["python3", "forks.py"])).unwrap();
     hello(&mut process);
     let Request::Emit { args, .. } = process.next().unwrap() else { panic!() };
-    let child = args["pid"].as_int().unwrap();
+    let Arg::Scalar(Value::Int(child)) = args["pid"] else { panic!() };
     reply(&mut process, 0, Answer::Ok);
     let error = process.next().unwrap_err();
     assert!(matches!(error, SutError::Exited { exit: Exit::Code(7), .. }), "{error}");

@@ -86,7 +86,7 @@ class Node:
         self._link.request({"request": "sleep", "seconds": _seconds(seconds)})
 
     def emit(self, event, **args):
-        """Makes an event of the scenario's vocabulary happen now."""
+        """Makes an event of the scenario's vocabulary happen now; a value of an enumeration is its name, a str."""
         self._link.request({"request": "emit", "event": event, "args": args})
 
     def wait_for(self, *events, timeout=None):
@@ -104,7 +104,7 @@ class Node:
         self._link.request({"request": "drop", "events": list(events)})
 
     def read(self, signal):
-        """The present value of a signal: a bool, an int, or a float in SI units."""
+        """The present value of a signal: a bool, an int, a float in SI units, or the name of an enumeration's value."""
         return self._link.request({"request": "read", "signal": signal})["value"]
 
     def arm(self, name):
