@@ -183,7 +183,9 @@ impl<'a> Checker<'a> {
     }
 
     fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &Env, whole: bool) -> Given {
-        if let (Noun::Event, Some(patterns)) = (kind, self.alternatives(arg)) {
+        if kind == Noun::Event
+            && let Some(patterns) = self.alternatives(arg)
+        {
             return patterns.map_or(Given::Unknown, Given::Events);
         }
         let Syntax::Path(path) = &arg.kind else {
