@@ -5,7 +5,7 @@ mod diagnostic;
 mod files;
 mod span;
 
-pub use codes::{Code, CodeInfo, REGISTRY};
+pub use codes::{Code, CodeInfo, GROUPS, REGISTRY};
 pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
 pub use span::{FileId, Span};
