@@ -11,11 +11,12 @@
 
 pub mod lower;
 pub mod modules;
+pub mod pages;
 
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
-use hrdsl_syntax::ast;
+pub use hrdsl_syntax::{ast, parse, token};
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Copy, Debug)]
