@@ -151,12 +151,12 @@ fn gen_counts_warnings_and_shows_errors() {
     );
 }
 
-/// Three faults with a certain fix, and one whose fix is a guess.
+/// Faults with a certain fix, the second `;` found only when the first is gone, and one whose fix is a guess.
 const CROOKED: &str = "\
 agent Guest plays guest {
   belief had(cups: 0..2) = had(0)
   goal !rest
-  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ; wait 1 s }
+  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ;; wait 1 s }
   plan +!rset { }
 }
 ";
@@ -178,7 +178,7 @@ fn fixes_that_are_certain_are_applied() {
  agent Guest plays guest {
    belief had(cups: 0..2) = had(0)
    goal !rest
--  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ; wait 1 s }
+-  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ;; wait 1 s }
 +  plan +!rest when had(N) && N <= 1 && N != 0 {  wait 1 s }
    plan +!rset { }
  }
@@ -190,10 +190,10 @@ fn fixes_that_are_certain_are_applied() {
     expect_code(&out, 0);
     let said = stderr(&out);
     assert!(said.contains("fixed a.hri:12:32: replace `≤` by `<=`\n"), "{said}");
-    assert!(said.contains(": take the `;` away\n") && said.contains("3 fixes in 1 file\n"), "{said}");
+    assert!(said.contains(": take the `;` away\n") && said.contains("4 fixes in 1 file\n"), "{said}");
     assert!(said.ends_with("1 warning\n"), "what is not certain stays: {said}");
     let after = tree(folder.path());
-    let fixed = text.replace('≤', "<=").replace('≠', "!=").replace("{ ;", "{ ");
+    let fixed = text.replace('≤', "<=").replace('≠', "!=").replace("{ ;;", "{ ");
     assert_eq!(String::from_utf8_lossy(&after["a.hri"]), fixed);
     assert_eq!(after.len(), 2, "nothing else is left behind");
     assert_eq!(after["b.hri"], before["b.hri"]);

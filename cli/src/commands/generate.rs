@@ -40,8 +40,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     for suite in chosen(program, &args.suite)? {
         let generated = generate(program, suite, args.count, args.seed)?;
         let path = save(&args.out, program, &generated)?;
-        print!("{}", describe(&generated));
-        println!("  written to {}", path.display());
+        input::print(&format!("{}  written to {}\n", describe(&generated), path.display()))?;
     }
     Ok(Exit::Ok)
 }

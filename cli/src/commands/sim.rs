@@ -90,7 +90,7 @@ fn generate_suites(args: &Args, program: &Program, out: &Path) -> Result<Vec<Gen
     for suite in chosen(program, &args.suite)? {
         let generated = generate(program, suite, args.count, args.seed)?;
         save(&out.join("tests"), program, &generated)?;
-        print!("{}", describe(&generated));
+        input::print(&describe(&generated))?;
         all.push(generated);
     }
     Ok(all)
@@ -180,8 +180,6 @@ fn publish(results: &Results, out: &Path) -> Result<(), Fault> {
     input::write(&out.join("junit.xml"), &report::junit(results))?;
     let page = out.join("report.html");
     input::write(&page, &report::html(results))?;
-    let colour = color::stdout_has();
-    print!("{}", report::summary(results, 100, colour));
-    println!("report: {}", page.display());
-    Ok(())
+    let summary = report::summary(results, 100, color::stdout_has());
+    input::print(&format!("{summary}report: {}\n", page.display()))
 }
