@@ -1,17 +1,26 @@
-//! Exit codes, defined once; `--help` lists them.
+//! Exit codes, defined once; `--help` and `spec/cli.md` list them.
 
 use std::process::ExitCode;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
+    /// All is well; there may be warnings that are not denied.
     Ok = 0,
-    /// The scenario has errors.
+    /// A scenario has errors, or warnings that are denied.
     Errors = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
     /// A requirement was violated, or a test broke off.
     Findings = 3,
 }
+
+/// What `hrdsl --help` says about them.
+pub const HELP: &str = "\
+Exit codes:
+  0  all is well
+  1  a scenario has errors, or warnings that `check --deny` makes errors
+  2  the command line is wrong, or a file cannot be read or written
+  3  `sim`: a requirement was violated, or a test broke off (see --exit-zero)";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -1,17 +1,45 @@
-//! Reading scenarios: from files to a checked program, or to diagnostics on stderr.
+//! Files and streams: reading text, writing it, and compiling one scenario.
 
 use std::{
     fs,
+    io::{Read, Write},
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{Compilation, Input, ast, compile};
 use hrdsl_ir::Program;
 
 use crate::render;
 
 /// A failure that is no diagnostic: a file, an argument.
 pub type Fault = String;
+
+/// What the text of a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A scenario of its own.
+    Scenario,
+    /// Tests in the vocabulary of a scenario.
+    Tests,
+    /// Declarations that scenarios use.
+    Module,
+}
+
+/// What a file is, by what it holds. A file of tests may begin with the line `scenario NAME` of its scenario; a scenario
+/// without any declaration has nothing that tests could speak of.
+#[must_use]
+pub fn kind_of(file: &ast::File) -> Kind {
+    let is_test = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Test(_));
+    let is_unread = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Error);
+    if file.items.iter().any(is_test) && file.items.iter().all(|item| is_test(item) || is_unread(item)) {
+        Kind::Tests
+    } else if file.scenario.is_some() {
+        Kind::Scenario
+    } else {
+        Kind::Module
+    }
+}
 
 /// Reads a text file.
 ///
@@ -22,8 +50,25 @@ pub fn read(path: &Path) -> Result<String, Fault> {
         std::io::ErrorKind::NotFound => format!("no such file: {}", path.display()),
         _ => format!("cannot read {}: {e}", path.display()),
     })?;
+    text(bytes, &path.display().to_string())
+}
+
+/// Reads all of stdin.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_stdin() -> Result<String, Fault> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .map_err(|e| format!("cannot read standard input: {e}"))?;
+    text(bytes, "standard input")
+}
+
+fn text(bytes: Vec<u8>, name: &str) -> Result<String, Fault> {
     String::from_utf8(bytes)
-        .map_err(|e| format!("{} is not UTF-8 text (byte {})", path.display(), e.utf8_error().valid_up_to()))
+        .map_err(|e| format!("{name} is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()))
 }
 
 /// Writes a file, and the folders above it.
@@ -36,6 +81,42 @@ pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
         fs::create_dir_all(folder).map_err(fault)?;
     }
     fs::write(path, text).map_err(fault)
+}
+
+/// Puts another text in a file's place, all of it or nothing: it is written beside the file, and renamed.
+///
+/// # Errors
+/// The file's name and what is wrong.
+pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    // Of a link, what it leads to is replaced.
+    let target = path.canonicalize().map_err(fault)?;
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let beside = target.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+    let written = (|| {
+        let mut file = fs::File::create_new(&beside)?;
+        file.write_all(text.as_bytes())?;
+        file.set_permissions(fs::metadata(&target)?.permissions())?;
+        file.sync_all()?;
+        fs::rename(&beside, &target)
+    })();
+    written.map_err(|e| {
+        // What is left of the attempt is of no use; that it cannot be removed changes nothing.
+        let _ = fs::remove_file(&beside);
+        fault(e)
+    })
+}
+
+/// Prints to stdout. That nobody reads on is the reader's choice, and no fault.
+///
+/// # Errors
+/// What is wrong with stdout.
+pub fn print(text: &str) -> Result<(), Fault> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
+        Ok(()) | Err(_) => Ok(()),
+    }
 }
 
 /// Compiles a scenario and files of tests; a folder stands for the `.hri` files in it.
@@ -91,6 +172,23 @@ pub fn report(compilation: &Compilation) -> Option<&Program> {
     let warnings = compilation.diagnostics.len() - errors;
     if errors + warnings > 0 {
         eprintln!("{}", render::totals(errors, warnings));
+    }
+    compilation.program.as_ref()
+}
+
+/// Shows the errors on stderr, and how many warnings there are: who runs tests has seen them, or can.
+pub fn report_errors<'c>(scenario: &Path, compilation: &'c Compilation) -> Option<&'c Program> {
+    let (errors, warnings): (Vec<_>, Vec<_>) = compilation.diagnostics.iter().partition(|d| d.is_error());
+    for error in &errors {
+        eprint!("{}", render::diagnostic(&compilation.files, error));
+    }
+    if !errors.is_empty() {
+        eprintln!("{}", render::totals(errors.len(), 0));
+    }
+    if !warnings.is_empty() {
+        let (count, them) =
+            (render::totals(0, warnings.len()), if warnings.len() == 1 { "it" } else { "them" });
+        eprintln!("{count} (`hrdsl check {}` shows {them})", scenario.display());
     }
     compilation.program.as_ref()
 }

@@ -1,13 +1,16 @@
 //! `hrdsl`, the command line: one file for each command; the only place with clap, stdout and files.
 
+mod color;
 mod commands;
 mod exit;
+mod fix;
 mod input;
+mod project;
 mod render;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::exit::Exit;
 
@@ -16,8 +19,11 @@ use crate::exit::Exit;
 /// One `.hri` file says who takes part (agents, automata), what must hold (requirements), what must be seen (coverage),
 /// and what it runs against (world, system under test).
 #[derive(Parser)]
-#[command(name = "hrdsl", version, max_term_width = 100, after_help = EXIT_CODES, subcommand_required = true)]
+#[command(name = "hrdsl", version, max_term_width = 100, after_help = exit::HELP, subcommand_required = true)]
 struct Cli {
+    /// When to use colours.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
+    color: color::Choice,
     #[command(subcommand)]
     command: Command,
 }
@@ -25,23 +31,28 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Check(commands::check::Args),
+    Completions(commands::completions::Args),
     Emit(commands::emit::Args),
+    Explain(commands::explain::Args),
     Gen(commands::generate::Args),
+    Man(commands::man::Args),
+    New(commands::new::Args),
     Sim(commands::sim::Args),
 }
 
-const EXIT_CODES: &str = "\
-Exit codes:
-  0  all is well
-  1  the scenario has errors
-  2  the command line is wrong, or a file cannot be read or written
-  3  `sim`: a requirement was violated, or a test broke off (see --exit-zero)";
-
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let choice = color::from_args(std::env::args_os());
+    let matches = Cli::command().color(choice.into()).get_matches();
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
+    color::choose(cli.color);
+    let result = match cli.command {
         Command::Check(args) => commands::check::run(&args),
+        Command::Completions(args) => commands::completions::run(&args, Cli::command()),
         Command::Emit(args) => commands::emit::run(&args),
+        Command::Explain(args) => commands::explain::run(&args),
         Command::Gen(args) => commands::generate::run(&args),
+        Command::Man(args) => commands::man::run(&args, Cli::command()),
+        Command::New(args) => commands::new::run(&args),
         Command::Sim(args) => commands::sim::run(&args),
     };
     result

@@ -12,11 +12,12 @@
 mod allow;
 pub mod lower;
 pub mod modules;
+pub mod pages;
 
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
-use hrdsl_syntax::ast;
+pub use hrdsl_syntax::{ast, parse, token};
 
 pub use modules::{Loader, NoFiles, Source};
 

@@ -1,42 +1,206 @@
-//! `hrdsl check`: every name, type, unit and role of a scenario.
+//! `hrdsl check`: every name, type, unit and role of scenarios and their tests.
 
-use std::path::PathBuf;
+use std::{collections::BTreeSet, path::PathBuf};
+
+use clap::ValueEnum;
+use hrdsl_compiler::Compilation;
+use hrdsl_ir::Program;
+use hrdsl_source::{Code, Diagnostic, REGISTRY, Severity};
 
 use crate::{
+    color,
     exit::Exit,
+    fix,
     input::{self, Fault},
+    project::{Project, Unit},
+    render,
 };
 
-/// Check a scenario: every name, type, unit and role.
+/// Check scenarios and their tests: every name, type, unit and role.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Examples:\n  hrdsl check examples/handover/scenario.hri\n  hrdsl check scenario.hri tests/*.hri"
-)]
+#[command(after_help = "\
+Examples:
+  hrdsl check examples/handover/scenario.hri
+  hrdsl check scenario.hri tests/*.hri
+  hrdsl check . --deny warnings
+  hrdsl check scenario.hri --diff
+  hrdsl check scenario.hri --fix
+  hrdsl check --format sarif . > hrdsl.sarif
+  hrdsl check - < scenario.hri")]
 pub struct Args {
-    /// The scenario.
-    file: PathBuf,
-    /// Files or folders of tests to check in its vocabulary.
-    tests: Vec<PathBuf>,
+    /// Scenarios, files of tests, folders to search for `.hri` files; `-` is standard input.
+    #[arg(required = true, value_name = "PATH")]
+    paths: Vec<PathBuf>,
+    /// How to say what was found.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// Make warnings errors: all (`warnings`), or those of a code (`HR0403`); may be given several times.
+    #[arg(long, value_name = "WHAT", value_parser = denied)]
+    deny: Vec<Deny>,
+    /// Apply the fixes that are certain to the files.
+    #[arg(long)]
+    fix: bool,
+    /// Show what --fix would change, and change nothing.
+    #[arg(long, conflicts_with_all = ["fix", "format"])]
+    diff: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Text with pieces of source, on stderr.
+    #[default]
+    Human,
+    /// One JSON document on stdout.
+    Json,
+    /// SARIF 2.1.0 on stdout.
+    Sarif,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Deny {
+    Warnings,
+    Code(Code),
+}
+
+fn denied(text: &str) -> Result<Deny, String> {
+    if text == "warnings" {
+        return Ok(Deny::Warnings);
+    }
+    let found = REGISTRY.iter().find(|i| i.code.to_string().eq_ignore_ascii_case(text));
+    found
+        .map(|i| Deny::Code(i.code))
+        .ok_or_else(|| "it is `warnings` or a code such as `HR0403`; `hrdsl explain` lists them".to_owned())
+}
+
+/// What became of a unit.
+pub struct Checked {
+    pub unit: Unit,
+    pub compilation: Compilation,
+}
+
+impl Checked {
+    /// The program, if there is neither an error nor a denied warning.
+    fn program(&self) -> Option<&Program> {
+        self.compilation.program.as_ref().filter(|_| !self.compilation.has_errors())
+    }
 }
 
 /// # Errors
-/// A file that cannot be read.
+/// A file that cannot be read or written, or tests without a scenario.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
-    let compilation = input::load(&args.file, &args.tests)?;
-    let Some(program) = input::report(&compilation) else { return Ok(Exit::Errors) };
-    println!(
-        "{}: scenario `{}` is well formed: {} events and stimuli, {} agents ({} plans), {} automata ({} edges), {} requirements, {} bins, {} suites, {} tests",
-        args.file.display(),
-        program.name,
-        program.events.len(),
-        program.agents.len(),
-        program.agents.iter().map(|a| a.plans.len()).sum::<usize>(),
-        program.automata.len(),
-        program.automata.iter().map(|a| a.edges.len()).sum::<usize>(),
-        program.monitors.len(),
-        program.coverage.crosses.iter().map(|c| c.bins.len()).sum::<usize>(),
-        program.suites.len(),
-        program.tests.len(),
-    );
-    Ok(Exit::Ok)
+    let mut project = Project::open(&args.paths)?;
+    if args.fix {
+        mend(&mut project)?;
+    }
+    let checked = check(&project, &args.deny);
+    match args.format {
+        Format::Human => {
+            show(&checked);
+            let text = if args.diff { difference(&project) } else { summary(&project, &checked) };
+            input::print(&text)?;
+        }
+        Format::Json => input::print(&render::json(&project, &checked)?)?,
+        Format::Sarif => input::print(&render::sarif(&project, &checked)?)?,
+    }
+    let failed = checked.iter().any(|c| c.program().is_none());
+    Ok(if failed { Exit::Errors } else { Exit::Ok })
+}
+
+/// Compiles every unit. What is said of a module that several units use is said once.
+fn check(project: &Project, deny: &[Deny]) -> Vec<Checked> {
+    let mut seen = BTreeSet::new();
+    let mut checked = Vec::new();
+    for unit in &project.units {
+        let mut compilation = project.compile(unit);
+        for diagnostic in &mut compilation.diagnostics {
+            deny.iter().for_each(|deny| promote(diagnostic, *deny));
+        }
+        let files = &compilation.files;
+        compilation.diagnostics.retain(|d| {
+            let name = files.get(d.span().file).map_or(String::new(), |f| f.name.clone());
+            seen.insert((name, d.span().start, d.span().end, d.code, d.message.clone()))
+        });
+        checked.push(Checked { unit: unit.clone(), compilation });
+    }
+    checked
+}
+
+/// A denied warning is an error.
+fn promote(diagnostic: &mut Diagnostic, deny: Deny) {
+    let meant = match deny {
+        Deny::Warnings => true,
+        Deny::Code(code) => diagnostic.code == code,
+    };
+    if meant {
+        diagnostic.severity = Severity::Error;
+    }
+}
+
+/// Mends the files, and says how on stderr.
+fn mend(project: &mut Project) -> Result<(), Fault> {
+    if project.sources.iter().any(|s| s.path.is_none()) {
+        return Err("`--fix` cannot change standard input; `--diff` shows the changes".to_owned());
+    }
+    let before = project.clone();
+    let applied = fix::mend(project);
+    let mut files = 0;
+    for (old, new) in before.sources.iter().zip(&project.sources).filter(|(a, b)| a.text != b.text) {
+        if let Some(path) = &old.path {
+            input::replace(path, &new.text)?;
+            files += 1;
+        }
+    }
+    for fix in &applied {
+        eprintln!("fixed {}: {}", fix.place, fix.title);
+    }
+    let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
+    if applied.is_empty() {
+        eprintln!("nothing to fix");
+        return Ok(());
+    }
+    eprintln!("{} in {}", plural(applied.len(), "fix", "fixes"), plural(files, "file", "files"));
+    Ok(())
+}
+
+fn difference(project: &Project) -> String {
+    let mut mended = project.clone();
+    fix::mend(&mut mended);
+    let pairs = project.sources.iter().zip(&mended.sources);
+    pairs.map(|(old, new)| render::unified(&old.name, &old.text, &new.text, color::stdout_has())).collect()
+}
+
+/// Everything that was found, on stderr.
+fn show(checked: &[Checked]) {
+    let (mut errors, mut warnings) = (0, 0);
+    for Checked { compilation, .. } in checked {
+        for diagnostic in &compilation.diagnostics {
+            eprint!("{}", render::diagnostic(&compilation.files, diagnostic));
+            *(if diagnostic.is_error() { &mut errors } else { &mut warnings }) += 1;
+        }
+    }
+    if errors + warnings > 0 {
+        eprintln!("{}", render::totals(errors, warnings));
+    }
+}
+
+/// A line for each scenario that is well formed.
+fn summary(project: &Project, checked: &[Checked]) -> String {
+    let line = |c: &Checked| {
+        let program = c.program()?;
+        let name = &project.sources[c.unit.head].name;
+        Some(format!(
+            "{name}: scenario `{}` is well formed: {} events and stimuli, {} agents ({} plans), {} automata ({} edges), {} requirements, {} bins, {} suites, {} tests\n",
+            program.name,
+            program.events.len(),
+            program.agents.len(),
+            program.agents.iter().map(|a| a.plans.len()).sum::<usize>(),
+            program.automata.len(),
+            program.automata.iter().map(|a| a.edges.len()).sum::<usize>(),
+            program.monitors.len(),
+            program.coverage.crosses.iter().map(|c| c.bins.len()).sum::<usize>(),
+            program.suites.len(),
+            program.tests.len(),
+        ))
+    };
+    checked.iter().filter_map(line).collect()
 }

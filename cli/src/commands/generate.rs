@@ -36,12 +36,11 @@ pub struct Args {
 /// A file, a suite that does not exist, or a model that cannot be run.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report(&compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
     for suite in chosen(program, &args.suite)? {
         let generated = generate(program, suite, args.count, args.seed)?;
         let path = save(&args.out, program, &generated)?;
-        print!("{}", describe(&generated));
-        println!("  written to {}", path.display());
+        input::print(&format!("{}  written to {}\n", describe(&generated), path.display()))?;
     }
     Ok(Exit::Ok)
 }

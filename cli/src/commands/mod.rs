@@ -1,6 +1,10 @@
 //! One module for each command.
 
 pub mod check;
+pub mod completions;
 pub mod emit;
+pub mod explain;
 pub mod generate;
+pub mod man;
+pub mod new;
 pub mod sim;

@@ -3,7 +3,6 @@
 use std::{
     collections::BTreeMap,
     fs,
-    io::{IsTerminal, stdout},
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
 };
@@ -20,6 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::generate::{chosen, describe, save};
 use crate::{
+    color,
     exit::Exit,
     input::{self, Fault},
 };
@@ -61,7 +61,7 @@ pub struct Args {
 /// A file, a suite that does not exist, a model that cannot be run, or what the code needs cannot be installed.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &args.tests)?;
-    let Some(program) = input::report(&compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
     let system =
         program.system.as_ref().ok_or("the scenario has no `system` block: there is nothing to run")?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
@@ -90,7 +90,7 @@ fn generate_suites(args: &Args, program: &Program, out: &Path) -> Result<Vec<Gen
     for suite in chosen(program, &args.suite)? {
         let generated = generate(program, suite, args.count, args.seed)?;
         save(&out.join("tests"), program, &generated)?;
-        print!("{}", describe(&generated));
+        input::print(&describe(&generated))?;
         all.push(generated);
     }
     Ok(all)
@@ -180,8 +180,6 @@ fn publish(results: &Results, out: &Path) -> Result<(), Fault> {
     input::write(&out.join("junit.xml"), &report::junit(results))?;
     let page = out.join("report.html");
     input::write(&page, &report::html(results))?;
-    let colour = stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    print!("{}", report::summary(results, 100, colour));
-    println!("report: {}", page.display());
-    Ok(())
+    let summary = report::summary(results, 100, color::stdout_has());
+    input::print(&format!("{summary}report: {}\n", page.display()))
 }

@@ -3,8 +3,9 @@
 #![allow(clippy::disallowed_methods, reason = "tests start the binary")]
 
 use std::{
+    io::Write,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Command, Output, Stdio},
 };
 
 pub fn root() -> PathBuf {
@@ -16,12 +17,50 @@ pub fn handover() -> PathBuf {
 }
 
 pub fn hrdsl<I: AsRef<std::ffi::OsStr>>(args: impl IntoIterator<Item = I>) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hrdsl"))
-        .args(args)
+    command().args(args).output().unwrap()
+}
+
+/// In a folder, with the arguments of a line.
+pub fn hrdsl_in(folder: &Path, line: &str) -> Output {
+    command().args(line.split_whitespace()).current_dir(folder).output().unwrap()
+}
+
+/// The same, with this text on standard input.
+pub fn hrdsl_reading(folder: &Path, line: &str, input: &str) -> Output {
+    let mut command = command();
+    command.args(line.split_whitespace()).current_dir(folder);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+/// The binary, without colours and with the cache of the tests.
+pub fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hrdsl"));
+    command
         .env("NO_COLOR", "1")
-        .env("HRDSL_CACHE", root().join("target/hrdsl-cache"))
-        .output()
-        .unwrap()
+        .env_remove("CLICOLOR_FORCE")
+        .env("HRDSL_CACHE", root().join("target/hrdsl-cache"));
+    command
+}
+
+/// A folder with these files.
+pub fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+/// A scenario with one stimulus of this name.
+pub fn scenario(name: &str, stimulus: &str) -> String {
+    format!(
+        "scenario {name}\n\nactor guest : environment\nactor robot : system\n\nevent called from guest to robot\n\nstimulus {stimulus} by guest {{ emit called }}\n"
+    )
 }
 
 pub fn stdout(out: &Output) -> String {

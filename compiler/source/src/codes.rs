@@ -29,6 +29,34 @@ pub struct CodeInfo {
     pub title: &'static str,
 }
 
+/// What the codes of each hundred are about: of HR01xx, names.
+pub const GROUPS: &[(u16, &str)] = &[
+    (0, "characters and syntax"),
+    (1, "names"),
+    (2, "types and units"),
+    (3, "roles"),
+    (4, "agents"),
+    (5, "automata"),
+    (6, "requirements"),
+    (7, "coverage and suites"),
+    (8, "world and system"),
+    (9, "tests"),
+];
+
+impl Code {
+    /// What the codes of its hundred are about.
+    #[must_use]
+    pub fn group(self) -> &'static str {
+        GROUPS.iter().find(|(hundred, _)| *hundred == self.0 / 100).map_or("others", |(_, about)| about)
+    }
+
+    /// The code's row in the registry.
+    #[must_use]
+    pub fn info(self) -> Option<&'static CodeInfo> {
+        REGISTRY.iter().find(|info| info.code == self)
+    }
+}
+
 macro_rules! codes {
     ($($(#[$doc:meta])* $name:ident = $number:literal $title:literal),* $(,)?) => {
         impl Code {
@@ -76,4 +104,17 @@ codes! {
     BAD_SUITE = 702 "a suite that cannot make tests",
     BAD_WORLD = 801 "a world that cannot be built",
     BAD_TEST = 901 "a test that cannot run",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_hundred_that_has_codes_is_about_something() {
+        for info in REGISTRY {
+            assert_ne!(info.code.group(), "others", "{}", info.code);
+            assert_eq!(info.code.info().map(|i| i.title), Some(info.title));
+        }
+    }
 }

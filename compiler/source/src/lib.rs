@@ -6,7 +6,7 @@ mod files;
 mod span;
 mod symbol;
 
-pub use codes::{Code, CodeInfo, REGISTRY};
+pub use codes::{Code, CodeInfo, GROUPS, REGISTRY};
 pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
 pub use span::{FileId, Span};

@@ -144,6 +144,17 @@ impl Scan<'_> {
         if let Some(help) = instead_of(c) {
             diagnostic = diagnostic.help(help);
         }
+        if let Some((text, certain)) = replacement(c)
+            && (end - start == c.len_utf8() || text == " ")
+        {
+            let text = text.repeat((end - start) / c.len_utf8());
+            let title = if text.trim().is_empty() {
+                "put a plain blank here".to_owned()
+            } else {
+                format!("replace `{c}` by `{}`", text.trim())
+            };
+            diagnostic = diagnostic.fix(title, span, text, certain);
+        }
         self.diagnostics.push(diagnostic);
         self.push(Kind::Error, start, end);
         end
@@ -192,6 +203,29 @@ fn instead_of(c: char) -> Option<&'static str> {
         '−' | '–' | '—' => "write `-`",
         '°' => "angles are written in `deg`",
         '\u{a0}' => "this is a blank that does not break; write a plain blank",
+        _ => return None,
+    })
+}
+
+/// The text in place of such a character, and whether it can have meant nothing else. A dash may be a range or a minus,
+/// a point between numbers a decimal one: those are offered only.
+fn replacement(c: char) -> Option<(&'static str, bool)> {
+    Some(match c {
+        '≤' => ("<=", true),
+        '≥' => (">=", true),
+        '≠' => ("!=", true),
+        '→' => ("->", true),
+        '×' => ("*", true),
+        '−' => ("-", true),
+        '\u{a0}' => (" ", true),
+        '&' => ("&&", false),
+        '#' => ("//", false),
+        '[' => ("(", false),
+        ']' => (")", false),
+        '…' => ("..", false),
+        '·' => ("*", false),
+        '–' | '—' => ("-", false),
+        '°' => (" deg", false),
         _ => return None,
     })
 }

@@ -212,7 +212,8 @@ impl Splitter<'_> {
                     let span = self.span(token);
                     self.diagnostics.push(
                         Diagnostic::error(Code::SYNTAX, span, "this `}` closes nothing")
-                            .help("take it away, or look for a `{` that is missing before it"),
+                            .help("take it away, or look for a `{` that is missing before it")
+                            .fix("take the `}` away", span, "", false),
                     );
                     Outside::Skip
                 }
@@ -248,7 +249,8 @@ impl Splitter<'_> {
         self.diagnostics.push(
             Diagnostic::error(Code::SYNTAX, span, format!("expected a declaration, found `{word}`"))
                 .here("no declaration starts with this word")
-                .help(format!("did you mean `{near}`?")),
+                .help(format!("did you mean `{near}`?"))
+                .fix(format!("replace `{word}` by `{near}`"), span, near, false),
         );
         Some(kind)
     }

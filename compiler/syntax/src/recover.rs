@@ -357,7 +357,8 @@ impl Recovery<'_, '_> {
         let span = self.cx.span_of(self.tokens[at]);
         self.cx.diagnostics.push(
             Diagnostic::error(Code::SYNTAX, span, "expected a step such as `!goal` or `await`, found `;`")
-                .help("take the `;` away"),
+                .help("take the `;` away")
+                .fix("take the `;` away", span, "", true),
         );
         (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
     }
@@ -371,10 +372,13 @@ impl Recovery<'_, '_> {
         let span = self.cx.span_of(token);
         let before = self.tokens[at - 1];
         let end = self.cx.span(before.end.saturating_sub(1), before.end);
+        // On a line of its own it can be nothing but the next step.
+        let after = self.cx.span(before.end, before.end);
         self.cx.diagnostics.push(
             Diagnostic::error(Code::SYNTAX, span, message)
                 .label(end, "the step before ends here")
-                .help("put `;` between two steps of a plan"),
+                .help("put `;` between two steps of a plan")
+                .fix("put `;` after the step before", after, ";", token.first),
         );
     }
 

@@ -48,7 +48,10 @@ pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], nex
         diagnostic = diagnostic.label(cx.span_of(open), "this `(` is not closed");
     }
     let after = tokens.get(fault.at + 1).copied().or(next);
-    if let Some(help) = token.and_then(|t| help(cx, fault, [before, after], t)) {
+    if let Some((token, near)) = token.and_then(|t| Some((t, keyword_near(cx, fault, t)?))) {
+        let title = format!("replace `{}` by `{near}`", cx.text_of(token));
+        diagnostic = diagnostic.help(format!("did you mean `{near}`?")).fix(title, span, near, false);
+    } else if let Some(help) = token.and_then(|t| help(cx, fault, [before, after], t)) {
         diagnostic = diagnostic.help(help);
     }
     cx.diagnostics.push(diagnostic);
@@ -242,14 +245,14 @@ fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
     None
 }
 
+/// The expected keyword that a word was meant to be.
+fn keyword_near<'f>(cx: &Context<'_>, fault: &'f Fault, token: Lexeme) -> Option<&'f str> {
+    let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
+    token.kind.is_word().then(|| nearest(cx.text_of(token), keywords))?
+}
+
 fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lexeme) -> Option<String> {
     let word = cx.text_of(token);
-    if token.kind.is_word() {
-        let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
-        if let Some(near) = nearest(word, keywords) {
-            return Some(format!("did you mean `{near}`?"));
-        }
-    }
     let [before, after] = around.map(|t| t.map(|t| t.kind));
     let named = matches!(
         after,

@@ -27,7 +27,7 @@ pub(crate) fn wrong_kind<'a>(
     with_nearest(Diagnostic::error(Code::WRONG_KIND, span, message), noun, text, names)
 }
 
-/// Adds the nearest name as help, or all names if none is near and they are few.
+/// Adds the nearest name as help and as a fix, or all names if none is near and they are few.
 pub(crate) fn with_nearest<'a>(
     error: Diagnostic,
     noun: Noun,
@@ -36,7 +36,7 @@ pub(crate) fn with_nearest<'a>(
 ) -> Diagnostic {
     let names: Vec<&str> = names.into_iter().collect();
     if let Some(near) = nearest(text, names.iter().copied()) {
-        return error.help(format!("did you mean `{near}`?"));
+        return replace(error.help(format!("did you mean `{near}`?")), text, near);
     }
     match names.len() {
         0 => error.help(format!("there are no {} here", noun.plural())),
@@ -49,6 +49,15 @@ pub(crate) fn with_nearest<'a>(
 pub(crate) fn ambiguous(text: &str, of: &[&str], span: Span) -> Diagnostic {
     let message = format!("`{text}` is a value of several enumerations: `{}`", of.join("`, `"));
     Diagnostic::error(Code::UNKNOWN_NAME, span, message).help(format!("write `{}.{text}`", of[0]))
+}
+
+/// Offers another name in place of the one at fault, if its span holds just that name (and no quotes).
+pub(crate) fn replace(error: Diagnostic, text: &str, near: &str) -> Diagnostic {
+    let span = error.span();
+    if span.range().len() != text.len() {
+        return error;
+    }
+    error.fix(format!("replace `{text}` by `{near}`"), span, near, false)
 }
 
 /// HR0102: a second declaration.

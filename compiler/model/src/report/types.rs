@@ -3,7 +3,11 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::{
-    Dim, Expr, Kind, Value, noun::Noun, report::names::with_nearest, types::UNITS, value::FoldError,
+    Dim, Expr, Kind, Value,
+    noun::Noun,
+    report::names::{replace, with_nearest},
+    types::UNITS,
+    value::FoldError,
 };
 
 /// HR0201: something of another shape.
@@ -41,7 +45,7 @@ pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
     // `sec`, `meters`: a unit written out
     let start = UNITS.iter().map(|u| u.symbol).filter(|u| text.starts_with(u)).max_by_key(|u| u.len());
     match (&error.help, start) {
-        (None, Some(unit)) => error.help(format!("did you mean `{unit}`?")),
+        (None, Some(unit)) => replace(error.help(format!("did you mean `{unit}`?")), text, unit),
         (Some(_), _) | (None, None) => error,
     }
 }

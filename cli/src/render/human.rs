@@ -1,17 +1,44 @@
-//! Diagnostics for people: the place, the text, what to type; in colour on a terminal only.
+//! Diagnostics for people: the place, the text, what to type; in colour where colours are on.
 
-use std::{
-    fmt,
-    io::{IsTerminal, stderr},
-};
+use std::fmt;
 
 use hrdsl_source::{Diagnostic, Files, Severity};
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
+    SourceSpan, SpanContents,
+};
 
 /// One diagnostic as miette wants it.
 struct Shown<'a> {
     diagnostic: &'a Diagnostic,
-    source: NamedSource<String>,
+    source: Text<'a>,
+}
+
+/// A file's name and text. Of a place miette counts the column in bytes; here it is counted in characters, from 0.
+struct Text<'a> {
+    name: &'a str,
+    text: &'a str,
+}
+
+impl SourceCode for Text<'_> {
+    fn read_span<'s>(
+        &'s self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'s> + 's>, MietteError> {
+        let found = self.text.read_span(span, before, after)?;
+        let start = self.text.get(..found.span().offset()).unwrap_or("");
+        let column = start.rsplit('\n').next().unwrap_or("").chars().count();
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.to_owned(),
+            found.data(),
+            *found.span(),
+            found.line(),
+            column,
+            found.line_count(),
+        )))
+    }
 }
 
 impl fmt::Debug for Shown<'_> {
@@ -64,20 +91,17 @@ impl miette::Diagnostic for Shown<'_> {
     }
 }
 
-/// Whether stderr takes colours.
-#[must_use]
-pub fn stderr_has_colour() -> bool {
-    stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
-}
-
 /// A diagnostic with its piece of source.
 #[must_use]
 pub fn diagnostic(files: &Files, diagnostic: &Diagnostic) -> String {
-    let theme =
-        if stderr_has_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let theme = if crate::color::stderr_has() {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
     let (name, text) =
         files.get(diagnostic.span().file).map_or(("?", ""), |f| (f.name.as_str(), f.text.as_str()));
-    let shown = Shown { diagnostic, source: NamedSource::new(name, text.to_owned()) };
+    let shown = Shown { diagnostic, source: Text { name, text } };
     let mut out = String::new();
     let handler = GraphicalReportHandler::new_themed(theme).with_width(100).with_links(false);
     if handler.render_report(&mut out, &shown).is_err() {

@@ -1,0 +1,126 @@
+//! Whether output has colours: `--color`, then `NO_COLOR`, then `CLICOLOR_FORCE`, then whether it goes to a terminal.
+
+use std::{
+    ffi::OsString,
+    io::{IsTerminal, stderr, stdout},
+    sync::OnceLock,
+};
+
+use clap::ValueEnum;
+
+/// What `--color` takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Choice {
+    /// On a terminal, unless NO_COLOR is set; elsewhere if CLICOLOR_FORCE is set.
+    #[default]
+    Auto,
+    /// Everywhere.
+    Always,
+    /// Nowhere.
+    Never,
+}
+
+impl From<Choice> for clap::ColorChoice {
+    fn from(choice: Choice) -> Self {
+        match choice {
+            Choice::Auto => Self::Auto,
+            Choice::Always => Self::Always,
+            Choice::Never => Self::Never,
+        }
+    }
+}
+
+static CHOICE: OnceLock<Choice> = OnceLock::new();
+
+/// Settles the choice for the whole process.
+pub fn choose(choice: Choice) {
+    CHOICE.get_or_init(|| choice);
+}
+
+/// What `--color` says in these arguments. Help and usage errors are printed while the arguments are still being read,
+/// and have to obey it, too.
+pub fn from_args(args: impl IntoIterator<Item = OsString>) -> Choice {
+    let mut choice = Choice::Auto;
+    let mut args = args.into_iter().take_while(|arg| arg != "--");
+    while let Some(arg) = args.next() {
+        let arg = arg.to_string_lossy();
+        let word = match arg.strip_prefix("--color") {
+            Some("") => args.next().map(|next| next.to_string_lossy().into_owned()),
+            Some(rest) => rest.strip_prefix('=').map(str::to_owned),
+            None => None,
+        };
+        choice = word.and_then(|w| Choice::from_str(&w, false).ok()).unwrap_or(choice);
+    }
+    choice
+}
+
+/// Whether stdout takes colours.
+#[must_use]
+pub fn stdout_has() -> bool {
+    decide(stdout().is_terminal())
+}
+
+/// Whether stderr takes colours.
+#[must_use]
+pub fn stderr_has() -> bool {
+    decide(stderr().is_terminal())
+}
+
+fn decide(terminal: bool) -> bool {
+    let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+    let forced = set("CLICOLOR_FORCE").is_some_and(|v| v != "0");
+    has(CHOICE.get().copied().unwrap_or_default(), set("NO_COLOR").is_some(), forced, terminal)
+}
+
+fn has(choice: Choice, no_color: bool, forced: bool, terminal: bool) -> bool {
+    match choice {
+        Choice::Always => true,
+        Choice::Never => false,
+        Choice::Auto => !no_color && (forced || terminal),
+    }
+}
+
+/// The few styles that are used, as SGR parameters.
+#[derive(Clone, Copy, Debug)]
+pub enum Style {
+    Bold,
+    Code,
+    Added,
+    Removed,
+}
+
+/// A piece of text in a style, if colours are on.
+#[must_use]
+pub fn paint(on: bool, style: Style, text: &str) -> String {
+    let sgr = match style {
+        Style::Bold => "1",
+        Style::Code => "36",
+        Style::Added => "32",
+        Style::Removed => "31",
+    };
+    if on && !text.is_empty() { format!("\u{1b}[{sgr}m{text}\u{1b}[0m") } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_option_is_above_the_environment_and_that_above_the_terminal() {
+        assert!(has(Choice::Always, true, false, false));
+        assert!(!has(Choice::Never, false, true, true));
+        assert!(has(Choice::Auto, false, false, true) && !has(Choice::Auto, false, false, false));
+        assert!(has(Choice::Auto, false, true, false));
+        assert!(!has(Choice::Auto, true, true, true));
+    }
+
+    #[test]
+    fn the_option_is_found_wherever_it_stands() {
+        let from = |line: &str| from_args(line.split(' ').map(OsString::from));
+        assert_eq!(from("hrdsl --color always check a.hri"), Choice::Always);
+        assert_eq!(from("hrdsl check --color=never a.hri"), Choice::Never);
+        assert_eq!(from("hrdsl check -- --color=never"), Choice::Auto);
+        assert_eq!(from("hrdsl --color"), Choice::Auto);
+        assert_eq!(from("hrdsl --color=pink"), Choice::Auto);
+    }
+}

@@ -1,0 +1,125 @@
+//! `hrdsl explain`: the page of a diagnostic code.
+
+use hrdsl_compiler::pages;
+use hrdsl_source::{Code, CodeInfo, GROUPS, REGISTRY};
+use serde::Serialize;
+
+use crate::{
+    color::{self, Style, paint},
+    exit::Exit,
+    input::{self, Fault},
+    render,
+};
+
+/// Explain a diagnostic code, with an example that fails and the same mended; without a code, list them all.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl explain HR0101
+  hrdsl explain
+  hrdsl explain HR0101 --json | jq -r .text")]
+pub struct Args {
+    /// The code: `HR0101`, or `101`.
+    code: Option<String>,
+    /// Print JSON: the page's `code`, `title`, `group`, `page` and `text`, or a list of all but the texts.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Entry {
+    code: String,
+    title: &'static str,
+    group: &'static str,
+    page: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    text: Option<&'static str>,
+}
+
+impl Entry {
+    fn of(info: &CodeInfo, text: Option<&'static str>) -> Self {
+        let code = info.code;
+        Self { code: code.to_string(), title: info.title, group: code.group(), page: pages::path(code), text }
+    }
+}
+
+/// # Errors
+/// A code that does not exist.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let colour = color::stdout_has();
+    let text = match (&args.code, args.json) {
+        (None, false) => list(colour),
+        (None, true) => json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
+        (Some(code), as_json) => {
+            let info = find(code)?;
+            let page = pages::page(info.code).ok_or_else(|| format!("{} has no page", info.code))?;
+            if as_json { json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
+        }
+    };
+    input::print(&text)?;
+    Ok(Exit::Ok)
+}
+
+fn json<T: Serialize>(value: &T) -> Result<String, Fault> {
+    serde_json::to_string_pretty(value).map(|t| t + "\n").map_err(|e| format!("cannot print: {e}"))
+}
+
+/// All codes with their titles, by hundreds.
+fn list(colour: bool) -> String {
+    let mut out = String::new();
+    for (hundred, about) in GROUPS {
+        let heading = format!("HR{hundred:02}xx: {about}");
+        out += &format!("{}\n", paint(colour, Style::Bold, &heading));
+        for info in REGISTRY.iter().filter(|i| i.code.0 / 100 == *hundred) {
+            out += &format!("  {}  {}\n", paint(colour, Style::Code, &info.code.to_string()), info.title);
+        }
+        out.push('\n');
+    }
+    out + "`hrdsl explain CODE` shows a code's page.\n"
+}
+
+/// The code that is meant: with or without `HR`, in any case, with or without its zeros.
+fn find(text: &str) -> Result<&'static CodeInfo, Fault> {
+    let start = text.get(..2).filter(|s| s.eq_ignore_ascii_case("HR")).map_or(0, str::len);
+    let digits = &text[start..];
+    let number = digits.parse::<u16>().ok().filter(|_| digits.bytes().all(|b| b.is_ascii_digit()));
+    let Some(number) = number else {
+        return Err(format!(
+            "no code is called `{text}`; a code is HR and four digits, and `hrdsl explain` lists them all"
+        ));
+    };
+    Code(number).info().ok_or_else(|| {
+        let near: Vec<String> = nearest(number).iter().map(|i| format!("{} ({})", i.code, i.title)).collect();
+        format!("no code is called `{text}`; near it are {}", near.join(", "))
+    })
+}
+
+/// The three nearest codes, those of the same hundred first, then by number.
+fn nearest(number: u16) -> Vec<&'static CodeInfo> {
+    let mut all: Vec<&CodeInfo> = REGISTRY.iter().collect();
+    all.sort_by_key(|i| (i.code.0 / 100 != number / 100, i.code.0.abs_diff(number), i.code));
+    all.truncate(3);
+    all.sort_by_key(|i| i.code);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_found_as_people_write_them() {
+        for text in ["HR0101", "hr0101", "101", "0101", "HR101"] {
+            assert_eq!(find(text).unwrap().code, Code(101), "{text}");
+        }
+        for text in ["", "HR", "H", "HR01O1", "ü1", "+101", "99999", "-1"] {
+            assert!(find(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn every_code_is_in_the_list() {
+        let list = list(false);
+        assert!(REGISTRY.iter().all(|i| list.contains(&format!("  {}  {}\n", i.code, i.title))));
+    }
+}

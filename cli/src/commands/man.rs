@@ -1,0 +1,51 @@
+//! `hrdsl man`: the manual pages, made from the same words as `--help`.
+
+use std::path::PathBuf;
+
+use clap_mangen::Man;
+
+use crate::{
+    exit::Exit,
+    input::{self, Fault},
+};
+
+/// Print hrdsl's manual page, or write one for each command.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl man | man -l -
+  hrdsl man --dir ~/.local/share/man/man1")]
+pub struct Args {
+    /// The folder to write a page for each command to.
+    #[arg(long, value_name = "DIR")]
+    dir: Option<PathBuf>,
+}
+
+/// # Errors
+/// A file that cannot be written.
+pub fn run(args: &Args, command: clap::Command) -> Result<Exit, Fault> {
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let Some(dir) = &args.dir else {
+        input::print(&page(&man(command))?)?;
+        return Ok(Exit::Ok);
+    };
+    let commands = command.get_subcommands().cloned().collect::<Vec<_>>();
+    for command in std::iter::once(command).chain(commands) {
+        let man = man(command);
+        let path = dir.join(man.get_filename());
+        input::write(&path, &page(&man)?)?;
+        input::print(&format!("{}\n", path.display()))?;
+    }
+    Ok(Exit::Ok)
+}
+
+fn man(command: clap::Command) -> Man {
+    Man::new(command).source(concat!("hrdsl ", env!("CARGO_PKG_VERSION"))).manual("hrdsl")
+}
+
+fn page(man: &Man) -> Result<String, Fault> {
+    let mut bytes = Vec::new();
+    man.render(&mut bytes).map_err(|e| format!("cannot make the page: {e}"))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

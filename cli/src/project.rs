@@ -1,0 +1,186 @@
+//! The files that `hrdsl check` is given: what each of them is, and which tests belong to which scenario.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use hrdsl_compiler::{Compilation, Input, compile, parse};
+use hrdsl_source::FileId;
+
+use crate::input::{self, Fault, Kind};
+
+/// Folders that hold no scenarios of one's own.
+const SKIPPED: [&str; 3] = ["target", "node_modules", "hrdsl-out"];
+
+/// One text.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// `None`: standard input.
+    pub path: Option<PathBuf>,
+    /// As it is shown.
+    pub name: String,
+    pub text: String,
+    pub kind: Kind,
+    /// Given on the command line by itself, not found in a folder.
+    named: bool,
+}
+
+/// What is compiled together: a scenario (or module) and the files of tests that belong to it, by index in the sources.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    pub head: usize,
+    pub tests: Vec<usize>,
+}
+
+/// All that is checked.
+#[derive(Clone, Debug)]
+pub struct Project {
+    pub sources: Vec<Source>,
+    pub units: Vec<Unit>,
+}
+
+impl Project {
+    /// Finds and reads the files; `-` is standard input, and a folder stands for all `.hri` files in and below it.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a folder without scenarios, tests whose scenario is not among the files.
+    pub fn open(paths: &[PathBuf]) -> Result<Self, Fault> {
+        let mut sources = Vec::new();
+        let mut seen: Vec<PathBuf> = Vec::new();
+        for path in paths {
+            if path.as_os_str() == "-" {
+                if sources.iter().all(|s: &Source| s.path.is_some()) {
+                    sources.push(Source::new(None, input::read_stdin()?, true));
+                }
+                continue;
+            }
+            let folder = path.is_dir();
+            let files = if folder { walk(path)? } else { vec![path.clone()] };
+            if files.is_empty() {
+                return Err(format!("no .hri file in {} or the folders in it", path.display()));
+            }
+            for file in files {
+                let text = input::read(&file)?;
+                let place = file.canonicalize().unwrap_or_else(|_| file.clone());
+                match seen.iter().position(|s| *s == place) {
+                    Some(_) if folder => {}
+                    Some(_) => sources.iter_mut().filter(|s| s.is_at(&place)).for_each(|s| s.named = true),
+                    None => {
+                        seen.push(place);
+                        sources.push(Source::new(Some(file), text, !folder));
+                    }
+                }
+            }
+        }
+        let units = units(&sources)?;
+        Ok(Self { sources, units })
+    }
+
+    /// Compiles one unit.
+    #[must_use]
+    pub fn compile(&self, unit: &Unit) -> Compilation {
+        let input = |i: usize| Input { name: &self.sources[i].name, text: &self.sources[i].text };
+        let tests: Vec<Input<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
+        compile(input(unit.head), &tests)
+    }
+
+    /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
+    #[must_use]
+    pub fn source(&self, compilation: &Compilation, file: FileId) -> Option<usize> {
+        let name = &compilation.files.get(file)?.name;
+        self.sources.iter().position(|s| s.name == *name)
+    }
+}
+
+impl Source {
+    fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
+        let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
+        let kind = input::kind_of(&parse(FileId(0), &text).0);
+        Self { path, name, text, kind, named }
+    }
+
+    fn is_at(&self, place: &Path) -> bool {
+        self.path.as_ref().is_some_and(|p| p.canonicalize().is_ok_and(|p| p == place))
+    }
+
+    /// The folder that it is in, whole; of standard input the present one.
+    fn folder(&self) -> PathBuf {
+        let folder = self.path.as_ref().map_or(PathBuf::from("."), |p| input::folder(p));
+        folder.canonicalize().unwrap_or(folder)
+    }
+
+    fn is_called(&self, name: &str) -> bool {
+        self.path.as_ref().and_then(|p| p.file_name()).is_some_and(|n| n == name)
+    }
+}
+
+/// All `.hri` files in and below a folder, in order. Hidden folders, build folders and links to folders are left out.
+fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let mut files = Vec::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let fault = |e: std::io::Error| format!("cannot read {}: {e}", folder.display());
+        for entry in fs::read_dir(&folder).map_err(fault)? {
+            let entry = entry.map_err(fault)?;
+            let (name, path) = (entry.file_name(), entry.path());
+            let name = name.to_string_lossy();
+            if entry.file_type().map_err(fault)?.is_dir() {
+                if !name.starts_with('.') && !SKIPPED.contains(&&*name) {
+                    folders.push(path);
+                }
+            } else if path.extension().is_some_and(|e| e == "hri") && path.is_file() {
+                files.push(path.strip_prefix(".").map(Path::to_owned).unwrap_or(path));
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn units(sources: &[Source]) -> Result<Vec<Unit>, Fault> {
+    let head =
+        |(i, s): (usize, &Source)| (s.kind != Kind::Tests).then(|| Unit { head: i, tests: Vec::new() });
+    let mut units: Vec<Unit> = sources.iter().enumerate().filter_map(head).collect();
+    let scenarios: Vec<(usize, PathBuf)> = sources
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.kind == Kind::Scenario)
+        .map(|(i, s)| (i, s.folder()))
+        .collect();
+    for (i, source) in sources.iter().enumerate().filter(|(_, s)| s.kind == Kind::Tests) {
+        let owner = owner(source, sources, &scenarios)?;
+        units.iter_mut().filter(|u| u.head == owner).for_each(|u| u.tests.push(i));
+    }
+    Ok(units)
+}
+
+/// The scenario that tests belong to: the only one that was named, otherwise the nearest in the folders above.
+fn owner(tests: &Source, sources: &[Source], scenarios: &[(usize, PathBuf)]) -> Result<usize, Fault> {
+    let named: Vec<usize> = scenarios.iter().map(|s| s.0).filter(|i| sources[*i].named).collect();
+    if let [only] = named[..] {
+        return Ok(only);
+    }
+    let own = tests.folder();
+    for folder in own.ancestors() {
+        let here: Vec<usize> = scenarios.iter().filter(|(_, f)| f == folder).map(|(i, _)| *i).collect();
+        match (here[..].iter().find(|i| sources[**i].is_called("scenario.hri")), &here[..]) {
+            (Some(scenario), _) | (None, [scenario]) => return Ok(*scenario),
+            (None, []) => {}
+            (None, several) => {
+                let names: Vec<&str> = several.iter().map(|i| sources[*i].name.as_str()).collect();
+                return Err(format!(
+                    "{} holds tests, and it is not clear of which scenario: {}; name the scenario, as in `hrdsl check {} {}`",
+                    tests.name,
+                    names.join(", "),
+                    names[0],
+                    tests.name
+                ));
+            }
+        }
+    }
+    Err(format!(
+        "{} holds tests, and their scenario is not among the files; name it, as in `hrdsl check scenario.hri {}`",
+        tests.name, tests.name
+    ))
+}

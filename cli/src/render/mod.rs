@@ -1,0 +1,13 @@
+//! Diagnostics and pages as output: for people, as JSON, as SARIF.
+
+mod diff;
+mod human;
+mod json;
+mod page;
+mod sarif;
+
+pub use diff::unified;
+pub use human::{diagnostic, totals};
+pub use json::document as json;
+pub use page::terminal as page;
+pub use sarif::document as sarif;

@@ -1,0 +1,220 @@
+//! `hrdsl check` on many files: what is found, which tests belong where, what is denied, what is mended.
+
+mod support;
+
+use std::fs;
+
+use support::{expect_code, folder, hrdsl_in, hrdsl_reading, scenario, stderr, stdout, tree};
+
+const WARNED: &str = "agent Guest plays guest { goal !rest\n plan +!rest { }\n plan +!rset { } }\n";
+
+/// The lines of stdout up to the colon: the scenarios that are well formed.
+fn well_formed(out: &std::process::Output) -> Vec<String> {
+    stdout(out).lines().map(|l| l.split(':').next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn folders_are_searched_and_tests_go_to_the_nearest_scenario() {
+    let (a, b) = (scenario("a", "ask"), scenario("b", "shout"));
+    let folder = folder(&[
+        ("a/scenario.hri", &a),
+        ("a/tests/deep/t.hri", "test t { ask }\n"),
+        ("a/tests/unfinished.hri", "test u { ask; wait 1 s }\n"),
+        ("b/only.hri", &b),
+        ("b/t.hri", "test t { shout }\n"),
+        ("b/named.hri", "scenario b\ntest n { shout }\n"),
+        ("b/.hidden/x.hri", "scenario"),
+        ("target/x.hri", "scenario"),
+        ("b/node_modules/x.hri", "scenario"),
+        ("hrdsl-out/x.hri", "scenario"),
+        ("b/notes.txt", "scenario"),
+    ]);
+    let out = hrdsl_in(folder.path(), "check .");
+    expect_code(&out, 0);
+    assert_eq!(well_formed(&out), ["a/scenario.hri", "b/only.hri"]);
+    let tests: Vec<String> =
+        stdout(&out).lines().map(|l| l.rsplit(", ").next().unwrap().to_owned()).collect();
+    assert_eq!(tests, ["2 tests", "2 tests"]);
+
+    fs::write(folder.path().join("b/t.hri"), "test t { ask }\n").unwrap();
+    let out = hrdsl_in(folder.path(), "check a b");
+    expect_code(&out, 1);
+    assert_eq!(well_formed(&out), ["a/scenario.hri"]);
+    assert!(stderr(&out).contains("b/t.hri:1:10") && stderr(&out).contains("1 error"), "{}", stderr(&out));
+}
+
+#[test]
+fn tests_go_to_the_only_scenario_that_was_named() {
+    let folder = folder(&[
+        ("a/scenario.hri", &scenario("a", "ask")),
+        ("b/scenario.hri", &scenario("b", "shout")),
+        ("b/t.hri", "test t { ask }\n"),
+    ]);
+    expect_code(&hrdsl_in(folder.path(), "check a/scenario.hri b/t.hri"), 0);
+    // Found in a folder and named is named.
+    expect_code(&hrdsl_in(folder.path(), "check b a/scenario.hri"), 0);
+    expect_code(&hrdsl_in(folder.path(), "check . a/scenario.hri"), 0);
+    expect_code(&hrdsl_in(folder.path(), "check a b"), 1);
+    // With two it is the nearest again.
+    expect_code(&hrdsl_in(folder.path(), "check a/scenario.hri b/scenario.hri b/t.hri"), 1);
+}
+
+#[test]
+fn tests_without_a_scenario_are_refused() {
+    let (a, b) = (scenario("a", "ask"), scenario("b", "ask"));
+    let folder = folder(&[
+        ("x/a.hri", &a),
+        ("x/b.hri", &b),
+        ("x/t.hri", "test t { ask }\n"),
+        ("y/t.hri", "test t { ask }\n"),
+    ]);
+    let out = hrdsl_in(folder.path(), "check y");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("y/t.hri holds tests, and their scenario is not among the files"));
+    assert!(stderr(&out).contains("hrdsl check scenario.hri y/t.hri"), "{}", stderr(&out));
+    let out = hrdsl_in(folder.path(), "check x");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("not clear of which scenario: x/a.hri, x/b.hri"), "{}", stderr(&out));
+    expect_code(&hrdsl_in(folder.path(), "check x/a.hri x/t.hri"), 0);
+    fs::rename(folder.path().join("x/b.hri"), folder.path().join("x/scenario.hri")).unwrap();
+    expect_code(&hrdsl_in(folder.path(), "check x"), 0);
+}
+
+#[test]
+fn a_folder_without_scenarios_is_named() {
+    let folder = folder(&[("a/x.txt", "")]);
+    let out = hrdsl_in(folder.path(), "check a");
+    expect_code(&out, 2);
+    assert_eq!(stderr(&out), "error: no .hri file in a or the folders in it\n");
+}
+
+#[test]
+fn standard_input_is_a_file_like_others() {
+    let folder = folder(&[("scenario.hri", &scenario("a", "ask"))]);
+    let out = hrdsl_reading(folder.path(), "check -", &scenario("typed", "ask"));
+    expect_code(&out, 0);
+    assert!(stdout(&out).starts_with("<stdin>: scenario `typed` is well formed"), "{}", stdout(&out));
+    let out = hrdsl_reading(folder.path(), "check scenario.hri -", "test t { aks }\n");
+    expect_code(&out, 1);
+    assert!(stderr(&out).contains("<stdin>:1:10"), "{}", stderr(&out));
+    let out = hrdsl_reading(folder.path(), "check - --fix", &scenario("typed", "ask"));
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("`--fix` cannot change standard input"), "{}", stderr(&out));
+}
+
+/// Declarations without a `scenario` line are compiled, whatever the compiler makes of them, and not taken for tests.
+#[test]
+fn a_module_is_no_file_of_tests() {
+    let folder = folder(&[("m.hri", "const N = 3\nconst M = 2 s + 3 m\ntest t { ask }\n")]);
+    let out = hrdsl_in(folder.path(), "check m.hri --format json");
+    expect_code(&out, 1);
+    let document: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!(document["files"][0]["kind"], "module");
+    assert!(document["diagnostics"].as_array().unwrap().iter().any(|d| d["code"] == "HR0203"));
+}
+
+#[test]
+fn denied_warnings_fail() {
+    let text = scenario("a", "ask") + WARNED;
+    let folder = folder(&[("a.hri", &text)]);
+    let out = hrdsl_in(folder.path(), "check a.hri");
+    expect_code(&out, 0);
+    assert!(stdout(&out).contains("is well formed") && stderr(&out).ends_with("1 warning\n"));
+    for deny in ["warnings", "HR0403", "hr0403", "HR0101 --deny HR0403"] {
+        let out = hrdsl_in(folder.path(), &format!("check a.hri --deny {deny}"));
+        expect_code(&out, 1);
+        assert_eq!(stdout(&out), "");
+        assert!(stderr(&out).ends_with("1 error\n"), "{}", stderr(&out));
+    }
+    expect_code(&hrdsl_in(folder.path(), "check a.hri --deny HR0101"), 0);
+    let out = hrdsl_in(folder.path(), "check a.hri --deny HR9999");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("`hrdsl explain` lists them"), "{}", stderr(&out));
+}
+
+#[test]
+fn gen_counts_warnings_and_shows_errors() {
+    let suite = "suite s by random { stimuli ask; tests 2 }\n";
+    let text = scenario("a", "ask") + suite + WARNED;
+    let folder = folder(&[("a.hri", &text)]);
+    let out = hrdsl_in(folder.path(), "gen a.hri");
+    expect_code(&out, 0);
+    assert_eq!(stderr(&out), "1 warning (`hrdsl check a.hri` shows it)\n");
+    fs::write(folder.path().join("a.hri"), text + "require R functional x causes called\n").unwrap();
+    let out = hrdsl_in(folder.path(), "gen a.hri");
+    expect_code(&out, 1);
+    assert!(stderr(&out).contains("HR0101") && !stderr(&out).contains("HR0403"), "{}", stderr(&out));
+    assert!(
+        stderr(&out).ends_with("1 error\n1 warning (`hrdsl check a.hri` shows it)\n"),
+        "{}",
+        stderr(&out)
+    );
+}
+
+/// Faults with a certain fix, the second `;` found only when the first is gone, and one whose fix is a guess.
+const CROOKED: &str = "\
+agent Guest plays guest {
+  belief had(cups: 0..2) = had(0)
+  goal !rest
+  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ;; wait 1 s }
+  plan +!rset { }
+}
+";
+
+#[test]
+fn fixes_that_are_certain_are_applied() {
+    let text = scenario("a", "ask") + CROOKED;
+    let folder = folder(&[("a.hri", &text), ("b.hri", &scenario("b", "ask"))]);
+    let before = tree(folder.path());
+
+    let out = hrdsl_in(folder.path(), "check . --diff");
+    expect_code(&out, 1);
+    assert_eq!(
+        stdout(&out),
+        "\
+--- a.hri
++++ a.hri
+@@ -9,6 +9,6 @@
+ agent Guest plays guest {
+   belief had(cups: 0..2) = had(0)
+   goal !rest
+-  plan +!rest when had(N) && N ≤ 1 && N ≠ 0 { ;; wait 1 s }
++  plan +!rest when had(N) && N <= 1 && N != 0 {  wait 1 s }
+   plan +!rset { }
+ }
+"
+    );
+    assert_eq!(tree(folder.path()), before, "--diff changes nothing");
+
+    let out = hrdsl_in(folder.path(), "check . --fix");
+    expect_code(&out, 0);
+    let said = stderr(&out);
+    assert!(said.contains("fixed a.hri:12:32: replace `≤` by `<=`\n"), "{said}");
+    assert!(said.contains(": take the `;` away\n") && said.contains("4 fixes in 1 file\n"), "{said}");
+    assert!(said.ends_with("1 warning\n"), "what is not certain stays: {said}");
+    let after = tree(folder.path());
+    let fixed = text.replace('≤', "<=").replace('≠', "!=").replace("{ ;;", "{ ");
+    assert_eq!(String::from_utf8_lossy(&after["a.hri"]), fixed);
+    assert_eq!(after.len(), 2, "nothing else is left behind");
+    assert_eq!(after["b.hri"], before["b.hri"]);
+
+    let out = hrdsl_in(folder.path(), "check . --fix");
+    expect_code(&out, 0);
+    assert!(stderr(&out).contains("nothing to fix\n"), "{}", stderr(&out));
+    assert_eq!(tree(folder.path()), after);
+    assert_eq!(stdout(&hrdsl_in(folder.path(), "check . --diff")), "");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_mended_file_keeps_its_rights_and_its_links() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder(&[("real/a.hri", &(scenario("a", "ask") + CROOKED))]);
+    let real = folder.path().join("real/a.hri");
+    fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink(&real, folder.path().join("link.hri")).unwrap();
+    expect_code(&hrdsl_in(folder.path(), "check link.hri --fix"), 0);
+    assert!(folder.path().join("link.hri").is_symlink());
+    assert!(fs::read_to_string(&real).unwrap().contains("N <= 1"));
+    assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+}
