@@ -62,6 +62,34 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
     faults
 }
 
+/// The fixtures in a folder and those below it, by path.
+fn fixtures(folder: &Path, all: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            fixtures(&path, all);
+        } else {
+            all.insert(path.to_string_lossy().into_owned(), fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
+/// In `lint/` are scenarios in which each lint's diagnostic must be expected just as an error is.
+#[test]
+fn every_lint_says_what_it_should_and_nothing_else() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
+    let mut all = BTreeMap::new();
+    fixtures(&folder, &mut all);
+    let mut wrong = Vec::new();
+    for (path, text) in &all {
+        let name = path.trim_start_matches(&*folder.to_string_lossy());
+        let c = compile(Input { name, text }, &[]);
+        wrong.extend(faults(&c, expectations(0, text)));
+    }
+    assert!(all.len() >= 8, "the fixtures are not found");
+    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
+}
+
 #[test]
 fn every_fixture_gives_what_it_says() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check");

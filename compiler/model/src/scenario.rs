@@ -183,6 +183,9 @@ pub struct Plan {
     pub body: Vec<Step>,
     pub vars: Vec<String>,
     pub span: Span,
+    /// The trigger, and the name in it.
+    pub head: Span,
+    pub name: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -210,7 +213,7 @@ pub enum Arg {
 #[serde(rename_all = "snake_case")]
 pub enum Context {
     True,
-    Belief(BeliefId, Vec<Arg>),
+    Belief(BeliefId, Vec<Arg>, Span),
     Not(Box<Context>),
     And(Vec<Context>),
     Or(Vec<Context>),

@@ -61,7 +61,7 @@ fn terms(args: &[model::Arg]) -> Vec<Term> {
 fn context(c: &model::Context) -> Context {
     match c {
         model::Context::True => Context::True,
-        model::Context::Belief(b, args) => Context::Belief { belief: BeliefId(b.0), args: terms(args) },
+        model::Context::Belief(b, args, _) => Context::Belief { belief: BeliefId(b.0), args: terms(args) },
         model::Context::Not(c) => Context::Not(Box::new(context(c))),
         model::Context::And(cs) => Context::And(cs.iter().map(context).collect()),
         model::Context::Or(cs) => Context::Or(cs.iter().map(context).collect()),

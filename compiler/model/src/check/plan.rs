@@ -27,7 +27,8 @@ impl Checker<'_> {
         let body: Vec<Step> = plan.body.iter().filter_map(|step| self.step(scope, step, &mut env)).collect();
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
         let (trigger, args) = trigger?;
-        Some(Plan { label, trigger, args, context, body, vars, span })
+        let (head, name) = (plan.trigger.span, plan.trigger.call.name.span);
+        Some(Plan { label, trigger, args, context, body, vars, span, head, name })
     }
 
     fn label(&mut self, scope: &mut Scope, plan: &ast::Plan) -> String {
@@ -241,7 +242,7 @@ impl Checker<'_> {
         let belief = self.belief(scope, &call.name);
         let fields = belief.map(|b| self.belief_fields(scope.id, b));
         let args = self.matched(Noun::Belief, call, fields.as_ref(), env, true);
-        belief.map_or(Context::True, |b| Context::Belief(b, args))
+        belief.map_or(Context::True, |b| Context::Belief(b, args, call.span))
     }
 
     /// After an alternative a variable has a value if both sides give it one.

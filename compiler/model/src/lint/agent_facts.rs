@@ -1,0 +1,325 @@
+//! What the rules on plans ask about an agent: which beliefs come about and how, which goals are adopted, by whom.
+
+use crate::{
+    Agent, AgentId, Arg, Belief, BeliefId, ChoiceKind, Context, GoalId, Method, Plan, Player, Scenario, Step,
+    StepKind, Suite, TriggerOn, nearest::nearest,
+};
+use hrdsl_source::{Diagnostic, Span};
+
+use super::plan_terms::{Term, alternatives, may_unify, of_args, of_exprs, of_values};
+
+/// One agent, with what the scenario says about it.
+#[derive(Clone, Copy)]
+pub(crate) struct AgentFacts<'a> {
+    pub scenario: &'a Scenario,
+    pub id: AgentId,
+    pub agent: &'a Agent,
+}
+
+/// What is known of the facts of a belief at all times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// Nothing.
+    Unknown,
+    /// There is one at least.
+    Some,
+    /// There is just one.
+    One,
+    /// There is just one for each value of the argument with this index.
+    OnePer(u16),
+}
+
+/// A belief literal of a context.
+#[derive(Clone, Copy)]
+pub(crate) struct Literal<'a> {
+    pub belief: BeliefId,
+    pub args: &'a [Arg],
+    pub span: Span,
+    pub negated: bool,
+}
+
+impl Literal<'_> {
+    /// The belief's name in the text.
+    pub fn name_span(&self, name: &str) -> Span {
+        let end = self.span.start + u32::try_from(name.len()).unwrap_or(0);
+        Span { end: end.min(self.span.end), ..self.span }
+    }
+}
+
+/// All agents.
+pub(crate) fn agents(scenario: &Scenario) -> impl Iterator<Item = AgentFacts<'_>> {
+    (0..).zip(&scenario.agents).map(move |(i, agent)| AgentFacts { scenario, id: AgentId(i), agent })
+}
+
+/// The literals of a context from the left; negated are those under an odd number of `not`.
+pub(crate) fn literals(context: &Context) -> Vec<Literal<'_>> {
+    fn collect<'a>(context: &'a Context, negated: bool, all: &mut Vec<Literal<'a>>) {
+        match context {
+            Context::True | Context::Test(_) => {}
+            Context::Belief(belief, args, span) => {
+                all.push(Literal { belief: *belief, args, span: *span, negated });
+            }
+            Context::Not(inner) => collect(inner, !negated, all),
+            Context::And(parts) | Context::Or(parts) => {
+                parts.iter().for_each(|part| collect(part, negated, all));
+            }
+        }
+    }
+    let mut all = Vec::new();
+    collect(context, false, &mut all);
+    all
+}
+
+/// What a step does to beliefs.
+pub(crate) enum Change<'a> {
+    Adds(BeliefId, Vec<Term<'a>>),
+    /// Leaves this as the only one.
+    Replaces(BeliefId, Vec<Term<'a>>),
+    Removes(BeliefId, Vec<Term<'a>>),
+}
+
+impl Change<'_> {
+    pub fn belief(&self) -> BeliefId {
+        match self {
+            Change::Adds(b, _) | Change::Replaces(b, _) | Change::Removes(b, _) => *b,
+        }
+    }
+}
+
+pub(crate) fn change(step: &Step) -> Option<Change<'_>> {
+    match &step.kind {
+        StepKind::Add(b, args) => Some(Change::Adds(*b, of_exprs(args))),
+        StepKind::Replace(b, args) => Some(Change::Replaces(*b, of_exprs(args))),
+        StepKind::Remove(b, args) => Some(Change::Removes(*b, of_args(args))),
+        StepKind::Do(..)
+        | StepKind::Achieve(..)
+        | StepKind::Spawn(..)
+        | StepKind::Query(..)
+        | StepKind::Await { .. }
+        | StepKind::Wait(_) => None,
+    }
+}
+
+/// How a goal is adopted.
+pub(crate) enum Adoption<'a> {
+    /// At the start, or in an intention of its own: nobody waits for it.
+    Root,
+    /// By the step with this number.
+    By(&'a Plan, usize),
+}
+
+impl<'a> AgentFacts<'a> {
+    pub fn belief(&self, id: BeliefId) -> &'a Belief {
+        &self.agent.beliefs[usize::from(id.0)]
+    }
+
+    pub fn goal(&self, id: GoalId) -> &'a str {
+        &self.agent.goals[usize::from(id.0)].name
+    }
+
+    pub fn plans(&self, on: TriggerOn) -> impl Iterator<Item = &'a Plan> {
+        self.agent.plans.iter().filter(move |p| p.trigger == on)
+    }
+
+    fn steps(&self) -> impl Iterator<Item = &'a Step> {
+        self.agent.plans.iter().flat_map(|p| &p.body)
+    }
+
+    pub fn changes(&self) -> impl Iterator<Item = Change<'a>> {
+        self.steps().filter_map(change)
+    }
+
+    /// The suites in which it plays, with how they choose a belief.
+    fn suites(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Suite, Option<ChoiceKind>)> {
+        let (scenario, id) = (self.scenario, self.id);
+        scenario.suites.iter().filter_map(move |suite| match &suite.method {
+            Method::Agents { players, choose, .. } if players.contains(&Player::Agent(id)) => {
+                let how = choose.iter().find(|c| c.agent == id && c.belief == belief).map(|c| c.how);
+                Some((suite, how))
+            }
+            Method::Agents { .. } | Method::Search { .. } | Method::Random { .. } => None,
+        })
+    }
+
+    fn is_chosen(&self, belief: BeliefId) -> bool {
+        self.suites(belief).any(|(_, how)| how.is_some())
+    }
+
+    fn initial(&self, belief: BeliefId) -> impl Iterator<Item = Vec<Term<'a>>> {
+        let agent = self.agent;
+        agent.initial_beliefs.iter().filter(move |(b, _)| *b == belief).map(|(_, args)| of_values(args))
+    }
+
+    /// It holds before any plan has run, in some run.
+    pub fn is_given(&self, belief: BeliefId) -> bool {
+        self.is_chosen(belief) || self.initial(belief).next().is_some()
+    }
+
+    /// A plan adds it.
+    pub fn is_added(&self, belief: BeliefId) -> bool {
+        self.changes().any(|c| matches!(c, Change::Adds(b, _) | Change::Replaces(b, _) if b == belief))
+    }
+
+    /// It holds at some time, in some run.
+    pub fn comes_about(&self, belief: BeliefId) -> bool {
+        self.is_given(belief) || self.is_added(belief)
+    }
+
+    /// The beliefs that only plans add which need them, each other's way round too. What nothing adds at all is taken to
+    /// hold here: it is said elsewhere.
+    pub fn only_from_themselves(&self) -> Vec<BeliefId> {
+        let all = || (0..).map(BeliefId).take(self.agent.beliefs.len());
+        let mut known: Vec<bool> = all().map(|b| self.is_given(b) || !self.is_added(b)).collect();
+        loop {
+            let is_known = |b: BeliefId| known[usize::from(b.0)];
+            let mut more = Vec::new();
+            for plan in self.agent.plans.iter().filter(|p| needs_only(p, &is_known)) {
+                more.extend(plan.body.iter().filter_map(change).filter_map(|c| match c {
+                    Change::Adds(b, _) | Change::Replaces(b, _) if !is_known(b) => Some(b),
+                    Change::Adds(..) | Change::Replaces(..) | Change::Removes(..) => None,
+                }));
+            }
+            if more.is_empty() {
+                return all().filter(|b| !known[usize::from(b.0)]).collect();
+            }
+            more.iter().for_each(|b| known[usize::from(b.0)] = true);
+        }
+    }
+
+    /// A fact that these arguments of a plan match comes about.
+    pub fn may_come_about(&self, belief: BeliefId, args: &[Term<'_>]) -> bool {
+        self.is_chosen(belief)
+            || self.initial(belief).any(|fact| may_unify(args, &fact, true))
+            || self.changes().any(|c| match c {
+                Change::Adds(b, made) | Change::Replaces(b, made) => {
+                    b == belief && may_unify(args, &made, true)
+                }
+                Change::Removes(..) => false,
+            })
+    }
+
+    /// What is certain of a belief's facts.
+    pub fn held(&self, belief: BeliefId) -> Held {
+        let changes: Vec<Change<'_>> = self.changes().filter(|c| c.belief() == belief).collect();
+        if changes.iter().any(|c| matches!(c, Change::Removes(..))) {
+            return Held::Unknown;
+        }
+        let chosen: Vec<Option<ChoiceKind>> = self.suites(belief).map(|(_, how)| how).collect();
+        let always = |kind: ChoiceKind| !chosen.is_empty() && chosen.iter().all(|how| *how == Some(kind));
+        let added = changes.iter().any(|c| matches!(c, Change::Adds(..)));
+        match self.initial(belief).count() {
+            0 if always(ChoiceKind::One) => {
+                if added {
+                    Held::Some
+                } else {
+                    Held::One
+                }
+            }
+            0 => match chosen.first() {
+                Some(Some(ChoiceKind::OnePer(param)))
+                    if changes.is_empty() && always(ChoiceKind::OnePer(*param)) =>
+                {
+                    Held::OnePer(*param)
+                }
+                Some(_) | None => Held::Unknown,
+            },
+            1 if !added && !self.is_chosen(belief) => Held::One,
+            _ => Held::Some,
+        }
+    }
+
+    pub fn is_adopted(&self, goal: GoalId) -> bool {
+        self.adoptions(goal).next().is_some()
+    }
+
+    /// Who adopts a goal.
+    pub fn adoptions(&self, goal: GoalId) -> impl Iterator<Item = Adoption<'a>> {
+        let agent = self.agent;
+        let initial = agent.initial_goals.iter().filter(move |(g, _)| *g == goal).map(|_| Adoption::Root);
+        let by = asking(agent, move |kind| matches!(kind, StepKind::Achieve(g, _) if *g == goal));
+        let spawns = asking(agent, move |kind| matches!(kind, StepKind::Spawn(g, _) if *g == goal));
+        initial.chain(by.map(|(plan, at)| Adoption::By(plan, at))).chain(spawns.map(|_| Adoption::Root))
+    }
+
+    /// The plans that ask for a belief, with the number of the step.
+    pub fn askers(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Plan, usize)> {
+        asking(self.agent, move |kind| matches!(kind, StepKind::Query(b, _) if *b == belief))
+    }
+
+    /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
+    pub fn is_unadopted(&self, plan: &Plan) -> bool {
+        match plan.trigger {
+            TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => !self.is_adopted(goal),
+            TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Test(_) | TriggerOn::Perceived(_) => {
+                false
+            }
+        }
+    }
+
+    /// What happens to a belief that a plan waits for never happens.
+    pub fn is_dead_trigger(&self, plan: &Plan) -> bool {
+        let args = of_args(&plan.args);
+        match plan.trigger {
+            TriggerOn::Added(b) => !self.may_come_about(b, &args),
+            TriggerOn::Removed(b) => {
+                let goes = self.changes().any(|c| match c {
+                    Change::Removes(r, removed) => r == b && may_unify(&args, &removed, true),
+                    Change::Replaces(r, _) => r == b,
+                    Change::Adds(..) => false,
+                });
+                !goes || !self.may_come_about(b, &args)
+            }
+            TriggerOn::Test(b) => !self.steps().any(|s| {
+                matches!(&s.kind, StepKind::Query(q, asked) if *q == b && may_unify(&args, &of_args(asked), true))
+            }),
+            TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => false,
+        }
+    }
+
+    /// Adds the nearest of the beliefs that come about as help, with its fix; `otherwise` if none is near.
+    pub fn near_belief(
+        &self,
+        issue: Diagnostic,
+        belief: BeliefId,
+        name: Option<Span>,
+        otherwise: String,
+    ) -> Diagnostic {
+        let this = self.belief(belief);
+        let fits =
+            |id: &BeliefId| self.comes_about(*id) && self.belief(*id).params.len() == this.params.len();
+        let ids = (0..).map(BeliefId).take(self.agent.beliefs.len());
+        let names = ids.filter(fits).map(|id| self.belief(id).name.as_str());
+        let Some(near) = nearest(&this.name, names) else { return issue.help(otherwise) };
+        let issue = issue.help(format!("did you mean `{near}`? Otherwise, {otherwise}"));
+        match name {
+            Some(span) => issue.fix(format!("replace `{}` by `{near}`", this.name), span, near, false),
+            None => issue,
+        }
+    }
+}
+
+/// Whether the plan can run with these beliefs alone, as far as its trigger and the literals of its context say.
+fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
+    let trigger = match plan.trigger {
+        TriggerOn::Added(b) | TriggerOn::Removed(b) => is_known(b),
+        TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Test(_) | TriggerOn::Perceived(_) => true,
+    };
+    let holds = |part: &&Context| match part {
+        Context::Belief(b, ..) => is_known(*b),
+        Context::True | Context::Not(_) | Context::And(_) | Context::Or(_) | Context::Test(_) => true,
+    };
+    trigger && alternatives(&plan.context).is_none_or(|all| all.iter().any(|parts| parts.iter().all(holds)))
+}
+
+/// The steps of some kind, with their plans.
+fn asking(agent: &Agent, is: impl Fn(&StepKind) -> bool + Copy) -> impl Iterator<Item = (&Plan, usize)> {
+    agent.plans.iter().flat_map(move |plan| {
+        let steps = plan.body.iter().enumerate();
+        steps.filter(move |(_, step)| is(&step.kind)).map(move |(at, _)| (plan, at))
+    })
+}
+
+/// A belief or goal with `_` for each argument: `drink(_)`.
+pub(crate) fn any_args(name: &str, arity: usize) -> String {
+    if arity == 0 { name.to_owned() } else { format!("{name}({})", vec!["_"; arity].join(", ")) }
+}

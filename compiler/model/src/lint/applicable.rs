@@ -1,0 +1,487 @@
+//! Whether a step of a plan always finds an applicable plan, or a fact: tried in all worlds that differ in what the
+//! contexts ask. A world is made up as it is asked about; where there are too many the answer is yes, so that nothing is
+//! said that is not known.
+
+use std::cmp::Ordering;
+
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+
+use super::{
+    agent_facts::{AgentFacts, Change, Held, change},
+    plan_terms::{alternatives, fold, same_value},
+};
+use crate::{
+    Arg, BeliefId, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type, Value,
+};
+
+/// Steps of the search.
+const BUDGET: u32 = 20_000;
+/// A range with more values is not tried value by value.
+const LARGE: i64 = 16;
+
+/// A value, or what is known of it by name only.
+#[derive(Clone, Debug, PartialEq)]
+enum Sym {
+    Value(Value),
+    Named(String),
+}
+
+impl Sym {
+    fn text(&self) -> String {
+        match self {
+            Sym::Value(value) => value.to_string(),
+            Sym::Named(name) => name.clone(),
+        }
+    }
+}
+
+/// A question that a world answers.
+#[derive(Clone, Debug, PartialEq)]
+enum Question {
+    /// Whether such a fact is held; `None`: with any value.
+    Held(String, Vec<Option<String>>),
+    /// Whether a condition is true.
+    Holds(String),
+    /// How a value compares with a number: less, equal, more.
+    Against(String, f64),
+    /// How two values compare.
+    Between(String, String),
+    /// Which of these values something has.
+    Which(String, Vec<Value>),
+}
+
+impl Question {
+    fn answers(&self) -> usize {
+        match self {
+            Question::Held(..) | Question::Holds(_) => 2,
+            Question::Against(..) | Question::Between(..) => 3,
+            Question::Which(_, values) => values.len(),
+        }
+    }
+}
+
+/// What has been answered so far.
+#[derive(Default)]
+struct World {
+    known: Vec<(Question, usize)>,
+    budget: u32,
+}
+
+/// The answer, or the question that must be answered first.
+type Asked<T> = Result<T, Question>;
+
+const ORDERS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
+
+impl World {
+    fn ask(&self, question: Question) -> Asked<usize> {
+        let known = self.known.iter().find(|(q, _)| *q == question).map(|(_, answer)| *answer);
+        known.ok_or(question)
+    }
+
+    fn which(&self, name: String, ty: Type) -> Asked<Sym> {
+        let values: Vec<Value> = match ty {
+            Type::Bool => vec![Value::Bool(false), Value::Bool(true)],
+            Type::Int { lo, hi } if hi.saturating_sub(lo) < LARGE => (lo..=hi).map(Value::Int).collect(),
+            Type::Enum(of) => of.values().iter().map(|v| Value::Symbol(*v)).collect(),
+            Type::Int { .. } | Type::Float(_) => return Ok(Sym::Named(name)),
+        };
+        let answer = self.ask(Question::Which(name, values.clone()))?;
+        Ok(Sym::Value(values[answer]))
+    }
+
+    /// Whether a fact is held; what follows from the other answers is not asked.
+    fn held(&self, belief: &str, args: &[Option<String>]) -> Asked<bool> {
+        let covers = |general: &[Option<String>], special: &[Option<String>]| {
+            general.iter().zip(special).all(|(g, s)| g.is_none() || g == s)
+        };
+        for (question, answer) in &self.known {
+            if let Question::Held(name, known) = question
+                && name == belief
+            {
+                match answer {
+                    0 if covers(known, args) => return Ok(false),
+                    0 => {}
+                    _ if covers(args, known) => return Ok(true),
+                    _ => {}
+                }
+            }
+        }
+        Ok(self.ask(Question::Held(belief.to_owned(), args.to_vec()))? == 1)
+    }
+
+    fn compare(&self, a: &Sym, b: &Sym) -> Asked<Ordering> {
+        match (a, b) {
+            (Sym::Value(a), Sym::Value(b)) => Ok(order(*a, *b)),
+            (Sym::Named(a), Sym::Named(b)) if a == b => Ok(Ordering::Equal),
+            (Sym::Named(a), Sym::Named(b)) if a > b => Ok(self.between(b, a)?.reverse()),
+            (Sym::Named(a), Sym::Named(b)) => self.between(a, b),
+            (Sym::Named(a), Sym::Value(b)) => self.against(a, *b),
+            (Sym::Value(a), Sym::Named(b)) => Ok(self.against(b, *a)?.reverse()),
+        }
+    }
+
+    fn between(&self, a: &str, b: &str) -> Asked<Ordering> {
+        Ok(ORDERS[self.ask(Question::Between(a.to_owned(), b.to_owned()))?])
+    }
+
+    fn against(&self, name: &str, value: Value) -> Asked<Ordering> {
+        let Some(number) = value.number() else {
+            let same = self.ask(Question::Holds(name.to_owned()))? == usize::from(value == Value::Bool(true));
+            return Ok(if same { Ordering::Equal } else { Ordering::Less });
+        };
+        for (question, answer) in &self.known {
+            if let Question::Against(known, bound) = question
+                && known == name
+            {
+                match ORDERS[*answer] {
+                    Ordering::Less if *bound <= number => return Ok(Ordering::Less),
+                    Ordering::Greater if *bound >= number => return Ok(Ordering::Greater),
+                    Ordering::Equal => return Ok(bound.total_cmp(&number)),
+                    Ordering::Less | Ordering::Greater => {}
+                }
+            }
+        }
+        Ok(ORDERS[self.ask(Question::Against(name.to_owned(), number))?])
+    }
+}
+
+fn order(a: Value, b: Value) -> Ordering {
+    match (a.number(), b.number()) {
+        (Some(x), Some(y)) => x.total_cmp(&y),
+        (Some(_) | None, _) if same_value(a, b) => Ordering::Equal,
+        (Some(_) | None, _) => Ordering::Less,
+    }
+}
+
+/// Whether something is so in every world.
+fn always(is_so: &dyn Fn(&World) -> Asked<bool>, world: &mut World) -> bool {
+    if world.budget == 0 {
+        return true;
+    }
+    world.budget -= 1;
+    match is_so(world) {
+        Ok(answer) => answer,
+        Err(question) => (0..question.answers()).all(|answer| {
+            world.known.push((question.clone(), answer));
+            let so = always(is_so, world);
+            world.known.pop();
+            so
+        }),
+    }
+}
+
+/// Whether an achieve or query step has a plan or fact whenever it is reached.
+pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> bool {
+    let is_so = |world: &World| {
+        let mut here = Place::enter(facts, plan, world);
+        if !here.selected(plan, at)? {
+            // This plan is not the one that runs in such a world.
+            return Ok(true);
+        }
+        here.facts_since(plan, at)?;
+        match &plan.body[at].kind {
+            StepKind::Achieve(goal, args) => {
+                let args: Vec<Sym> = args.iter().map(|e| here.sym(e)).collect::<Asked<_>>()?;
+                here.has_plan(*goal, &args)
+            }
+            StepKind::Query(belief, args) => here.literal(*belief, args),
+            StepKind::Do(..)
+            | StepKind::Spawn(..)
+            | StepKind::Add(..)
+            | StepKind::Remove(..)
+            | StepKind::Replace(..)
+            | StepKind::Await { .. }
+            | StepKind::Wait(_) => Ok(true),
+        }
+    };
+    always(&is_so, &mut World { known: Vec::new(), budget: BUDGET })
+}
+
+/// A plan at a moment in a world.
+struct Place<'a> {
+    facts: &'a AgentFacts<'a>,
+    world: &'a World,
+    /// Its name for what its variables stand for.
+    name: String,
+    vars: Vec<Option<Sym>>,
+    /// Beliefs that have changed since are called by another name.
+    past: Vec<BeliefId>,
+    /// Facts that its own steps have added.
+    added: Vec<(BeliefId, Vec<Sym>)>,
+}
+
+impl<'a> Place<'a> {
+    fn enter(facts: &'a AgentFacts<'a>, plan: &Plan, world: &'a World) -> Self {
+        let vars = vec![None; plan.vars.len()];
+        Self { facts, world, name: plan.label.clone(), vars, past: Vec::new(), added: Vec::new() }
+    }
+
+    /// Binds the variables of a plan that runs; `false` if it does not. Until step `at`, beliefs may change.
+    fn selected(&mut self, plan: &Plan, at: usize) -> Asked<bool> {
+        self.head(plan)?;
+        self.past = changed(self.facts, plan, at);
+        let holds = self.formula(&plan.context)?;
+        self.past.clear();
+        Ok(holds)
+    }
+
+    fn head(&mut self, plan: &Plan) -> Asked<()> {
+        let params: &[Param] = match plan.trigger {
+            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => &self.facts.belief(b).params,
+            TriggerOn::Perceived(e) => &self.facts.scenario.events[usize::from(e.0)].params,
+            TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+        };
+        for (i, arg) in plan.args.iter().enumerate() {
+            if let Arg::Var(var) = arg
+                && self.vars[usize::from(*var)].is_none()
+            {
+                let name = format!("{}.{i}", self.name);
+                let value = match params.get(i) {
+                    Some(param) => self.world.which(name, param.ty)?,
+                    None => Sym::Named(name),
+                };
+                self.vars[usize::from(*var)] = Some(value);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the plan's own steps before `at` have added, and what its queries have found.
+    fn facts_since(&mut self, plan: &Plan, at: usize) -> Asked<()> {
+        for step in &plan.body[..at] {
+            match &step.kind {
+                StepKind::Query(_, args) => {
+                    for arg in args {
+                        if let Arg::Var(var) = arg {
+                            let name = format!("{}.{var}", self.name);
+                            self.vars[usize::from(*var)].get_or_insert(Sym::Named(name));
+                        }
+                    }
+                }
+                StepKind::Add(belief, args) | StepKind::Replace(belief, args) => {
+                    let args: Vec<Sym> = args.iter().map(|e| self.sym(e)).collect::<Asked<_>>()?;
+                    self.added.push((*belief, args));
+                }
+                StepKind::Remove(belief, _) => self.added.retain(|(b, _)| b != belief),
+                StepKind::Do(..) | StepKind::Achieve(..) | StepKind::Await { .. } | StepKind::Wait(_) => {
+                    self.added.clear();
+                }
+                StepKind::Spawn(..) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether some plan for the goal is applicable.
+    fn has_plan(&self, goal: GoalId, args: &[Sym]) -> Asked<bool> {
+        for plan in self.facts.plans(TriggerOn::Achieve(goal)) {
+            let mut callee = Place {
+                name: format!("{}.{}", self.name, plan.label),
+                vars: vec![None; plan.vars.len()],
+                past: Vec::new(),
+                added: self.added.clone(),
+                ..*self
+            };
+            if callee.matches(&plan.args, args)? && callee.formula(&plan.context)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn matches(&mut self, args: &[Arg], values: &[Sym]) -> Asked<bool> {
+        for (arg, value) in args.iter().zip(values) {
+            let wanted = match arg {
+                Arg::Any => continue,
+                Arg::Var(var) => match &self.vars[usize::from(*var)] {
+                    Some(known) => known.clone(),
+                    None => {
+                        self.vars[usize::from(*var)] = Some(value.clone());
+                        continue;
+                    }
+                },
+                Arg::Expr(e) => self.sym(e)?,
+            };
+            if self.world.compare(&wanted, value)? != Ordering::Equal {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn formula(&mut self, context: &Context) -> Asked<bool> {
+        let Some(all) = alternatives(context) else { return Ok(true) };
+        for parts in all {
+            let before = self.vars.clone();
+            if self.conjunction(&parts)? {
+                return Ok(true);
+            }
+            self.vars = before;
+        }
+        Ok(false)
+    }
+
+    fn conjunction(&mut self, parts: &[&Context]) -> Asked<bool> {
+        for part in parts {
+            let holds = match part {
+                Context::Belief(belief, args, _) => self.literal(*belief, args)?,
+                Context::Not(inner) => {
+                    let before = self.vars.clone();
+                    let holds = self.formula(inner)?;
+                    self.vars = before;
+                    !holds
+                }
+                Context::Test(e) => self.test(e)?,
+                Context::True | Context::And(_) | Context::Or(_) => self.formula(part)?,
+            };
+            if !holds {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn literal(&mut self, belief: BeliefId, args: &[Arg]) -> Asked<bool> {
+        let known: Vec<Option<Sym>> = args.iter().map(|arg| self.known(arg)).collect::<Asked<_>>()?;
+        let now = self.belief_name(belief);
+        for (b, fact) in &self.added {
+            if *b == belief && known.iter().zip(fact).all(|(k, f)| k.as_ref().is_none_or(|k| k == f)) {
+                let fact = fact.clone();
+                return self.matches(args, &fact);
+            }
+        }
+        let open = |except: Option<usize>| {
+            known.iter().enumerate().all(|(i, k)| k.is_none() || Some(i) == except) && distinct(args)
+        };
+        let params = &self.facts.belief(belief).params;
+        let fact = |world: &World, name: &str| -> Asked<Vec<Sym>> {
+            let values = params.iter().enumerate();
+            values.map(|(i, p)| world.which(format!("{name}.{i}"), p.ty)).collect()
+        };
+        match self.facts.held(belief) {
+            Held::One => {
+                let fact = fact(self.world, &now)?;
+                self.matches(args, &fact)
+            }
+            Held::OnePer(at) if known.get(usize::from(at)).is_some_and(Option::is_some) => {
+                let per = known[usize::from(at)].as_ref().map(Sym::text).unwrap_or_default();
+                let mut fact = fact(self.world, &format!("{now}({per})"))?;
+                fact[usize::from(at)] = known[usize::from(at)].clone().unwrap_or(Sym::Named(per));
+                self.matches(args, &fact)
+            }
+            Held::Some | Held::OnePer(_) if open(None) => {
+                self.name_open(args, &now);
+                Ok(true)
+            }
+            Held::Some | Held::OnePer(_) | Held::Unknown => {
+                let texts: Vec<Option<String>> = known.iter().map(|k| k.as_ref().map(Sym::text)).collect();
+                let held = self.world.held(&now, &texts)?;
+                if held {
+                    let shown: Vec<&str> = texts.iter().map(|t| t.as_deref().unwrap_or("_")).collect();
+                    self.name_open(args, &format!("{now}({})", shown.join(",")));
+                }
+                Ok(held)
+            }
+        }
+    }
+
+    /// What a belief is called in the questions: by another name before a change that may come.
+    fn belief_name(&self, belief: BeliefId) -> String {
+        let name = &self.facts.belief(belief).name;
+        if self.past.contains(&belief) { format!("{name}'") } else { name.clone() }
+    }
+
+    fn known(&self, arg: &Arg) -> Asked<Option<Sym>> {
+        match arg {
+            Arg::Any => Ok(None),
+            Arg::Var(var) => Ok(self.vars[usize::from(*var)].clone()),
+            Arg::Expr(e) => self.sym(e).map(Some),
+        }
+    }
+
+    /// Gives the open variables of a literal names.
+    fn name_open(&mut self, args: &[Arg], fact: &str) {
+        for (i, arg) in args.iter().enumerate() {
+            if let Arg::Var(var) = arg {
+                self.vars[usize::from(*var)].get_or_insert_with(|| Sym::Named(format!("{fact}.{i}")));
+            }
+        }
+    }
+
+    fn test(&self, e: &Expr) -> Asked<bool> {
+        if let ExprKind::Binary(op, a, b) = &e.kind {
+            let compared =
+                |holds: fn(Ordering) -> bool| Ok(holds(self.world.compare(&self.sym(a)?, &self.sym(b)?)?));
+            match op {
+                BinaryOp::Lt => return compared(Ordering::is_lt),
+                BinaryOp::Le => return compared(Ordering::is_le),
+                BinaryOp::Gt => return compared(Ordering::is_gt),
+                BinaryOp::Ge => return compared(Ordering::is_ge),
+                BinaryOp::Eq => return compared(Ordering::is_eq),
+                BinaryOp::Ne => return compared(Ordering::is_ne),
+                BinaryOp::And => return Ok(self.test(a)? && self.test(b)?),
+                BinaryOp::Or => return Ok(self.test(a)? || self.test(b)?),
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {}
+            }
+        }
+        if let ExprKind::Unary(UnaryOp::Not, a) = &e.kind {
+            return Ok(!self.test(a)?);
+        }
+        match self.sym(e)? {
+            Sym::Value(value) => Ok(value == Value::Bool(true)),
+            Sym::Named(name) => Ok(self.world.ask(Question::Holds(name))? == 1),
+        }
+    }
+
+    /// The value of an expression, or a name that is the same for the same expression over the same values.
+    fn sym(&self, e: &Expr) -> Asked<Sym> {
+        let value = |var: u16| match &self.vars[usize::from(var)] {
+            Some(Sym::Value(value)) => Some(*value),
+            Some(Sym::Named(_)) | None => None,
+        };
+        if let Some(value) = fold(e, &value) {
+            return Ok(Sym::Value(value));
+        }
+        let all = |parts: &[&Expr]| -> Asked<String> {
+            let texts: Vec<String> = parts.iter().map(|p| Ok(self.sym(p)?.text())).collect::<Asked<_>>()?;
+            Ok(texts.join(", "))
+        };
+        Ok(Sym::Named(match &e.kind {
+            ExprKind::Leaf(Leaf::Local(var)) => match &self.vars[usize::from(*var)] {
+                Some(sym) => return Ok(sym.clone()),
+                None => format!("{}.{var}", self.name),
+            },
+            ExprKind::Unary(op, a) => format!("{op:?}({})", all(&[a])?),
+            ExprKind::Binary(op, a, b) => format!("{op:?}({})", all(&[a, b])?),
+            ExprKind::If(c, a, b) => format!("if({})", all(&[c, a, b])?),
+            ExprKind::Call(f, args) => format!("{f:?}({})", all(&args.iter().collect::<Vec<_>>())?),
+            ExprKind::Const(_) | ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => "?".to_owned(),
+        }))
+    }
+}
+
+/// No variable comes twice.
+fn distinct(args: &[Arg]) -> bool {
+    let vars: Vec<u16> = super::plan_terms::vars_of(args).collect();
+    vars.iter().enumerate().all(|(i, var)| !vars[..i].contains(var))
+}
+
+/// The beliefs that may have changed between the selection of the plan and its step `at`.
+fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
+    let mut all: Vec<BeliefId> = Vec::new();
+    for step in &plan.body[..at] {
+        match &step.kind {
+            StepKind::Do(..) | StepKind::Achieve(..) | StepKind::Await { .. } | StepKind::Wait(_) => {
+                all.extend(facts.changes().map(|c| c.belief()));
+            }
+            StepKind::Query(b, _) if facts.plans(TriggerOn::Test(*b)).next().is_some() => {
+                all.extend(facts.changes().map(|c| c.belief()));
+            }
+            StepKind::Query(..) | StepKind::Spawn(..) => {}
+            StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) => {
+                all.extend(change(step).map(|c: Change<'_>| c.belief()));
+            }
+        }
+    }
+    all
+}

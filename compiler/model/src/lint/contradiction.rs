@@ -1,0 +1,325 @@
+//! Contexts that can never hold: a constant, a belief and its negation, comparisons that exclude each other.
+
+use std::collections::BTreeMap;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::BinaryOp;
+
+use super::{
+    agent_facts::AgentFacts,
+    plan_terms::{Term, alternatives, bound_before, of_args, same_expr, same_value},
+};
+use crate::{Arg, Context, Expr, ExprKind, Leaf, Param, Plan, TriggerOn, Type};
+
+/// Why a context can never hold.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Contradiction {
+    pub span: Span,
+    pub why: String,
+    /// What it clashes with.
+    pub with: Option<(Span, String)>,
+}
+
+/// Why no alternative of the plan's context can hold: what is wrong with the first.
+pub(crate) fn of(facts: &AgentFacts<'_>, plan: &Plan) -> Option<Contradiction> {
+    let mut first = None;
+    for parts in alternatives(&plan.context)? {
+        let found = in_conjunction(facts, plan, &parts)?;
+        first.get_or_insert(found);
+    }
+    first
+}
+
+fn in_conjunction(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
+    constant(parts)
+        .or_else(|| negated_belief(plan, parts))
+        .or_else(|| negated_test(parts))
+        .or_else(|| excluded(parts))
+        .or_else(|| out_of_range(facts, plan, parts))
+}
+
+fn constant(parts: &[&Context]) -> Option<Contradiction> {
+    parts.iter().find_map(|part| {
+        let (e, fails) = match part {
+            Context::Test(e) => (e, false),
+            Context::Not(inner) => match inner.as_ref() {
+                Context::Test(e) => (e, true),
+                Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => {
+                    return None;
+                }
+            },
+            Context::True | Context::Belief(..) | Context::And(_) | Context::Or(_) => return None,
+        };
+        (e.constant() == Some(crate::Value::Bool(fails))).then(|| Contradiction {
+            span: e.span,
+            why: format!("this is always {fails}"),
+            with: None,
+        })
+    })
+}
+
+/// `b(X) && not b(X)`
+fn negated_belief(plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
+    let bound = bound_before(plan, parts);
+    parts.iter().zip(&bound).find_map(|(part, bound)| {
+        let Context::Not(inner) = part else { return None };
+        let Context::Belief(belief, denied, span) = inner.as_ref() else { return None };
+        parts.iter().find_map(|part| match part {
+            Context::Belief(b, held, at) if b == belief && denies(denied, held, bound) => {
+                Some(Contradiction {
+                    span: *span,
+                    why: "this cannot be absent".to_owned(),
+                    with: Some((*at, "since the context needs it here".to_owned())),
+                })
+            }
+            Context::Belief(..)
+            | Context::True
+            | Context::Not(_)
+            | Context::And(_)
+            | Context::Or(_)
+            | Context::Test(_) => None,
+        })
+    })
+}
+
+/// Whether a fact that matches `held` matches what is denied. A variable that is not bound before the negation stands
+/// for any value in it.
+fn denies(denied: &[Arg], held: &[Arg], bound: &[u16]) -> bool {
+    let mut own: Vec<(u16, Term<'_>)> = Vec::new();
+    of_args(denied).into_iter().zip(of_args(held)).all(|(denied, held)| match (denied, held) {
+        (Term::Any, _) => true,
+        (Term::Var(a), held) if !bound.contains(&a) => match own.iter().find(|(var, _)| *var == a) {
+            Some((_, before)) => same_term(*before, held),
+            None => {
+                own.push((a, held));
+                true
+            }
+        },
+        (denied @ (Term::Var(_) | Term::Const(_) | Term::Other(_)), held) => same_term(denied, held),
+    })
+}
+
+fn same_term(a: Term<'_>, b: Term<'_>) -> bool {
+    match (a, b) {
+        (Term::Var(a), Term::Var(b)) => a == b,
+        (Term::Const(a), Term::Const(b)) => same_value(a, b),
+        (Term::Other(a), Term::Other(b)) => alike(a, b),
+        (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_), _) => false,
+    }
+}
+
+fn alike(a: &Expr, b: &Expr) -> bool {
+    same_expr(a, b, &mut |a, b| a == b)
+}
+
+/// The tests of a conjunction, with whether they must hold.
+fn tests<'a>(parts: &[&'a Context]) -> Vec<(&'a Expr, bool)> {
+    let test = |part: &&'a Context| match *part {
+        Context::Test(e) => Some((e, true)),
+        Context::Not(inner) => match inner.as_ref() {
+            Context::Test(e) => Some((e, false)),
+            Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => None,
+        },
+        Context::True | Context::Belief(..) | Context::And(_) | Context::Or(_) => None,
+    };
+    parts.iter().filter_map(test).collect()
+}
+
+/// `X && not X`
+fn negated_test(parts: &[&Context]) -> Option<Contradiction> {
+    let tests = tests(parts);
+    tests.iter().enumerate().find_map(|(i, (e, holds))| {
+        let (other, _) = tests[..i].iter().find(|(other, held)| held != holds && alike(e, other))?;
+        Some(clash(e.span, other.span))
+    })
+}
+
+fn clash(span: Span, with: Span) -> Contradiction {
+    Contradiction {
+        span,
+        why: "these two are never true together".to_owned(),
+        with: Some((with, "with this".to_owned())),
+    }
+}
+
+const LESS: u8 = 1;
+const EQUAL: u8 = 2;
+const MORE: u8 = 4;
+
+/// A comparison: the orders of its operands for which it holds.
+struct Comparison<'a> {
+    left: &'a Expr,
+    right: &'a Expr,
+    orders: u8,
+    span: Span,
+}
+
+fn comparison(e: &Expr, holds: bool) -> Option<Comparison<'_>> {
+    let ExprKind::Binary(op, left, right) = &e.kind else { return None };
+    let orders = match op {
+        BinaryOp::Lt => LESS,
+        BinaryOp::Le => LESS | EQUAL,
+        BinaryOp::Gt => MORE,
+        BinaryOp::Ge => MORE | EQUAL,
+        BinaryOp::Eq => EQUAL,
+        BinaryOp::Ne => LESS | MORE,
+        BinaryOp::Add
+        | BinaryOp::Sub
+        | BinaryOp::Mul
+        | BinaryOp::Div
+        | BinaryOp::Rem
+        | BinaryOp::And
+        | BinaryOp::Or => return None,
+    };
+    let orders = if holds { orders } else { !orders & (LESS | EQUAL | MORE) };
+    Some(Comparison { left, right, orders, span: e.span })
+}
+
+/// The orders with the operands exchanged.
+fn mirrored(orders: u8) -> u8 {
+    (orders & EQUAL) | if orders & LESS > 0 { MORE } else { 0 } | if orders & MORE > 0 { LESS } else { 0 }
+}
+
+fn comparisons<'a>(parts: &[&'a Context]) -> Vec<Comparison<'a>> {
+    tests(parts).into_iter().filter_map(|(e, holds)| comparison(e, holds)).collect()
+}
+
+/// `N < M && N > M`
+fn excluded(parts: &[&Context]) -> Option<Contradiction> {
+    let all = comparisons(parts);
+    all.iter().enumerate().find_map(|(i, c)| {
+        if alike(c.left, c.right) && c.orders & EQUAL == 0 {
+            let why = "nothing differs from itself".to_owned();
+            return Some(Contradiction { span: c.span, why, with: None });
+        }
+        let other = all[..i].iter().find(|d| {
+            (alike(c.left, d.left) && alike(c.right, d.right) && c.orders & d.orders == 0)
+                || (alike(c.left, d.right) && alike(c.right, d.left) && c.orders & mirrored(d.orders) == 0)
+        })?;
+        Some(clash(c.span, other.span))
+    })
+}
+
+/// The values that a variable can have.
+#[derive(Clone, Debug)]
+struct Interval {
+    /// The end, whether it is left out, and what says so.
+    lo: (f64, bool, Option<Span>),
+    hi: (f64, bool, Option<Span>),
+    whole: bool,
+    not: Vec<(f64, Span)>,
+    /// Its declared range and where it is matched.
+    declared: Option<(i64, i64, Span)>,
+}
+
+impl Default for Interval {
+    fn default() -> Self {
+        let (lo, hi) = ((f64::NEG_INFINITY, true, None), (f64::INFINITY, true, None));
+        Self { lo, hi, whole: false, not: Vec::new(), declared: None }
+    }
+}
+
+impl Interval {
+    fn declare(&mut self, ty: Type, span: Span) {
+        let Type::Int { lo, hi } = ty else { return };
+        self.whole = true;
+        self.declared.get_or_insert((lo, hi, span));
+        self.at_least(lo as f64, false, span);
+        self.at_most(hi as f64, false, span);
+    }
+
+    fn at_least(&mut self, bound: f64, open: bool, span: Span) {
+        if bound > self.lo.0 || (bound == self.lo.0 && open) {
+            self.lo = (bound, open, Some(span));
+        }
+    }
+
+    fn at_most(&mut self, bound: f64, open: bool, span: Span) {
+        if bound < self.hi.0 || (bound == self.hi.0 && open) {
+            self.hi = (bound, open, Some(span));
+        }
+    }
+
+    /// The variable has one of these orders to the number.
+    fn compare(&mut self, orders: u8, number: f64, span: Span) {
+        match orders {
+            LESS => self.at_most(number, true, span),
+            MORE => self.at_least(number, true, span),
+            EQUAL => {
+                self.at_least(number, false, span);
+                self.at_most(number, false, span);
+            }
+            _ if orders == LESS | EQUAL => self.at_most(number, false, span),
+            _ if orders == MORE | EQUAL => self.at_least(number, false, span),
+            _ => self.not.push((number, span)),
+        }
+    }
+
+    /// What leaves no value, besides `last`.
+    fn empty(&self, last: Span) -> Option<Contradiction> {
+        let (mut lo, mut hi) = (self.lo.0, self.hi.0);
+        if self.whole {
+            lo = if self.lo.1 { lo.floor() + 1.0 } else { lo.ceil() };
+            hi = if self.hi.1 { hi.ceil() - 1.0 } else { hi.floor() };
+        }
+        let open = !self.whole && (self.lo.1 || self.hi.1);
+        let excluded = self.not.iter().find(|(n, _)| lo == hi && *n == lo);
+        if lo < hi || (lo == hi && !open && excluded.is_none()) {
+            return None;
+        }
+        let mut others = [self.lo.2, self.hi.2, excluded.map(|e| e.1)].into_iter().flatten();
+        let with = others.find(|span| *span != last)?;
+        Some(match self.declared {
+            Some((lo, hi, at)) if at == with => Contradiction {
+                span: last,
+                why: "this is never true".to_owned(),
+                with: Some((at, format!("the value is within {lo}..{hi} here"))),
+            },
+            Some(_) | None => clash(last, with),
+        })
+    }
+}
+
+/// `N < 1 && N > 3`, or a bound outside the range that the belief declares.
+fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
+    let mut values: BTreeMap<u16, Interval> = BTreeMap::new();
+    let params = |belief: crate::BeliefId| facts.belief(belief).params.as_slice();
+    let head: &[Param] = match plan.trigger {
+        TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => params(b),
+        TriggerOn::Perceived(e) => &facts.scenario.events[usize::from(e.0)].params,
+        TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+    };
+    declare(&mut values, &plan.args, head, plan.head);
+    for part in parts {
+        if let Context::Belief(belief, args, span) = part {
+            declare(&mut values, args, params(*belief), *span);
+        }
+    }
+    for c in comparisons(parts) {
+        let sides = [(c.left, c.right, c.orders), (c.right, c.left, mirrored(c.orders))];
+        for (var, number, orders) in sides {
+            let (ExprKind::Leaf(Leaf::Local(var)), Some(number)) = (&var.kind, constant_number(number))
+            else {
+                continue;
+            };
+            let interval = values.entry(*var).or_default();
+            interval.compare(orders, number, c.span);
+            if let Some(found) = interval.empty(c.span) {
+                return Some(found);
+            }
+        }
+    }
+    None
+}
+
+fn constant_number(e: &Expr) -> Option<f64> {
+    e.constant().and_then(crate::Value::number)
+}
+
+fn declare(values: &mut BTreeMap<u16, Interval>, args: &[Arg], params: &[Param], span: Span) {
+    for (arg, param) in args.iter().zip(params) {
+        if let Arg::Var(var) = arg {
+            values.entry(*var).or_default().declare(param.ty, span);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! HR0408: a plan whose trigger never happens, or whose context never holds.
+
+use hrdsl_source::{Code, Diagnostic};
+
+use super::{
+    agent_facts::{AgentFacts, agents},
+    contradiction,
+    facts::Facts,
+};
+use crate::{BeliefId, Plan, Scenario, TriggerOn};
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario) {
+        for plan in facts.agent.plans.iter().filter(|p| !facts.is_unadopted(p)) {
+            if facts.is_dead_trigger(plan) {
+                issues.push(dead_trigger(&facts, plan));
+            } else if let Some(found) = contradiction::of(&facts, plan) {
+                let message = "this plan never runs: its context cannot hold";
+                let mut issue = Diagnostic::warning(Code::DEAD_PLAN, found.span, message).here(found.why);
+                if let Some((span, text)) = found.with {
+                    issue = issue.label(span, text);
+                }
+                issues.push(issue.help("mend the context, or remove the plan"));
+            }
+        }
+    }
+}
+
+/// A plan that has a diagnostic for that, here or as one that nothing adopts.
+pub(crate) fn never_runs(facts: &AgentFacts<'_>, plan: &Plan) -> bool {
+    facts.is_unadopted(plan) || facts.is_dead_trigger(plan) || contradiction::of(facts, plan).is_some()
+}
+
+fn dead_trigger(facts: &AgentFacts<'_>, plan: &Plan) -> Diagnostic {
+    let warning =
+        |why: &str| Diagnostic::warning(Code::DEAD_PLAN, plan.head, format!("this plan never runs: {why}"));
+    let of = |belief: BeliefId| facts.belief(belief).name.as_str();
+    match plan.trigger {
+        TriggerOn::Added(b) | TriggerOn::Removed(b) if !facts.comes_about(b) => {
+            let issue = warning(&format!("nothing adds the belief `{}`", of(b)))
+                .label(facts.belief(b).span, "declared here, without an initial value");
+            let otherwise = "add the belief somewhere, or remove the plan".to_owned();
+            facts.near_belief(issue, b, Some(plan.name), otherwise)
+        }
+        TriggerOn::Added(b) => warning(&format!("nothing adds such a `{}`", of(b)))
+            .help("the arguments match none that is added: mend them, or remove the plan"),
+        TriggerOn::Removed(b) => warning(&format!("nothing removes or replaces such a `{}`", of(b)))
+            .help(format!("remove the belief somewhere (`-{}`), or remove the plan", of(b))),
+        TriggerOn::Test(b) => warning(&format!("no plan asks for such a `{}`", of(b)))
+            .help(format!("ask for the belief somewhere (`?{}`), or remove the plan", of(b))),
+        TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => {
+            warning("what it waits for never happens")
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! HR0406: a plan drops the belief that another plan handles, and keeps its own: a copy that was not changed throughout.
+
+use hrdsl_source::{Code, Diagnostic, Span};
+
+use super::{
+    agent_facts::{AgentFacts, Change, agents, change, literals},
+    facts::Facts,
+    plan_terms::{Term, may_unify, of_args},
+};
+use crate::{Arg, BeliefId, GoalId, Plan, Scenario, StepKind, TriggerOn, Value};
+
+/// A belief that a plan is about: of its trigger, or one that its context needs.
+struct Handled<'a> {
+    belief: BeliefId,
+    args: &'a [Arg],
+    terms: Vec<Term<'a>>,
+    span: Span,
+}
+
+impl Handled<'_> {
+    fn meets(&self, belief: BeliefId, args: &[Term<'_>], apart: bool) -> bool {
+        self.belief == belief && may_unify(&self.terms, args, apart)
+    }
+
+    /// As it is written, if that is known.
+    fn text(&self, facts: &AgentFacts<'_>, plan: &Plan) -> Option<String> {
+        let arg = |arg: &Arg| match Term::of_arg(arg) {
+            Term::Any => Some("_".to_owned()),
+            Term::Var(var) => plan.vars.get(usize::from(var)).cloned(),
+            Term::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => Some(value.to_string()),
+            Term::Const(Value::Float(_)) | Term::Other(_) => None,
+        };
+        let args: Vec<String> = self.args.iter().map(arg).collect::<Option<_>>()?;
+        let name = &facts.belief(self.belief).name;
+        Some(if args.is_empty() { name.clone() } else { format!("{name}({})", args.join(", ")) })
+    }
+}
+
+fn handled(plan: &Plan) -> Vec<Handled<'_>> {
+    let trigger = match plan.trigger {
+        TriggerOn::Added(b) => Some((b, plan.args.as_slice(), plan.head)),
+        TriggerOn::Removed(_)
+        | TriggerOn::Achieve(_)
+        | TriggerOn::Failed(_)
+        | TriggerOn::Test(_)
+        | TriggerOn::Perceived(_) => None,
+    };
+    let context = literals(&plan.context).into_iter().filter(|l| !l.negated);
+    let all = trigger.into_iter().chain(context.map(|l| (l.belief, l.args, l.span)));
+    all.map(|(belief, args, span)| Handled { belief, args, terms: of_args(args), span }).collect()
+}
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario) {
+        for plan in &facts.agent.plans {
+            for (at, step) in plan.body.iter().enumerate() {
+                if let Some(Change::Removes(belief, args)) = change(step) {
+                    let dropped = Dropped { facts, plan, at, belief, args };
+                    issues.extend(dropped.issue(step.span));
+                }
+            }
+        }
+    }
+}
+
+/// A plan's step that drops a belief.
+struct Dropped<'a> {
+    facts: AgentFacts<'a>,
+    plan: &'a Plan,
+    at: usize,
+    belief: BeliefId,
+    args: Vec<Term<'a>>,
+}
+
+impl<'a> Dropped<'a> {
+    fn issue(&self, span: Span) -> Option<Diagnostic> {
+        let own = handled(self.plan);
+        if own.iter().any(|h| h.meets(self.belief, &self.args, false))
+            || makes(self.plan, self.at, self.belief, &self.args, false)
+            || self.made_by_subgoals()
+            || self.known_to_callers()
+        {
+            return None;
+        }
+        let (kept, other) = own.iter().find_map(|kept| {
+            let other = self.facts.agent.plans.iter().find(|other| self.is_copied(kept, other))?;
+            Some((kept, other))
+        })?;
+        let name = &self.facts.belief(self.belief).name;
+        let message =
+            format!("this drops a `{name}` that another plan handles, and the plan keeps its own belief");
+        let theirs = handled(other).into_iter().find(|h| h.meets(self.belief, &self.args, true))?;
+        let issue = Diagnostic::warning(Code::DROPS_ANOTHERS_BELIEF, span, message)
+            .label(kept.span, "the plan handles this belief, and nothing drops it")
+            .label(theirs.span, "this plan handles the dropped belief, and drops it itself");
+        let kept = kept.text(&self.facts, self.plan);
+        Some(match kept {
+            Some(kept) => issue.help(format!("did you mean `-{kept}`?")).fix(
+                format!("drop `{kept}`"),
+                span,
+                format!("-{kept}"),
+                false,
+            ),
+            None => issue.help("drop the belief that this plan handles"),
+        })
+    }
+
+    /// Whether the plan looks like a copy of `other`, whose belief it drops in place of `kept`.
+    fn is_copied(&self, kept: &Handled<'_>, other: &'a Plan) -> bool {
+        let consumes = |plan: &Plan, handled: &Handled<'_>| {
+            plan.body.iter().filter_map(change).any(|c| match c {
+                Change::Removes(b, args) => handled.meets(b, &args, false),
+                Change::Replaces(b, _) => handled.belief == b,
+                Change::Adds(..) => false,
+            })
+        };
+        let owns = !std::ptr::eq(other, self.plan)
+            && handled(other).iter().any(|h| h.meets(self.belief, &self.args, true) && consumes(other, h));
+        let keeps = !consumes(self.plan, kept)
+            && !self.facts.agent.plans.iter().any(|p| {
+                handled(p).iter().any(|h| h.meets(kept.belief, &kept.terms, true) && consumes(p, h))
+            });
+        owns && keeps && (kept.belief == self.belief || self.same_part(kept, other))
+    }
+
+    /// Beliefs of different names are taken for copies of each other if they play the same part: both or neither are the
+    /// trigger, of triggers of one kind, and they come about alike. What a suite chooses is most often asked, not used up.
+    fn same_part(&self, kept: &Handled<'_>, other: &Plan) -> bool {
+        let is_trigger = |plan: &Plan, belief| plan.trigger == TriggerOn::Added(belief);
+        let alike = std::mem::discriminant(&self.plan.trigger) == std::mem::discriminant(&other.trigger);
+        let state = self
+            .plan
+            .body
+            .iter()
+            .filter_map(change)
+            .any(|c| c.belief() == self.belief && matches!(c, Change::Adds(..) | Change::Replaces(..)));
+        let given = |b| self.facts.is_given(b);
+        let added = |b| self.facts.is_added(b);
+        alike
+            && !state
+            && is_trigger(self.plan, kept.belief) == is_trigger(other, self.belief)
+            && ((given(kept.belief) && given(self.belief)) || (added(kept.belief) && added(self.belief)))
+    }
+
+    /// The sub-goals before it may have added the belief.
+    fn made_by_subgoals(&self) -> bool {
+        let mut seen = Vec::new();
+        let before = &self.plan.body[..self.at];
+        before.iter().any(|step| match step.kind {
+            StepKind::Achieve(goal, _) | StepKind::Spawn(goal, _) => self.goal_makes(goal, &mut seen),
+            StepKind::Do(..)
+            | StepKind::Query(..)
+            | StepKind::Add(..)
+            | StepKind::Remove(..)
+            | StepKind::Replace(..)
+            | StepKind::Await { .. }
+            | StepKind::Wait(_) => false,
+        })
+    }
+
+    fn goal_makes(&self, goal: GoalId, seen: &mut Vec<GoalId>) -> bool {
+        if seen.contains(&goal) {
+            return false;
+        }
+        seen.push(goal);
+        self.facts.plans(TriggerOn::Achieve(goal)).chain(self.facts.plans(TriggerOn::Failed(goal))).any(
+            |plan| {
+                makes(plan, plan.body.len(), self.belief, &self.args, true)
+                    || plan.body.iter().any(|step| match step.kind {
+                        StepKind::Achieve(goal, _) | StepKind::Spawn(goal, _) => self.goal_makes(goal, seen),
+                        StepKind::Do(..)
+                        | StepKind::Query(..)
+                        | StepKind::Add(..)
+                        | StepKind::Remove(..)
+                        | StepKind::Replace(..)
+                        | StepKind::Await { .. }
+                        | StepKind::Wait(_) => false,
+                    })
+            },
+        )
+    }
+
+    /// A plan on the way to this one handles the belief, or has made it.
+    fn known_to_callers(&self) -> bool {
+        let mut seen: Vec<&Plan> = vec![self.plan];
+        let mut open = vec![self.plan];
+        while let Some(plan) = open.pop() {
+            for caller in callers(&self.facts, plan) {
+                if seen.iter().any(|p| std::ptr::eq(*p, caller)) {
+                    continue;
+                }
+                let knows = handled(caller).iter().any(|h| h.meets(self.belief, &self.args, true))
+                    || makes(caller, caller.body.len(), self.belief, &self.args, true);
+                if knows {
+                    return true;
+                }
+                seen.push(caller);
+                open.push(caller);
+            }
+        }
+        false
+    }
+}
+
+/// Whether a step before `at` adds a fact that is dropped, or asks for it.
+fn makes(plan: &Plan, at: usize, belief: BeliefId, args: &[Term<'_>], apart: bool) -> bool {
+    plan.body[..at].iter().any(|step| match (&step.kind, change(step)) {
+        (StepKind::Query(b, asked), _) => *b == belief && may_unify(&of_args(asked), args, apart),
+        (_, Some(Change::Adds(b, made) | Change::Replaces(b, made))) => {
+            b == belief && may_unify(&made, args, apart)
+        }
+        (_, Some(Change::Removes(..)) | None) => false,
+    })
+}
+
+/// The plans that adopt the plan's goal; a failure plan goes on after the plans for its goal.
+fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
+    let (goal, failed) = match plan.trigger {
+        TriggerOn::Achieve(goal) => (goal, false),
+        TriggerOn::Failed(goal) => (goal, true),
+        TriggerOn::Test(belief) => return facts.askers(belief).map(|(plan, _)| plan).collect(),
+        TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => return Vec::new(),
+    };
+    let mut all: Vec<&Plan> = facts
+        .agent
+        .plans
+        .iter()
+        .filter(|p| {
+            p.body
+                .iter()
+                .any(|s| matches!(s.kind, StepKind::Achieve(g, _) | StepKind::Spawn(g, _) if g == goal))
+        })
+        .collect();
+    if failed {
+        all.extend(facts.plans(TriggerOn::Achieve(goal)));
+    }
+    all
+}

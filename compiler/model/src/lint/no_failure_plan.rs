@@ -1,0 +1,202 @@
+//! HR0409: a step can fail, and on the way down to the root of its intention no failure plan is found.
+
+use hrdsl_source::{Code, Diagnostic, Span};
+
+use super::{
+    agent_facts::{Adoption, AgentFacts, agents, any_args},
+    applicable::never_stuck,
+    dead_plan::never_runs,
+    facts::Facts,
+    plan_terms::{Term, may_unify, of_args, of_exprs},
+};
+use crate::{GoalId, Plan, Scenario, Step, StepKind, TriggerOn};
+
+/// The steps of a goal's plans, or of one other plan, that can fail, and what dies then.
+struct Unhandled<'a> {
+    plan: &'a Plan,
+    steps: Vec<(&'a Step, &'static str)>,
+    roots: Vec<&'a Plan>,
+}
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario) {
+        let mut all: Vec<Unhandled<'_>> = Vec::new();
+        for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
+            let found = in_plan(&facts, plan);
+            let of_goal = matches!(plan.trigger, TriggerOn::Achieve(_));
+            match all.iter_mut().find(|u| of_goal && u.plan.trigger == plan.trigger) {
+                Some(group) => group.join(found),
+                None => all.push(found),
+            }
+        }
+        issues.extend(all.iter().filter_map(|u| u.issue(&facts)));
+    }
+}
+
+fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a Plan) -> Unhandled<'a> {
+    let mut found = Unhandled { plan, steps: Vec::new(), roots: Vec::new() };
+    for (at, step) in plan.body.iter().enumerate() {
+        let mut roots = Vec::new();
+        dying(facts, plan, is_before_others(plan, at), &mut Vec::new(), &mut roots);
+        if !roots.is_empty()
+            && let Some(why) = can_fail(facts, plan, at)
+        {
+            found.join(Unhandled { plan, steps: vec![(step, why)], roots });
+        }
+    }
+    found
+}
+
+/// The plan has more to do after this step.
+fn is_before_others(plan: &Plan, at: usize) -> bool {
+    at + 1 < plan.body.len()
+}
+
+fn is_in(plans: &[&Plan], plan: &Plan) -> bool {
+    plans.iter().any(|p| std::ptr::eq(*p, plan))
+}
+
+/// Why a step can fail, if its goal has no failure plan of its own.
+fn can_fail(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Option<&'static str> {
+    match &plan.body[at].kind {
+        StepKind::Await { within: Some(_), .. } => Some("the time may run out"),
+        StepKind::Query(belief, _) => {
+            let answered = facts.plans(TriggerOn::Test(*belief)).next().is_some();
+            // That nothing adds it has been said.
+            let stuck = facts.comes_about(*belief) && !answered && !never_stuck(facts, plan, at);
+            stuck.then_some("there may be no such fact")
+        }
+        StepKind::Achieve(goal, args) => {
+            let stuck = !has_failure_plan(facts, *goal, &of_exprs(args)) && !never_stuck(facts, plan, at);
+            stuck.then_some("there may be no plan that fits")
+        }
+        StepKind::Await { within: None, .. }
+        | StepKind::Do(..)
+        | StepKind::Spawn(..)
+        | StepKind::Add(..)
+        | StepKind::Remove(..)
+        | StepKind::Replace(..)
+        | StepKind::Wait(_) => None,
+    }
+}
+
+fn has_failure_plan(facts: &AgentFacts<'_>, goal: GoalId, args: &[Term<'_>]) -> bool {
+    facts.plans(TriggerOn::Failed(goal)).any(|p| may_unify(args, &of_args(&p.args), true))
+}
+
+/// The plans at whose end an intention dies if a step of `plan` fails, and with it something that was still to do: where
+/// each plan is at its last step, the intention would end anyhow. The way down is that of the run: only plans selected for
+/// `+!g` look for a failure plan, all others pass the failure on.
+fn dying<'a>(
+    facts: &AgentFacts<'a>,
+    plan: &'a Plan,
+    lost: bool,
+    seen: &mut Vec<(&'a Plan, bool)>,
+    roots: &mut Vec<&'a Plan>,
+) {
+    if seen.iter().any(|(p, l)| std::ptr::eq(*p, plan) && *l == lost) {
+        return;
+    }
+    seen.push((plan, lost));
+    match plan.trigger {
+        TriggerOn::Achieve(goal) if has_failure_plan(facts, goal, &of_args(&plan.args)) => {}
+        TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
+            for adoption in facts.adoptions(goal) {
+                match adoption {
+                    Adoption::Root if lost && !is_in(roots, plan) => roots.push(plan),
+                    Adoption::Root => {}
+                    Adoption::By(by, at) => dying(facts, by, lost || is_before_others(by, at), seen, roots),
+                }
+            }
+        }
+        TriggerOn::Test(belief) => {
+            for (by, at) in facts.askers(belief) {
+                dying(facts, by, lost || is_before_others(by, at), seen, roots);
+            }
+        }
+        TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => {
+            if lost && !is_in(roots, plan) {
+                roots.push(plan);
+            }
+        }
+    }
+}
+
+impl<'a> Unhandled<'a> {
+    fn join(&mut self, other: Unhandled<'a>) {
+        if self.steps.is_empty() {
+            self.plan = other.plan;
+        }
+        self.steps.extend(other.steps);
+        for root in other.roots {
+            if !is_in(&self.roots, root) {
+                self.roots.push(root);
+            }
+        }
+    }
+
+    /// One diagnostic for all steps, with all ends.
+    fn issue(&self, facts: &AgentFacts<'_>) -> Option<Diagnostic> {
+        let ((step, why), more) = self.steps.split_first()?;
+        let message = "this can fail, and nothing handles the failure";
+        let mut issue = Diagnostic::warning(Code::NO_FAILURE_PLAN, step.span, message).here(*why);
+        for (step, why) in more {
+            issue = issue.label(step.span, format!("here too: {why}"));
+        }
+        for root in &self.roots {
+            let text = match root.trigger {
+                TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
+                    format!("then the goal `!{}` dies, with all that it still was to do", facts.goal(goal))
+                }
+                TriggerOn::Added(_)
+                | TriggerOn::Removed(_)
+                | TriggerOn::Test(_)
+                | TriggerOn::Perceived(_) => {
+                    "then this plan dies, with all that it still was to do".to_owned()
+                }
+            };
+            issue = issue.label(root.head, text);
+        }
+        Some(self.mend(facts, step, issue))
+    }
+
+    /// Adds what to type.
+    fn mend(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
+        let mut all = [self.plan].into_iter().chain(self.roots.iter().copied());
+        let handler = all.find_map(|p| match p.trigger {
+            TriggerOn::Achieve(goal) => Some((shown(facts, goal), p)),
+            TriggerOn::Failed(_)
+            | TriggerOn::Added(_)
+            | TriggerOn::Removed(_)
+            | TriggerOn::Test(_)
+            | TriggerOn::Perceived(_) => None,
+        });
+        let say = handler.as_ref().map_or_else(
+            || "put it into a goal of its own with a plan `-!goal` that says what then".to_owned(),
+            |(head, _)| format!("say what then: `plan -!{head} {{ … }}`"),
+        );
+        let add = |issue: Diagnostic, head: &str, after: &Plan| {
+            let end = Span { start: after.span.end, ..after.span };
+            issue.fix(format!("add an empty plan `{head}`"), end, format!("\n  plan {head} {{ }}"), false)
+        };
+        if let StepKind::Achieve(goal, _) = step.kind
+            && let Some(last) = facts.plans(TriggerOn::Achieve(goal)).last()
+        {
+            let head = format!("+!{}", shown(facts, goal));
+            let issue =
+                issue.help(format!("add a last plan that always fits, `plan {head} {{ … }}`, or {say}"));
+            return add(issue, &head, last);
+        }
+        match handler {
+            Some((head, after)) => {
+                let help = format!("{say}; if it is empty, whoever wanted the goal goes on");
+                add(issue.help(help), &format!("-!{head}"), after)
+            }
+            None => issue.help(say),
+        }
+    }
+}
+
+fn shown(facts: &AgentFacts<'_>, goal: GoalId) -> String {
+    any_args(facts.goal(goal), usize::from(facts.agent.goals[usize::from(goal.0)].arity))
+}

@@ -1,0 +1,160 @@
+//! HR0410: a goal that comes back to itself at the same instant, with nothing changed.
+
+use hrdsl_source::{Code, Diagnostic, Span};
+
+use super::{
+    agent_facts::{AgentFacts, agents, change},
+    dead_plan::never_runs,
+    facts::Facts,
+    plan_terms::{Term, of_args, of_exprs, same_value},
+};
+use crate::{Arg, GoalId, Plan, Scenario, Step, StepKind, TriggerOn, Value};
+
+/// Longer ways back are not looked for.
+const DEEP: usize = 8;
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario) {
+        for start in &facts.agent.plans {
+            if let TriggerOn::Achieve(goal) = start.trigger
+                && !never_runs(&facts, start)
+            {
+                let args: Vec<Passed> = start.args.iter().enumerate().map(Passed::at_start).collect();
+                let mut search = Search { facts, start, goal, args: &args, way: vec![], issues };
+                search.from(start, &args);
+            }
+        }
+    }
+}
+
+/// What a goal's argument is, in terms of those at the start of the cycle.
+#[derive(Clone, Debug, PartialEq)]
+enum Passed {
+    /// The argument with this number.
+    Same(usize),
+    Const(Value),
+    /// Computed or looked up on the way.
+    New,
+}
+
+impl Passed {
+    fn at_start((i, arg): (usize, &Arg)) -> Self {
+        match Term::of_arg(arg) {
+            Term::Const(value) => Passed::Const(value),
+            Term::Any | Term::Var(_) | Term::Other(_) => Passed::Same(i),
+        }
+    }
+
+    fn may_match(&self, term: Term<'_>) -> bool {
+        match (self, term) {
+            (Passed::Const(a), Term::Const(b)) => same_value(*a, b),
+            (Passed::Same(_) | Passed::Const(_) | Passed::New, _) => true,
+        }
+    }
+}
+
+struct Search<'a, 'i> {
+    facts: AgentFacts<'a>,
+    /// The first plan of the cycle in the text: so each cycle is found once.
+    start: &'a Plan,
+    goal: GoalId,
+    args: &'i [Passed],
+    /// The plans and adoptions on the way.
+    way: Vec<(&'a Plan, Span)>,
+    issues: &'i mut Vec<Diagnostic>,
+}
+
+impl<'a> Search<'a, '_> {
+    /// Follows the adoptions of a plan that are reached at the same instant with the same beliefs.
+    fn from(&mut self, plan: &'a Plan, passed: &[Passed]) {
+        for step in &plan.body {
+            if let StepKind::Achieve(goal, args) = &step.kind {
+                let args: Vec<Passed> = of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
+                self.way.push((plan, step.span));
+                self.adopted(*goal, &args, step.span);
+                self.way.pop();
+            }
+            if progresses(&self.facts, step, &mut Vec::new()) {
+                return;
+            }
+        }
+    }
+
+    fn adopted(&mut self, goal: GoalId, args: &[Passed], span: Span) {
+        if goal == self.goal && args == self.args {
+            let issue = self.issue(span);
+            if !self.issues.contains(&issue) {
+                self.issues.push(issue);
+            }
+            return;
+        }
+        if self.way.len() > DEEP {
+            return;
+        }
+        let facts = self.facts;
+        for plan in facts.plans(TriggerOn::Achieve(goal)) {
+            let later = plan.span.start > self.start.span.start;
+            let again = self.way.iter().any(|(p, _)| std::ptr::eq(*p, plan));
+            let fits = args.iter().zip(of_args(&plan.args)).all(|(a, t)| a.may_match(t));
+            if later && !again && fits {
+                self.from(plan, args);
+            }
+        }
+    }
+
+    fn issue(&self, span: Span) -> Diagnostic {
+        let name = self.facts.goal(self.goal);
+        let message = format!("the goal `!{name}` comes back to itself, and no time passes");
+        let mut issue = Diagnostic::warning(Code::NO_TIME_PASSES, span, message)
+            .here("adopted again, at the same instant and with nothing changed");
+        issue = issue.label(self.start.head, "the cycle begins here");
+        for (_, through) in self.way.iter().filter(|(_, at)| *at != span) {
+            issue = issue.label(*through, "and goes on here");
+        }
+        issue.help(
+            "let something happen on the way: a stimulus, an `await`, a `wait`, or a change of a belief",
+        )
+    }
+}
+
+/// What an argument of an adoption is, in a plan whose goal has these arguments.
+fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
+    match term {
+        Term::Const(value) => Passed::Const(value),
+        Term::Var(var) => {
+            let at = plan.args.iter().position(|arg| *arg == Arg::Var(var));
+            at.and_then(|at| passed.get(at)).cloned().unwrap_or(Passed::New)
+        }
+        Term::Any | Term::Other(_) => Passed::New,
+    }
+}
+
+/// Whether time may pass in a step, or a belief change.
+fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut Vec<TriggerOn>) -> bool {
+    let on = match &step.kind {
+        StepKind::Do(event, _) => {
+            return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
+        }
+        StepKind::Await { .. } | StepKind::Wait(_) => return true,
+        StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) => return change(step).is_some(),
+        StepKind::Spawn(..) => return false,
+        StepKind::Achieve(goal, _) => TriggerOn::Achieve(*goal),
+        StepKind::Query(belief, _) => TriggerOn::Test(*belief),
+    };
+    if seen.contains(&on) {
+        return false;
+    }
+    seen.push(on);
+    let failed = match on {
+        TriggerOn::Achieve(goal) => Some(TriggerOn::Failed(goal)),
+        TriggerOn::Added(_)
+        | TriggerOn::Removed(_)
+        | TriggerOn::Failed(_)
+        | TriggerOn::Test(_)
+        | TriggerOn::Perceived(_) => None,
+    };
+    [Some(on), failed]
+        .into_iter()
+        .flatten()
+        .any(|on| facts.plans(on).any(|p| p.body.iter().any(|step| progresses(facts, step, seen))))
+}

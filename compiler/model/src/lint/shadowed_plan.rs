@@ -1,0 +1,178 @@
+//! HR0407: whenever a plan could be selected, an earlier one is.
+
+use hrdsl_source::{Code, Diagnostic};
+
+use super::{
+    agent_facts::agents,
+    dead_plan::never_runs,
+    facts::Facts,
+    plan_terms::{
+        Image, Renaming, Term, alternatives, bound_before, fold, is_total, more_general, of_args, same_expr,
+    },
+};
+use crate::{Arg, Context, Plan, Scenario, Value};
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario) {
+        for (i, later) in facts.agent.plans.iter().enumerate() {
+            if never_runs(&facts, later) {
+                continue;
+            }
+            let earlier = facts.agent.plans[..i].iter().find(|earlier| shadows(earlier, later));
+            issues.extend(earlier.map(|earlier| shadowed(earlier, later)));
+        }
+    }
+}
+
+fn shadowed(earlier: &Plan, later: &Plan) -> Diagnostic {
+    let alike = shadows(later, earlier);
+    let help = if alike {
+        "give one of them a context that tells them apart, or remove one"
+    } else {
+        "put this plan before the other: of the plans that fit, the first in the text is taken"
+    };
+    Diagnostic::warning(
+        Code::SHADOWED_PLAN,
+        later.head,
+        "this plan never runs: an earlier one is always taken",
+    )
+    .label(earlier.head, "this plan fits whenever that one does")
+    .help(help)
+}
+
+/// Whether the earlier plan is applicable whenever the later one is.
+pub(crate) fn shadows(earlier: &Plan, later: &Plan) -> bool {
+    if earlier.trigger != later.trigger {
+        return false;
+    }
+    let mut renaming = Renaming::new();
+    if !more_general(&of_args(&earlier.args), &of_args(&later.args), &mut renaming) {
+        return false;
+    }
+    let (Some(ours), Some(theirs)) = (alternatives(&earlier.context), alternatives(&later.context)) else {
+        return false;
+    };
+    theirs.iter().all(|theirs| {
+        let theirs = Conjunction::of(later, theirs);
+        ours.iter().any(|ours| {
+            let ours = Conjunction::of(earlier, ours);
+            let positive: Vec<usize> = ours.positive().collect();
+            implied(&ours, &theirs, &positive, renaming.clone())
+        })
+    })
+}
+
+/// A conjunction, each part with the variables that have a value before it.
+struct Conjunction<'a> {
+    parts: Vec<(&'a Context, Vec<u16>)>,
+}
+
+impl<'a> Conjunction<'a> {
+    fn of(plan: &Plan, parts: &[&'a Context]) -> Self {
+        let bound = bound_before(plan, parts);
+        Self { parts: parts.iter().copied().zip(bound).collect() }
+    }
+
+    fn positive(&self) -> impl Iterator<Item = usize> {
+        (0..self.parts.len()).filter(|i| matches!(self.parts[*i].0, Context::Belief(..)))
+    }
+}
+
+/// Whether each part of `ours` follows from a part of `theirs`. First the literals in turn, each of which may follow
+/// from several and so give its variables a meaning; then the rest.
+fn implied(ours: &Conjunction<'_>, theirs: &Conjunction<'_>, open: &[usize], renaming: Renaming) -> bool {
+    let Some((first, open)) = open.split_first() else {
+        return ours.parts.iter().all(|part| match part.0 {
+            Context::Belief(..) => true,
+            Context::Not(_) | Context::Test(_) => {
+                theirs.parts.iter().any(|t| follows(part, t, &renaming)) || is_true(part.0, &renaming)
+            }
+            Context::True | Context::And(_) | Context::Or(_) => false,
+        });
+    };
+    let Context::Belief(belief, args, _) = ours.parts[*first].0 else { return false };
+    theirs.parts.iter().any(|(their, _)| {
+        let mut renaming = renaming.clone();
+        matches!(their, Context::Belief(b, special, _) if b == belief
+            && more_general(&of_args(args), &of_args(special), &mut renaming))
+            && implied(ours, theirs, open, renaming)
+    })
+}
+
+/// A test of values that the other plan's head fixes.
+fn is_true(test: &Context, renaming: &Renaming) -> bool {
+    let Context::Test(e) = test else { return false };
+    let value = |var| match renaming.get(&var) {
+        Some(Image::Const(value)) => Some(*value),
+        Some(Image::Var(_) | Image::Unnamed) | None => None,
+    };
+    fold(e, &value) == Some(Value::Bool(true))
+}
+
+/// Whether a negation or test is the same as the other plan's.
+fn follows(ours: &(&Context, Vec<u16>), theirs: &(&Context, Vec<u16>), renaming: &Renaming) -> bool {
+    let mut pairs = Pairs { renaming, bound: (&ours.1, &theirs.1), own: Vec::new() };
+    pairs.same(ours.0, theirs.0)
+}
+
+/// Which variables of two formulas are the same.
+struct Pairs<'a> {
+    renaming: &'a Renaming,
+    /// What has a value before the formula: ours, theirs.
+    bound: (&'a [u16], &'a [u16]),
+    /// Variables that only the formula itself knows.
+    own: Vec<(u16, u16)>,
+}
+
+impl Pairs<'_> {
+    fn var(&mut self, ours: u16, theirs: u16) -> bool {
+        match (self.bound.0.contains(&ours), self.bound.1.contains(&theirs)) {
+            (true, true) => self.renaming.get(&ours) == Some(&Image::Var(theirs)),
+            (false, false) => {
+                if !self.own.iter().any(|(a, b)| *a == ours || *b == theirs) {
+                    self.own.push((ours, theirs));
+                }
+                self.own.contains(&(ours, theirs))
+            }
+            (true, false) | (false, true) => false,
+        }
+    }
+
+    fn same(&mut self, ours: &Context, theirs: &Context) -> bool {
+        match (ours, theirs) {
+            (Context::True, Context::True) => true,
+            (Context::Belief(a, ours, _), Context::Belief(b, theirs, _)) => {
+                a == b && ours.iter().zip(theirs).all(|(a, b)| self.same_arg(a, b))
+            }
+            (Context::Not(a), Context::Not(b)) => self.same(a, b),
+            (Context::And(a), Context::And(b)) | (Context::Or(a), Context::Or(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| self.same(a, b))
+            }
+            (Context::Test(a), Context::Test(b)) => {
+                is_total(a) && same_expr(a, b, &mut |a, b| self.var(a, b))
+            }
+            (
+                Context::True
+                | Context::Belief(..)
+                | Context::Not(_)
+                | Context::And(_)
+                | Context::Or(_)
+                | Context::Test(_),
+                _,
+            ) => false,
+        }
+    }
+
+    fn same_arg(&mut self, ours: &Arg, theirs: &Arg) -> bool {
+        match (Term::of_arg(ours), Term::of_arg(theirs)) {
+            (Term::Any, Term::Any) => true,
+            (Term::Var(a), Term::Var(b)) => self.var(a, b),
+            (Term::Var(a), Term::Const(b)) => {
+                self.bound.0.contains(&a) && self.renaming.get(&a) == Some(&Image::Const(b))
+            }
+            (Term::Const(a), Term::Const(b)) => super::plan_terms::same_value(a, b),
+            (Term::Other(a), Term::Other(b)) => is_total(a) && same_expr(a, b, &mut |a, b| self.var(a, b)),
+            (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_), _) => false,
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Each fix that a lint of the fixtures in `lint/` offers mends what it is offered for.
+
+#![allow(clippy::disallowed_methods, reason = "the test reads its fixtures")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_source::{Code, Fix};
+
+fn fixtures(folder: &Path, all: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() { fixtures(&path, all) } else { all.push(path) }
+    }
+}
+
+fn said(c: &Compilation, code: Code) -> usize {
+    c.diagnostics.iter().filter(|d| d.code == code).count()
+}
+
+fn mended(text: &str, fix: &Fix) -> String {
+    let mut text = text.to_owned();
+    for edit in fix.edits.iter().rev() {
+        text.replace_range(edit.span.range(), &edit.text);
+    }
+    text
+}
+
+#[test]
+fn every_fix_mends_what_it_is_offered_for() {
+    let mut paths = Vec::new();
+    fixtures(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint"), &mut paths);
+    paths.sort();
+    let mut fixes = 0;
+    for path in paths {
+        let text = fs::read_to_string(&path).unwrap();
+        let before = compile(Input { name: "fixture.hri", text: &text }, &[]);
+        for d in &before.diagnostics {
+            for fix in &d.fixes {
+                let after = compile(Input { name: "fixture.hri", text: &mended(&text, fix) }, &[]);
+                let what = format!("{}: {}: {}", path.display(), d.code, fix.title);
+                assert!(after.has_errors() <= before.has_errors(), "{what}: {:?}", after.diagnostics);
+                assert!(said(&after, d.code) < said(&before, d.code), "{what}");
+                fixes += 1;
+            }
+        }
+    }
+    assert!(fixes >= 7, "there are only {fixes} fixes");
+}
