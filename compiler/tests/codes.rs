@@ -5,7 +5,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{Input, Loader, Source, compile_with};
 use hrdsl_source::REGISTRY;
 
 /// The fenced blocks: what follows the fence, and the text.
@@ -21,9 +21,34 @@ fn blocks(page: &str) -> Vec<(String, String)> {
     blocks
 }
 
+/// An example with the files that it uses.
+struct Example {
+    info: String,
+    text: String,
+    files: Vec<Source>,
+}
+
+impl Loader for Example {
+    fn load(&self, _from: &str, path: &str) -> Result<Source, String> {
+        self.files.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
+    }
+}
+
+/// The examples: a block `hri,file=NAME` is a file that the next example uses.
+fn examples(page: &str) -> Vec<Example> {
+    let (mut examples, mut files) = (Vec::new(), Vec::new());
+    for (info, text) in blocks(page) {
+        match info.strip_prefix("hri,file=") {
+            Some(name) => files.push(Source { name: name.to_owned(), text }),
+            None => examples.push(Example { info, text, files: std::mem::take(&mut files) }),
+        }
+    }
+    examples
+}
+
 /// The codes of a text's diagnostics, and whether it compiles.
-fn said(text: &str) -> (BTreeSet<String>, bool) {
-    let c = compile(Input { name: "page.hri", text }, &[]);
+fn said(example: &Example) -> (BTreeSet<String>, bool) {
+    let c = compile_with(Input { name: "page.hri", text: &example.text }, &[], example);
     (c.diagnostics.iter().map(|d| d.code.to_string()).collect(), c.program.is_some())
 }
 
@@ -37,10 +62,11 @@ fn every_code_has_a_page_with_an_example_that_fails_and_one_that_does_not() {
             page.starts_with(&format!("# {code}: {}\n", info.title)),
             "{code}: no page, or another title"
         );
-        let blocks = blocks(&page);
-        let [(wrong, failing), (right, mended)] = blocks.as_slice() else {
-            panic!("{code}: two blocks are needed, and there are {}", blocks.len())
+        let examples = examples(&page);
+        let [failing, mended] = examples.as_slice() else {
+            panic!("{code}: two blocks are needed, and there are {}", examples.len())
         };
+        let wrong = &failing.info;
         let (codes, compiles) = said(failing);
         match wrong.split_once(',') {
             Some(("hri", rule)) if rule == format!("fails={code}") => {
@@ -50,7 +76,7 @@ fn every_code_has_a_page_with_an_example_that_fails_and_one_that_does_not() {
             _ => panic!("{code}: the fence `{wrong}` means nothing"),
         }
         assert_eq!(codes, BTreeSet::from([code.clone()]), "{code}: the failing example");
-        assert_eq!(right, "hri");
+        assert_eq!(mended.info, "hri");
         assert_eq!(said(mended), (BTreeSet::new(), true), "{code}: the mended example");
     }
     let pages = fs::read_dir(&folder).unwrap().count();
