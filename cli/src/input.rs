@@ -3,10 +3,10 @@
 use std::{
     fs,
     io::{Read, Write},
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, ast, compile};
+use hrdsl_compiler::{Compilation, Input, Loader, Source, ast, compile_with};
 use hrdsl_ir::Program;
 
 use crate::render;
@@ -46,11 +46,48 @@ pub fn kind_of(file: &ast::File) -> Kind {
 /// # Errors
 /// The file's name and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, Fault> {
-    let bytes = fs::read(path).map_err(|e| match e.kind() {
+    let fault = |e: std::io::Error| match e.kind() {
         std::io::ErrorKind::NotFound => format!("no such file: {}", path.display()),
         _ => format!("cannot read {}: {e}", path.display()),
-    })?;
+    };
+    let mut bytes = Vec::new();
+    // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.
+    fs::File::open(path)
+        .and_then(|file| file.take(hrdsl_compiler::MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
+        .map_err(fault)?;
     text(bytes, &path.display().to_string())
+}
+
+/// The files that `use "…"` names, relative to the file that uses them.
+pub struct Disk;
+
+impl Loader for Disk {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let file = tidy(&folder(Path::new(from)).join(path));
+        let text = match read(&file) {
+            Ok(text) => text,
+            Err(_) if !file.exists() => return Err(format!("there is no file {}", file.display())),
+            Err(fault) => return Err(fault),
+        };
+        Ok(Source { name: file.display().to_string(), text })
+    }
+}
+
+/// The same path without `.` and, where a folder can be taken back, without `..`: one file has one name.
+fn tidy(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            Component::ParentDir | Component::Normal(_) | Component::RootDir | Component::Prefix(_) => {
+                tidy.push(part);
+            }
+        }
+    }
+    tidy
 }
 
 /// Reads all of stdin.
@@ -133,7 +170,7 @@ pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<Compilation, Fault> {
         }
     }
     let tests: Vec<Input<'_>> = files.iter().map(|(name, text)| Input { name, text }).collect();
-    Ok(compile(Input { name: &name, text: &text }, &tests))
+    Ok(compile_with(Input { name: &name, text: &text }, &tests, &Disk))
 }
 
 fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {

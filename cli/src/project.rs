@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile, parse};
+use hrdsl_compiler::{Compilation, Input, compile_with, parse};
 use hrdsl_source::FileId;
 
 use crate::input::{self, Fault, Kind};
@@ -82,7 +82,7 @@ impl Project {
     pub fn compile(&self, unit: &Unit) -> Compilation {
         let input = |i: usize| Input { name: &self.sources[i].name, text: &self.sources[i].text };
         let tests: Vec<Input<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
-        compile(input(unit.head), &tests)
+        compile_with(input(unit.head), &tests, &input::Disk)
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
