@@ -138,7 +138,7 @@ test("the same text gives the same tokens, with work in proportion to its length
   const many = tokenize(grammar, Array(copies).fill(example).join("\n"));
   const searches = work.searches - before - one;
   assert.ok(many.length >= 10_000);
-  assert.ok(searches <= 80 * many.length, `${searches} searches for ${many.length} lines`);
+  assert.ok(searches <= 20 * many.length, `${searches} searches for ${many.length} lines`);
   assert.ok(searches <= (one + 100) * copies, `${searches} searches for ${copies} copies of ${one}`);
   const plain = (lines) => lines.map((l) => l.tokens.map((t) => [t.startIndex, t.scopes.join(" ")]));
   assert.deepEqual(plain(tokenize(grammar, example)), plain(once));
@@ -149,5 +149,5 @@ test("what brackets do not close does not slow the engine down", () => {
   const before = work.searches;
   const text = `const x = ${"(".repeat(2000)}\n`.concat("plan +!x { ".repeat(500), "\n", "a -> ".repeat(2000), "\n");
   for (const { stopped } of tokenize(grammar, text)) assert.equal(stopped, false);
-  assert.ok(work.searches - before < 60_000, `${work.searches - before} searches`);
+  assert.ok(work.searches - before < 20_000, `${work.searches - before} searches`);
 });
