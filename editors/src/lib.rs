@@ -1,0 +1,38 @@
+//! Highlighting for editors: what the registry of keywords says, in the forms that editors read.
+//!
+//! Each form is a template in `templates/` with places for lists of words; [`generated`] fills them. The results are
+//! committed where the editors expect them, and a test fails when they are not what comes out here.
+
+mod template;
+pub mod words;
+
+/// A file that is made here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Generated {
+    /// Where it is committed, from the `editors` folder.
+    pub path: &'static str,
+    pub text: String,
+}
+
+/// All files, for all editors.
+///
+/// # Errors
+/// A template that cannot be filled: says what is wrong with it.
+pub fn generated() -> Result<Vec<Generated>, String> {
+    textmate()
+}
+
+/// The TextMate grammar of the Visual Studio Code extension, and the words that its tests are about.
+///
+/// # Errors
+/// A template that cannot be filled: says what is wrong with it.
+pub fn textmate() -> Result<Vec<Generated>, String> {
+    let template = include_str!("../templates/hrdsl.tmLanguage.template");
+    Ok(vec![
+        Generated {
+            path: "vscode/syntaxes/hrdsl.tmLanguage.json",
+            text: template::fill(template, &words::list)?,
+        },
+        Generated { path: "vscode/test/keywords.json", text: words::registry() },
+    ])
+}

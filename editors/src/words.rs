@@ -1,0 +1,96 @@
+//! The words of the language, as templates name them.
+
+use hrdsl_syntax::token::{Class, KEYWORDS, Keyword};
+
+/// The units of the language; a unit of a template may also be a quotient or a power of these.
+pub const UNITS: &[&str] = &[
+    "s", "ms", "us", "ns", "min", "h", "m", "cm", "mm", "um", "km", "rad", "deg", "kg", "g", "N", "mN", "kN",
+    "m/s", "cm/s", "mm/s", "km/h", "rad/s", "deg/s", "rpm", "m/s^2", "cm/s^2", "mm/s^2", "rad/s^2",
+    "deg/s^2", "Pa", "kPa", "N/cm^2", "Nm", "Hz", "kHz", "%",
+];
+
+/// The types that have a name from the start.
+pub const TYPES: &[&str] = &[
+    "bool",
+    "float",
+    "number",
+    "length",
+    "time",
+    "angle",
+    "mass",
+    "force",
+    "speed",
+    "angular_speed",
+    "acceleration",
+    "angular_acceleration",
+    "pressure",
+    "torque",
+    "frequency",
+];
+
+/// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `units` or `types`. `None`: there is no such list.
+#[must_use]
+pub fn list(name: &str) -> Option<Vec<&'static str>> {
+    let words =
+        |keep: &dyn Fn(&Keyword) -> bool| KEYWORDS.iter().filter(|k| keep(k)).map(|k| k.word).collect();
+    match name {
+        "heads" => Some(words(&|k| k.class == Class::Head)),
+        "hard" => Some(words(&|k| k.class == Class::Hard)),
+        "soft" => Some(words(&|k| k.class == Class::Soft)),
+        "units" => Some(base_units()),
+        "types" => Some(TYPES.to_vec()),
+        other => {
+            let place = other.strip_prefix("soft:")?;
+            let found: Vec<_> = words(&|k| k.class == Class::Soft && places(k).any(|p| p == place));
+            (!found.is_empty()).then_some(found)
+        }
+    }
+}
+
+/// The constructs that a keyword belongs to.
+fn places(keyword: &Keyword) -> impl Iterator<Item = &'static str> {
+    keyword.place.split(',').map(str::trim)
+}
+
+/// What units are made of: the names in them, each once.
+fn base_units() -> Vec<&'static str> {
+    let mut names: Vec<_> = UNITS.iter().flat_map(|u| u.split(['/', '^'])).collect();
+    names.retain(|n| n.starts_with(|c: char| c.is_ascii_alphabetic()));
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The registry as JSON, a keyword to a line, for tests that are not written in Rust.
+pub(crate) fn registry() -> String {
+    let row = |k: &Keyword| {
+        let class = match k.class {
+            Class::Head => "head",
+            Class::Hard => "hard",
+            Class::Soft => "soft",
+        };
+        format!("  {{ \"word\": \"{}\", \"class\": \"{class}\", \"place\": \"{}\" }}", k.word, k.place)
+    };
+    format!("[\n{}\n]\n", KEYWORDS.iter().map(row).collect::<Vec<_>>().join(",\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_are_what_the_registry_says() {
+        assert_eq!(list("soft:stimulus"), Some(vec!["sample", "hold"]));
+        assert_eq!(list("soft:nowhere"), None);
+        assert_eq!(list("nothing"), None);
+        let all: usize = ["heads", "hard", "soft"].iter().map(|l| list(l).unwrap().len()).sum();
+        assert_eq!(all, KEYWORDS.len());
+    }
+
+    #[test]
+    fn units_are_taken_apart() {
+        let units = list("units").unwrap();
+        assert!(units.contains(&"cm") && units.contains(&"h") && !units.contains(&"%"));
+        assert!(units.iter().all(|u| u.chars().all(|c| c.is_ascii_alphabetic())), "{units:?}");
+    }
+}
