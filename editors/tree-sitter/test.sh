@@ -14,14 +14,15 @@ version=0.27.1
 cli=$tools/bin/tree-sitter
 
 if ! [ "$("$cli" --version 2>/dev/null)" = "tree-sitter $version" ]; then
-  CARGO_TARGET_DIR=$tools/build CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
+  CARGO_TARGET_DIR=$tools/build CARGO_PROFILE_RELEASE_OPT_LEVEL=1 \
+    CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
     cargo install tree-sitter-cli --version "$version" --locked --no-default-features --root "$tools" --force
   rm -rf "$tools/build"
 fi
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-printf '{ "parser-directories": [] }\n' >"$work/config.json"
+printf '{ "parser-directories": ["%s"] }\n' "$root/editors" >"$work/config.json"
 # Compiled grammars stay in the target folder too.
 export XDG_CACHE_HOME="$tools/cache"
 

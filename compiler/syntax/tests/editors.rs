@@ -66,6 +66,14 @@ fn keywords_are_those_of_the_registry() {
     same(&grammar().join("src/keywords.h"), &keywords_h());
 }
 
+#[test]
+fn every_keyword_has_a_colour() {
+    let query = fs::read_to_string(grammar().join("queries/highlights.scm")).expect("the query is there");
+    for keyword in KEYWORDS {
+        assert!(query.contains(&format!("\"{}\"", keyword.word)), "`{}` is not highlighted", keyword.word);
+    }
+}
+
 /// The files below a folder whose names end so, in order.
 fn files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
