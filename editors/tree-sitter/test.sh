@@ -50,3 +50,17 @@ echo "tree-sitter: what the compiler accepts"
 (cd "$root" && cargo test --quiet --workspace --test editors)
 find "$target/tmp/accepted" -name '*.hri' | sort >"$work/accepted"
 "$cli" parse --grammar-path . --quiet --stat --config-path "$work/config.json" --paths "$work/accepted"
+
+echo "tree-sitter: as many nodes as the compiler"
+"$cli" parse --grammar-path . --no-ranges --config-path "$work/config.json" --paths "$work/accepted" >"$work/trees"
+{
+  echo "declaration $(grep -cE '^  \(([a-z]+_declaration|allow)' "$work/trees")"
+  for node in quantity binary_expression edge location act_step plan; do
+    echo "$node $(grep -oE "\($node( |\)|$)" "$work/trees" | wc -l | tr -d ' ')"
+  done
+} >"$work/counts"
+diff "$target/tmp/accepted/counts" "$work/counts"
+if grep -q '(missing_brace' "$work/trees"; then
+  echo "a brace is said to be missing in a text that the compiler accepts" >&2
+  exit 1
+fi

@@ -139,6 +139,32 @@ fn declarations(text: &str) -> Vec<String> {
     single.filter(|t| parse(FileId(0), t).1.is_empty()).chain([text.to_owned()]).collect()
 }
 
+/// Nodes of this crate's trees, and what they are called in that grammar's.
+const SAME_NODES: [(&str, &str); 6] = [
+    ("quantity", "quantity"),
+    ("binary", "binary_expression"),
+    ("edge", "edge"),
+    ("location", "location"),
+    ("act", "act_step"),
+    ("plan", "plan"),
+];
+
+/// How many nodes of some sorts there are in all the texts, a line for each sort.
+fn counts(texts: &BTreeSet<String>) -> String {
+    let mut declarations = 0;
+    let mut nodes = [0; SAME_NODES.len()];
+    for text in texts {
+        let (file, _) = parse(FileId(0), text);
+        declarations += file.items.len() + usize::from(file.scenario.is_some());
+        let tree = serde_json::to_string(&file).expect("trees are plain data");
+        for (count, (here, _)) in nodes.iter_mut().zip(SAME_NODES) {
+            *count += tree.matches(&format!("\"{here}\":{{")).count();
+        }
+    }
+    let rows = SAME_NODES.iter().zip(nodes).map(|((_, there), count)| format!("{there} {count}\n"));
+    format!("declaration {declarations}\n{}", rows.collect::<String>())
+}
+
 /// Leaves the texts where `editors/tree-sitter/test.sh` finds them: what this crate accepts, that grammar must.
 #[test]
 fn accepted_texts_are_collected() {
@@ -149,5 +175,6 @@ fn accepted_texts_are_collected() {
     for (i, text) in all.iter().enumerate() {
         fs::write(folder.join(format!("{i:04}.hri")), text).expect("the text can be written");
     }
+    fs::write(folder.join("counts"), counts(&all)).expect("the counts can be written");
     assert!(all.len() > 200, "{} texts", all.len());
 }
