@@ -1,4 +1,4 @@
-//! The fixtures in `check/`: scenarios with the diagnostics they must give, each named at its place.
+//! The fixtures in `check/` and `lint/`: scenarios with the diagnostics they must give, each named at its place.
 //!
 //! `//~ HR0101 "leg_requst" help "leg_request"` on a line means: an error with this code, at exactly this text of the line,
 //! whose help contains that text (quotes in the text are written as backquotes); `help` may be absent. Several expectations follow each other, each after its own `//~`.
@@ -62,15 +62,22 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
     faults
 }
 
-#[test]
-fn every_fixture_gives_what_it_says() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check");
-    let mut fixtures: BTreeMap<String, String> = BTreeMap::new();
-    for entry in fs::read_dir(&folder).unwrap() {
+/// The fixtures of a folder and its subfolders, by path.
+fn fixtures(folder: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        fixtures.insert(name, fs::read_to_string(path).unwrap());
+        if path.is_dir() {
+            found.extend(fixtures(&path));
+        } else {
+            found.insert(path.to_string_lossy().into_owned(), fs::read_to_string(path).unwrap());
+        }
     }
+    found
+}
+
+fn every_fixture_of(folder: &str, at_least: usize) {
+    let fixtures = fixtures(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder));
     let mut all = Vec::new();
     for (name, text) in fixtures.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
         let tests_name = name.replace(".hri", ".tests.hri");
@@ -88,6 +95,17 @@ fn every_fixture_gives_what_it_says() {
         );
         assert!(c.diagnostics.is_sorted_by_key(|d| d.span()), "{name}: not in the order of the text");
     }
-    assert!(fixtures.len() >= 10, "the fixtures are not found");
+    assert!(fixtures.len() >= at_least, "the fixtures are not found");
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn every_fixture_gives_what_it_says() {
+    every_fixture_of("check", 10);
+}
+
+/// What is well formed and cannot be meant, and its look-alikes that can.
+#[test]
+fn every_lint_says_what_it_should() {
+    every_fixture_of("lint", 12);
 }

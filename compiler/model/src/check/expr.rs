@@ -145,7 +145,8 @@ impl Checker<'_> {
                 }
             };
         }
-        if self.consts.contains_key(name.text.as_str()) {
+        if let Some(constant) = self.consts.get_mut(name.text.as_str()) {
+            constant.used = true;
             return self.const_value(name);
         }
         if let Some(e) = self.signal_named(name, env) {

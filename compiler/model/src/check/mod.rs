@@ -8,6 +8,7 @@ mod edge;
 mod env;
 mod expr;
 mod measure;
+mod places;
 mod plan;
 mod requirement;
 mod stimulus;
@@ -65,6 +66,7 @@ pub fn resolve(
     checker.unread_members = false;
     checker.systems();
     checker.tests(tests);
+    checker.places();
     (checker.s, distinct(checker.issues))
 }
 
@@ -91,6 +93,8 @@ struct ConstEntry<'a> {
     name: &'a Name,
     value: &'a ast::Expr,
     state: ConstState,
+    /// Something reads it.
+    used: bool,
 }
 
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
