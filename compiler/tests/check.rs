@@ -9,6 +9,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_source::Fix;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Expected {
@@ -108,4 +109,36 @@ fn every_fixture_gives_what_it_says() {
 #[test]
 fn every_lint_says_what_it_should() {
     every_fixture_of("lint", 12);
+}
+
+/// The text with a change made.
+fn changed(text: &str, fix: &Fix) -> String {
+    let mut text = text.to_owned();
+    for edit in fix.edits.iter().rev() {
+        text.replace_range(edit.span.range(), &edit.text);
+    }
+    text
+}
+
+/// A change that may be made unasked leaves no trace of what it mends, and breaks nothing.
+#[test]
+fn certain_fixes_mend() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
+    let mut tried = 0;
+    for (name, text) in fixtures(&folder).iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
+        let compiled = |text: &str| compile(Input { name, text }, &[]);
+        let before = compiled(text);
+        let errors = |c: &Compilation| c.diagnostics.iter().filter(|d| d.is_error()).count();
+        for d in &before.diagnostics {
+            for fix in d.fixes.iter().filter(|f| f.certain) {
+                let after = compiled(&changed(text, fix));
+                let said = |c: &Compilation| c.diagnostics.iter().filter(|e| e.message == d.message).count();
+                let place = before.files.place(d.span());
+                assert!(errors(&after) <= errors(&before), "{place}: `{}` breaks the text", fix.title);
+                assert!(said(&after) < said(&before), "{place}: `{}` does not mend it", fix.title);
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried >= 8, "only {tried} fixes were found");
 }

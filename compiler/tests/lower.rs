@@ -22,8 +22,12 @@ const ACTORS: &str = "actor person : environment\nactor robot : system\n";
 fn program(text: &str) -> Program {
     let text = format!("scenario small\n{ACTORS}{text}");
     let c = compile(Input { name: "small.hri", text: &text }, &[]);
-    let said: Vec<String> =
-        c.diagnostics.iter().filter(|d| d.is_error()).map(|d| format!("{} {}", c.files.place(d.span()), d.message)).collect();
+    let said: Vec<String> = c
+        .diagnostics
+        .iter()
+        .filter(|d| d.is_error())
+        .map(|d| format!("{} {}", c.files.place(d.span()), d.message))
+        .collect();
     assert_eq!(said, Vec::<String>::new());
     c.program.unwrap()
 }

@@ -76,6 +76,7 @@ pub struct Scenario {
     pub world: Option<World>,
     pub system: Option<System>,
     pub constants: Vec<Constant>,
+    #[serde(skip)]
     pub places: Places,
 }
 

@@ -26,7 +26,10 @@ pub(crate) fn not_made(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diag
             (message, "let an agent, an automaton, a random suite or a test do it".to_owned())
         } else {
             let message = format!("nobody makes the event `{}`, and something counts on it", event.name);
-            (message, format!("let a stimulus, an agent or automaton of `{actor}`, or a rule of the world make it"))
+            (
+                message,
+                format!("let a stimulus, an agent or automaton of `{actor}`, or a rule of the world make it"),
+            )
         };
         issues.push(Diagnostic::warning(Code::EVENT_NOT_MADE, span, message).help(help));
     }

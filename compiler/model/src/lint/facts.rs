@@ -6,8 +6,8 @@ use hrdsl_source::Span;
 
 use super::flow::{Flow, flows};
 use crate::{
-    Arg, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind, StimulusStep, Sync,
-    TestStep, TriggerOn, Value, world::RuleOn,
+    Arg, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind, StimulusStep,
+    Sync, TestStep, TriggerOn, Value, world::RuleOn,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -78,7 +78,8 @@ impl Facts {
     pub fn of(scenario: &Scenario) -> Self {
         let has_tests = !scenario.suites.is_empty() || !scenario.tests.is_empty();
         let events = vec![EventFacts::default(); scenario.events.len()];
-        let mut facts = Self { events, waits: Vec::new(), triggers: Vec::new(), has_tests, flows: flows(scenario) };
+        let mut facts =
+            Self { events, waits: Vec::new(), triggers: Vec::new(), has_tests, flows: flows(scenario) };
         facts.declared(scenario);
         facts.agents(scenario);
         facts.automata(scenario);

@@ -3,7 +3,8 @@
 use std::{collections::VecDeque, rc::Rc};
 
 use crate::{
-    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, Leaf, LocationId, ReceiveArg, Scenario, Sync, Update,
+    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, Leaf, LocationId, ReceiveArg, Scenario,
+    Sync, Update,
     lint::interval::{Env, Interval},
 };
 
@@ -95,7 +96,13 @@ impl Flow {
                 lo: if joined.lo < old.lo { range.lo } else { old.lo },
                 hi: if joined.hi > old.hi { range.hi } else { old.hi },
             };
-            let next = if count >= END { *range } else if count >= PATIENCE { wider } else { joined };
+            let next = if count >= END {
+                *range
+            } else if count >= PATIENCE {
+                wider
+            } else {
+                joined
+            };
             changed |= next != *old;
             *old = next;
         }
@@ -207,3 +214,6 @@ pub(crate) fn clash(low: &ClockConstraint, high: &ClockConstraint) -> bool {
     let same = (low.clock, low.minus) == (high.clock, high.minus);
     same && (lower > upper || lower >= upper && (open_below || open_above))
 }
+
+#[cfg(test)]
+mod tests;

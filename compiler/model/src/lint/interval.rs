@@ -139,7 +139,9 @@ impl Interval {
             BinaryOp::Gt => return o.compare(BinaryOp::Lt, self),
             BinaryOp::Ge => return o.compare(BinaryOp::Le, self),
             BinaryOp::Lt | BinaryOp::Le | BinaryOp::Eq | BinaryOp::Ne => None,
-            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => return Self::ALL,
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {
+                return Self::ALL;
+            }
             BinaryOp::And | BinaryOp::Or => None,
         })
     }
@@ -342,7 +344,12 @@ impl<'a> Env<'a> {
                         self.leave(a, sum) && self.leave(b, wide_sub(x, into))
                     }
                     BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => true,
-                    BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => true,
+                    BinaryOp::Eq
+                    | BinaryOp::Ne
+                    | BinaryOp::Lt
+                    | BinaryOp::Le
+                    | BinaryOp::Gt
+                    | BinaryOp::Ge => true,
                 }
             }
             ExprKind::Const(_)
@@ -421,4 +428,4 @@ fn negated(op: BinaryOp) -> BinaryOp {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -34,10 +34,12 @@ fn is_free(edge: &Edge) -> bool {
 }
 
 fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize]) -> Diagnostic {
-    let names: Vec<&str> = cycle.iter().chain(&cycle[..1]).map(|l| automaton.locations[*l].name.as_str()).collect();
+    let names: Vec<&str> =
+        cycle.iter().chain(&cycle[..1]).map(|l| automaton.locations[*l].name.as_str()).collect();
     let places = scenario.places.automata.get(index);
     let first = cycle[0];
-    let span = places.and_then(|p| p.locations.get(first)).copied().unwrap_or(automaton.locations[first].span);
+    let span =
+        places.and_then(|p| p.locations.get(first)).copied().unwrap_or(automaton.locations[first].span);
     let message = format!("no time passes in the cycle `{}`", names.join(" -> "));
     Diagnostic::warning(Code::NO_TIME_PASSES_HERE, span, message)
         .here("it can be gone round for ever at one instant")

@@ -8,8 +8,8 @@ use super::{
     interval::{Env, Interval},
 };
 use crate::{
-    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, StepKind, StimulusStep,
-    Sync, TriggerOn, Type, Update,
+    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, StepKind,
+    StimulusStep, Sync, TriggerOn, Type, Update,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -46,7 +46,8 @@ impl<'a> Checker<'a> {
         } else if reads_open(env, e) {
             return;
         } else {
-            let message = format!("this may leave the range of {what}: it can be {shown}, and the range is {of}");
+            let message =
+                format!("this may leave the range of {what}: it can be {shown}, and the range is {of}");
             Diagnostic::warning(Code::MAY_OVERFLOW, e.span, message)
         };
         self.issues.push(issue.help("compare it first, in a condition with `when`, or widen the range"));

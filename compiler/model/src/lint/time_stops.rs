@@ -87,5 +87,5 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
 
 /// Whether an edge sets this clock to 0.
 fn resets(edge: &Edge, clock: ClockId) -> bool {
-    edge.updates.iter().any(|u| *u == Update::Reset(clock))
+    edge.updates.contains(&Update::Reset(clock))
 }

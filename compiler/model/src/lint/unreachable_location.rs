@@ -49,9 +49,7 @@ fn dead_edges(automaton: &Automaton, flow: &Flow) -> Vec<(usize, &'static str)> 
 }
 
 fn never_taken(automaton: &Automaton, edge: &Edge, why: &str) -> Diagnostic {
-    let name = |l: LocationId| {
-        automaton.locations.get(usize::from(l.0)).map_or("?", |l| l.name.as_str())
-    };
+    let name = |l: LocationId| automaton.locations.get(usize::from(l.0)).map_or("?", |l| l.name.as_str());
     let message = format!("the edge from `{}` to `{}` is never taken", name(edge.from), name(edge.to));
     Diagnostic::warning(Code::UNREACHABLE_LOCATION, edge.span, message)
         .here(why)
@@ -93,14 +91,16 @@ fn locations(
             }
             follow(automaton, flow, vec![i], explained);
             let span: Span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.span);
-            let message =
-                format!("no edge leads to `{}` from the initial location", location.name);
+            let message = format!("no edge leads to `{}` from the initial location", location.name);
             let issue = Diagnostic::warning(Code::UNREACHABLE_LOCATION, span, message);
             let untouched = flow.out[i].is_empty() && !entered[i];
             issues.push(if untouched {
-                issue
-                    .help("add an edge to it, or delete it")
-                    .fix("delete the location", location.span, "", true)
+                issue.help("add an edge to it, or delete it").fix(
+                    "delete the location",
+                    location.span,
+                    "",
+                    true,
+                )
             } else {
                 issue.help("add an edge to it, or delete it with its edges")
             });

@@ -4,8 +4,8 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use super::{events::own_events, facts::Facts};
 use crate::{
-    ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern, Player, Role, Scenario,
-    StepKind, Sync, TriggerOn, Update,
+    ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
+    Player, Role, Scenario, StepKind, Sync, TriggerOn, Update,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -69,7 +69,8 @@ fn players<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     let mut agents = vec![false; scenario.agents.len()];
     let mut automata = vec![false; scenario.automata.len()];
     let mut networks = vec![false; scenario.networks.len()];
-    let set = |used: &mut [bool], i: u16| used.iter_mut().skip(usize::from(i)).take(1).for_each(|u| *u = true);
+    let set =
+        |used: &mut [bool], i: u16| used.iter_mut().skip(usize::from(i)).take(1).for_each(|u| *u = true);
     for suite in &scenario.suites {
         match &suite.method {
             Method::Agents { players, .. } => players.iter().for_each(|p| match p {
@@ -97,7 +98,13 @@ fn players<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     for (i, network) in scenario.networks.iter().enumerate().filter(|(i, _)| !networks[*i]) {
         let at = places.networks.get(i).copied().unwrap_or(network.span);
         let whole = Some((network.span, false));
-        found.push(Unused { noun: "the network", name: &network.name, at, lacks: "searched by a suite", whole });
+        found.push(Unused {
+            noun: "the network",
+            name: &network.name,
+            at,
+            lacks: "searched by a suite",
+            whole,
+        });
     }
 }
 
@@ -237,9 +244,7 @@ fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
 fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     let Some(world) = &scenario.world else { return };
     // Only the code of a system actor reads signals by itself.
-    let is_code = |a: &ActorId| {
-        scenario.actors.get(usize::from(a.0)).is_some_and(|a| a.role == Role::System)
-    };
+    let is_code = |a: &ActorId| scenario.actors.get(usize::from(a.0)).is_some_and(|a| a.role == Role::System);
     let mut read: Vec<bool> = world.signals.iter().map(|s| s.to.iter().any(is_code)).collect();
     let mut mark = |e: &Expr| {
         e.each(&mut |part| {

@@ -7,13 +7,13 @@ use proptest::prelude::*;
 use super::*;
 use crate::value;
 
-const VARS: usize = 3;
+pub(crate) const VARS: usize = 3;
 
 fn expr(kind: ExprKind, ty: Kind) -> Expr {
     Expr { kind, ty, span: Span::default() }
 }
 
-fn number() -> impl Strategy<Value = Expr> {
+pub(crate) fn number() -> impl Strategy<Value = Expr> {
     let leaf = prop_oneof![
         (-5i64..=5).prop_map(|n| expr(ExprKind::Const(Value::Int(n)), Kind::Int)),
         (0..VARS as u16).prop_map(|i| expr(ExprKind::Leaf(Leaf::Own(i)), Kind::Int)),
@@ -43,7 +43,7 @@ fn number() -> impl Strategy<Value = Expr> {
     })
 }
 
-fn condition() -> impl Strategy<Value = Expr> {
+pub(crate) fn condition() -> impl Strategy<Value = Expr> {
     let compare = prop::sample::select(vec![
         BinaryOp::Lt,
         BinaryOp::Le,
@@ -66,7 +66,7 @@ fn condition() -> impl Strategy<Value = Expr> {
 }
 
 /// The value as at run time; `None`: it has none.
-fn run(e: &Expr, own: &[i64]) -> Option<Value> {
+pub(crate) fn run(e: &Expr, own: &[i64]) -> Option<Value> {
     let truth = |e: &Expr| run(e, own).map(|v| v == Value::Bool(true));
     match &e.kind {
         ExprKind::Const(v) => Some(*v),
@@ -84,7 +84,7 @@ fn run(e: &Expr, own: &[i64]) -> Option<Value> {
     }
 }
 
-fn holds(interval: Interval, value: Value) -> bool {
+pub(crate) fn holds(interval: Interval, value: Value) -> bool {
     Interval::value(value).within(interval)
 }
 
