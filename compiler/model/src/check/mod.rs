@@ -11,6 +11,7 @@ mod given;
 mod item;
 mod layout;
 mod measure;
+mod places;
 mod plan;
 mod range;
 mod requirement;
@@ -79,6 +80,7 @@ pub fn resolve(
     checker.unread_members = false;
     checker.systems();
     checker.tests(tests);
+    checker.places();
     (checker.s, distinct(checker.issues))
 }
 
@@ -100,6 +102,8 @@ struct ConstEntry<'a> {
     name: &'a Name,
     value: &'a ast::Expr,
     state: ConstState,
+    /// Something reads it.
+    used: bool,
 }
 
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
@@ -133,6 +137,8 @@ pub(crate) struct Checker<'a> {
     /// By sort and name.
     templates: IndexMap<(u8, &'a str), Template<'a>>,
     used_templates: BTreeSet<(u8, String)>,
+    /// Enumerations and records.
+    used_types: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
     events: Table,
@@ -182,6 +188,7 @@ impl<'a> Checker<'a> {
             records: Vec::new(),
             templates: IndexMap::new(),
             used_templates: BTreeSet::new(),
+            used_types: BTreeSet::new(),
             given: None,
             events: Table::default(),
             event_fields: Vec::new(),
