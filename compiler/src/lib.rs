@@ -16,6 +16,7 @@ use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
 use hrdsl_syntax::ast;
+pub use hrdsl_syntax::format;
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Copy, Debug)]
