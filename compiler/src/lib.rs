@@ -17,7 +17,7 @@ pub mod pages;
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
-pub use hrdsl_syntax::{MAX_BYTES, ast, parse, token};
+pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
 
 pub use modules::{Loader, NoFiles, Source};
 
