@@ -98,7 +98,7 @@ impl<'a> Checker<'a> {
         for (item, _) in self.each_item() {
             let Some((sort, template)) = template(item) else { continue };
             let name = template.name;
-            let key = (sort as u8, name.text.as_str());
+            let key = (sort, name.text.as_str());
             if let Some(first) = self.templates.get(&key) {
                 let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
                 self.report(issue);
@@ -128,16 +128,15 @@ impl<'a> Checker<'a> {
         instance: &'a ast::Instance,
         env: &Env,
     ) -> Option<(Template<'a>, Rc<Givens>)> {
-        let Some(template) = self.templates.get(&(instance.sort as u8, instance.of.text.as_str())).copied()
-        else {
-            let sort = instance.sort as u8;
+        let Some(template) = self.templates.get(&(instance.sort, instance.of.text.as_str())).copied() else {
+            let sort = instance.sort;
             let all: Vec<String> =
                 self.templates.keys().filter(|(s, _)| *s == sort).map(|(_, n)| (*n).to_owned()).collect();
             // That the name is one of a plain declaration says that it has no parameters.
             self.unknown(Noun::Template, &instance.of, &all, None);
             return None;
         };
-        self.used_templates.insert((instance.sort as u8, template.name.text.clone()));
+        self.used_templates.insert((instance.sort, template.name.text.clone()));
         let given = self.bind(template.name, template.params, &instance.args, instance.span, env, true)?;
         Some((template, given))
     }
@@ -288,7 +287,7 @@ impl<'a> Checker<'a> {
 
     /// Checks each template of a sort by itself.
     pub(super) fn templates_of(&mut self, sort: Sort, check: impl Fn(&mut Self, Template<'a>)) {
-        let of_sort = |((s, _), t): (&(u8, &'a str), &Template<'a>)| (*s == sort as u8).then_some(*t);
+        let of_sort = |((s, _), t): (&(Sort, &'a str), &Template<'a>)| (*s == sort).then_some(*t);
         let templates: Vec<Template<'a>> = self.templates.iter().filter_map(of_sort).collect();
         for template in templates {
             let given = self.placeholders(template.params);

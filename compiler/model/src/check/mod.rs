@@ -28,7 +28,7 @@ mod world_parts;
 use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
-use hrdsl_syntax::ast::{self, Instance, ItemKind, Name};
+use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 use indexmap::IndexMap;
 
 use crate::{
@@ -135,8 +135,8 @@ pub(crate) struct Checker<'a> {
     record_names: Table,
     records: Vec<RecordEntry<'a>>,
     /// By sort and name.
-    templates: IndexMap<(u8, &'a str), Template<'a>>,
-    used_templates: BTreeSet<(u8, String)>,
+    templates: IndexMap<(Sort, &'a str), Template<'a>>,
+    used_templates: BTreeSet<(Sort, String)>,
     /// Enumerations and records.
     used_types: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.

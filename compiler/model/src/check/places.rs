@@ -47,7 +47,7 @@ impl Checker<'_> {
                 | ItemKind::Cover(_)
                 | ItemKind::Cross(_) => {
                     if let Some((sort, template)) = template(item) {
-                        let used = self.used_templates.contains(&(sort as u8, template.name.text.clone()));
+                        let used = self.used_templates.contains(&(sort, template.name.text.clone()));
                         self.declared("the template", template.name, span, used);
                     }
                 }

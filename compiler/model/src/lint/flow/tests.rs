@@ -54,7 +54,9 @@ fn automaton(mut edges: Vec<Edge>) -> Automaton {
         name: "A".to_owned(),
         actor: ActorId(0),
         clocks: Vec::new(),
-        vars: (0..VARS).map(|i| Var { name: format!("v{i}"), ty, init: Value::Int(0), span: Span::default() }).collect(),
+        vars: (0..VARS)
+            .map(|i| Var { name: format!("v{i}"), ty, init: Value::Int(0), span: Span::default() })
+            .collect(),
         locations: (0..LOCATIONS).map(location).collect(),
         initial: LocationId(0),
         edges,
