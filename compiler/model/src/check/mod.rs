@@ -135,6 +135,8 @@ pub(crate) struct Checker<'a> {
     used_templates: BTreeSet<(u8, String)>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
+    /// A template is being checked by itself: its parameters have made-up values.
+    alone: bool,
     events: Table,
     /// By [`EventId`]: the parameters as declared.
     event_fields: Vec<Fields>,
@@ -183,6 +185,7 @@ impl<'a> Checker<'a> {
             templates: IndexMap::new(),
             used_templates: BTreeSet::new(),
             given: None,
+            alone: false,
             events: Table::default(),
             event_fields: Vec::new(),
             players: Table::default(),
