@@ -292,9 +292,35 @@ impl<'a> Checker<'a> {
         for template in templates {
             let given = self.placeholders(template.params);
             let outer = self.given.replace(given);
+            self.alone = true;
             check(self, template);
+            self.alone = false;
             self.given = outer;
         }
+    }
+
+    /// Whether a made-up value stands in an expression, so that what it is in an instance is not known.
+    pub(super) fn is_made_up(&self, e: &ast::Expr) -> bool {
+        let known = |names: &[Name]| matches!(self.given(&names[0].text), Some(Given::Value(_)));
+        let any = |all: &[ast::Expr]| all.iter().any(|e| self.is_made_up(e));
+        self.alone
+            && match &e.kind {
+                Syntax::Path(path) => known(&path.names),
+                Syntax::Call { args, .. } => any(args),
+                Syntax::Index { of, .. } | Syntax::Field { of, .. } => self.is_made_up(of),
+                Syntax::Unary { operand, .. } => self.is_made_up(operand),
+                Syntax::Binary { left, right, .. } => self.is_made_up(left) || self.is_made_up(right),
+                Syntax::If { condition, then, otherwise } => {
+                    [condition, then, otherwise].into_iter().any(|e| self.is_made_up(e))
+                }
+                Syntax::Tuple(parts) => any(parts),
+                Syntax::Bool(_)
+                | Syntax::Int(_)
+                | Syntax::Float(_)
+                | Syntax::Quantity { .. }
+                | Syntax::Any
+                | Syntax::Error => false,
+            }
     }
 
     /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with

@@ -141,6 +141,8 @@ pub(crate) struct Checker<'a> {
     used_types: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
+    /// A template is being checked by itself: its parameters have made-up values.
+    alone: bool,
     events: Table,
     /// By [`EventId`]: the parameters as declared.
     event_fields: Vec<Fields>,
@@ -190,6 +192,7 @@ impl<'a> Checker<'a> {
             used_templates: BTreeSet::new(),
             used_types: BTreeSet::new(),
             given: None,
+            alone: false,
             events: Table::default(),
             event_fields: Vec::new(),
             players: Table::default(),
