@@ -55,6 +55,13 @@ impl Compilation {
     pub fn is_module(&self) -> bool {
         modules::is_module(&self.ast[0])
     }
+
+    /// How many declarations the first file has.
+    #[must_use]
+    pub fn declarations(&self) -> usize {
+        let declares = |i: &&ast::Item| !matches!(i.kind, ast::ItemKind::Use(_) | ast::ItemKind::Allow(_));
+        self.ast[0].items.iter().filter(declares).count()
+    }
 }
 
 /// Compiles a scenario with the tests that belong to it; it can use modules of the library.
