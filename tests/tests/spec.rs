@@ -3,6 +3,8 @@
 
 #[path = "spec/blocks.rs"]
 mod blocks;
+#[path = "spec/draws.rs"]
+mod draws;
 #[path = "spec/ebnf.rs"]
 mod ebnf;
 #[path = "spec/hri.rs"]
