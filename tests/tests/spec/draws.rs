@@ -6,8 +6,14 @@ use std::{
     process::{Command, Stdio},
 };
 
+use hrdsl_bdi::choose::{Alternative, Factor, explore};
 use hrdsl_compiler::{Input, compile};
-use hrdsl_ir::{Value, test::TestStep};
+use hrdsl_ir::{
+    Value,
+    bdi::{AgentId, BeliefId, Fact},
+    suite::Explore,
+    test::TestStep,
+};
 use hrdsl_runtime::testgen::generate;
 
 use crate::page::{read, split};
@@ -71,25 +77,67 @@ for own in seeds:
         print(hexed(samples.sample(0.0, 3.0)))
 ";
 
+/// The programs of the page, followed by one more; what it prints.
+fn by_the_page(more: &str, args: &[String]) -> String {
+    let blocks = split(&read("spec/randomness.md")).0.into_iter().filter(|b| b.info == "python");
+    let program: String = blocks.map(|b| b.text).chain([more.to_owned()]).collect();
+    let mut child = Command::new("python3")
+        .arg("-")
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("python3 is there");
+    child.stdin.take().unwrap().write_all(program.as_bytes()).unwrap();
+    String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap()
+}
+
+fn compare(what: &str, expected: &str, got: &str) {
+    let first = expected.lines().zip(got.lines()).enumerate().find(|(_, (e, g))| e != g);
+    assert!(first.is_none(), "{what}: line, expected, got: {first:?}");
+    assert_eq!(expected.lines().count(), got.lines().count(), "{what}");
+}
+
 #[test]
 fn the_page_draws_what_the_generators_draw() {
-    let block = split(&read("spec/randomness.md")).0.into_iter().find(|b| b.info == "python");
-    let program = block.expect("the page has a program").text + BY_THE_PAGE;
     for seed in [0, 1, 77, 18_000_000] {
         let (expected, seeds) = drawn(seed);
-        let mut child = Command::new("python3")
-            .args(["-", &seed.to_string()])
-            .args(seeds.iter().map(u64::to_string))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("python3 is there");
-        child.stdin.take().unwrap().write_all(program.as_bytes()).unwrap();
-        let output = child.wait_with_output().unwrap();
-        let got = String::from_utf8(output.stdout).unwrap();
-        let lines = expected.lines().zip(got.lines()).enumerate();
-        let first = lines.clone().find(|(_, (e, g))| e != g);
-        assert!(first.is_none() && expected.lines().count() == got.lines().count(), "seed {seed}: {first:?}");
-        assert!(lines.count() > 100);
+        let args: Vec<String> = std::iter::once(seed).chain(seeds).map(|s| s.to_string()).collect();
+        compare(&format!("seed {seed}"), &expected, &by_the_page(BY_THE_PAGE, &args));
+        assert!(expected.lines().count() > 100);
     }
+}
+
+#[test]
+fn the_page_chooses_what_suites_choose() {
+    let choose = "
+import sys
+sizes, tests, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+chance = Generator(seed)
+for row in fill(pairwise(sizes, chance), sizes, tests, chance): print(*row)
+chance = Generator(seed)
+for row in fill([], sizes, tests, chance): print(*row)
+";
+    let spaces: [&[u32]; 6] = [&[], &[4], &[2, 2], &[3, 1, 2, 5], &[5, 8, 8, 8, 8, 2, 2], &[4; 9]];
+    for sizes in spaces {
+        for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
+            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let mut expected = String::new();
+            for how in [Explore::Pairwise, Explore::Random] {
+                for set in explore(&factors, how, tests, seed).sets {
+                    let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
+                    let _ = writeln!(expected, "{}", row.join(" "));
+                }
+            }
+            let args = [format!("{sizes:?}"), tests.to_string(), seed.to_string()];
+            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
+        }
+    }
+}
+
+/// A dimension whose alternatives are numbers.
+fn factor(size: u32) -> Factor {
+    let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())] };
+    let alternative = |n| Alternative { facts: vec![fact(n)], text: n.to_string() };
+    Factor { agent: AgentId(0), name: "n".to_owned(), alternatives: (0..size).map(alternative).collect() }
 }
