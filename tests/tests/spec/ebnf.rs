@@ -268,7 +268,9 @@ fn uses(rules: &[Rule], name: &str) -> usize {
     fn count(item: &Item, name: &str) -> usize {
         match item {
             Item::Text(_) => 0,
-            Item::Rule(n, args) => usize::from(n == name) + args.iter().map(|a| count(a, name)).sum::<usize>(),
+            Item::Rule(n, args) => {
+                usize::from(n == name) + args.iter().map(|a| count(a, name)).sum::<usize>()
+            }
             Item::Sequence(items) | Item::Choice(items) => items.iter().map(|i| count(i, name)).sum(),
             Item::Optional(item) | Item::Repeated(item) => count(item, name),
         }
@@ -322,9 +324,8 @@ fn read_rules(text: &str) -> (Vec<String>, Vec<Rule>) {
 
 /// How an item is written; in `tight` places a choice is in parentheses.
 fn shown(item: &Item, tight: bool) -> String {
-    let all = |items: &[Item], by: &str, tight| {
-        items.iter().map(|i| shown(i, tight)).collect::<Vec<_>>().join(by)
-    };
+    let all =
+        |items: &[Item], by: &str, tight| items.iter().map(|i| shown(i, tight)).collect::<Vec<_>>().join(by);
     match item {
         Item::Text(text) => text.clone(),
         Item::Rule(name, args) if args.is_empty() => name.clone(),

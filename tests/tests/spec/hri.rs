@@ -136,7 +136,8 @@ fn fault(c: &Compilation, expect: Option<&(String, bool, Option<String>)>, text:
         .iter()
         .map(|d| text.get(d.span().start as usize..d.span().end as usize).unwrap_or("(in another file)"))
         .collect();
-    (!texts.contains(&at.as_str())).then(|| format!("{what}s with {code} at `{}`, not `{at}`", texts.join("`, `")))
+    (!texts.contains(&at.as_str()))
+        .then(|| format!("{what}s with {code} at `{}`, not `{at}`", texts.join("`, `")))
 }
 
 /// The diagnostics, by place in the block.

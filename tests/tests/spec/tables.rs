@@ -59,8 +59,7 @@ fn the_units() {
     let mut table = String::from("| unit | type | 1 of it is |\n|---|---|---|\n");
     for unit in UNITS {
         let si = unit.dim.symbol().unwrap_or_default();
-        let _ =
-            writeln!(table, "| `{}` | `{}` | {} {si} |", unit.symbol, type_of(unit.dim), unit.to_si(1.0));
+        let _ = writeln!(table, "| `{}` | `{}` | {} {si} |", unit.symbol, type_of(unit.dim), unit.to_si(1.0));
     }
     generated("spec/types.md", "units", &table.replace("  |", " |"));
 }
