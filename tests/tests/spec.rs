@@ -84,7 +84,7 @@ fn the_book_has_every_page_once() {
             let name = format!("{before}{}", page.file_name().unwrap().to_string_lossy());
             if name != "SUMMARY.md" {
                 let n = times.remove(&name).unwrap_or(0);
-                assert_eq!(n, 1, "spec/SUMMARY.md names {name} {n} times (codes: renew with HRDSL_RENEW=1)");
+                assert_eq!(n, 1, "spec/SUMMARY.md names {name} {n} times (HRDSL_RENEW=1 adds it)");
             }
         }
     }

@@ -7,7 +7,7 @@ use hrdsl_compiler::token::{Class, KEYWORDS};
 use hrdsl_model::{Dim, Type, UNITS};
 use hrdsl_source::{GROUPS, REGISTRY};
 
-use crate::page::{read, root};
+use crate::page::{pages, read, root};
 
 /// Compares a generated part of a page with what it should be, or writes it.
 pub fn generated(page: &str, name: &str, text: &str) {
@@ -89,18 +89,28 @@ fn the_codes() {
     generated("spec/diagnostics.md", "codes", &text);
 }
 
-/// The contents of the book have a line for each code, below that of the diagnostics.
+/// The contents of the book have a line for each code, below that of the diagnostics; renewed, also for each page that is
+/// not yet there, before it.
 #[test]
-fn the_codes_in_the_book() {
+fn the_contents_of_the_book() {
     let old = read("spec/SUMMARY.md");
     let is_code = |line: &&str| line.trim_start().starts_with("- [HR");
+    let missing: Vec<String> = pages(&root().join("spec"))
+        .iter()
+        .map(|p| p.file_name().unwrap().to_string_lossy().into_owned())
+        .filter(|name| name != "SUMMARY.md" && !old.contains(&format!("]({name})")))
+        .collect();
     let mut new = String::new();
     for line in old.lines().filter(|l| !is_code(l)) {
+        let of_codes = line.contains("(diagnostics.md)");
+        for name in missing.iter().filter(|_| of_codes) {
+            let page = read(&format!("spec/{name}"));
+            let title = page.lines().next().unwrap_or_default().trim_start_matches('#').trim();
+            let _ = writeln!(new, "- [{title}]({name})");
+        }
         let _ = writeln!(new, "{line}");
-        if line.contains("(diagnostics.md)") {
-            for info in REGISTRY {
-                let _ = writeln!(new, "  - [{0}: {1}](codes/{0}.md)", info.code, info.title);
-            }
+        for info in REGISTRY.iter().filter(|_| of_codes) {
+            let _ = writeln!(new, "  - [{0}: {1}](codes/{0}.md)", info.code, info.title);
         }
     }
     same("spec/SUMMARY.md", &old, &new);
