@@ -7,6 +7,7 @@
 //! | `hri,item` | declarations, which are put after the standard scenario of `spec/README.md` |
 //! | `hri,standard` | that scenario |
 //! | `hri,file=NAME` | a module that the next block uses |
+//! | `hri,piece` | a part of a scenario that another test puts together: that of the standard library |
 //!
 //! After it may stand `fails=HRnnnn` or `warns=HRnnnn`, each perhaps with `="text"`: the text at the place of the fault.
 
@@ -30,6 +31,7 @@ enum Form {
     Then,
     Item,
     Standard,
+    Piece,
 }
 
 fn rule(info: &str) -> Result<Rule, String> {
@@ -45,6 +47,7 @@ fn rule(info: &str) -> Result<Rule, String> {
             None if word == "then" => rule.form = Form::Then,
             None if word == "item" => rule.form = Form::Item,
             None if word == "standard" => rule.form = Form::Standard,
+            None if word == "piece" => rule.form = Form::Piece,
             Some(("file", name)) => rule.file = Some(name.to_owned()),
             Some((kind @ ("fails" | "warns"), code)) => {
                 rule.expect = Some((code.to_owned(), kind == "fails", text.clone()));
@@ -88,6 +91,7 @@ pub fn faults(page: &str, blocks: &[Block]) -> (Vec<String>, usize) {
             continue;
         }
         let text = match rule.form {
+            Form::Piece => continue,
             Form::Whole | Form::Standard => block.text.clone(),
             Form::Item => format!("{}{}", standard(), block.text),
             Form::Then => {
