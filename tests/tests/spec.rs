@@ -1,6 +1,8 @@
 //! The specification is executed: every block on its pages is what it says, what can be generated is generated, every link
 //! leads somewhere, and the book has every page once.
 
+#[path = "spec/agents.rs"]
+mod agents;
 #[path = "spec/blocks.rs"]
 mod blocks;
 #[path = "spec/draws.rs"]
