@@ -11,6 +11,8 @@ mod draws;
 mod ebnf;
 #[path = "spec/hri.rs"]
 mod hri;
+#[path = "spec/monitors.rs"]
+mod monitors;
 #[path = "spec/page.rs"]
 mod page;
 #[path = "spec/tables.rs"]

@@ -61,6 +61,12 @@ def evaluate(e, names):
             "add": lambda: a + b, "sub": lambda: a - b, "mul": lambda: a * b, "div": lambda: a / b,
             "lt": lambda: a < b, "le": lambda: a <= b, "gt": lambda: a > b, "ge": lambda: a >= b,
         }[op]()
+    if form == "call":
+        values = [evaluate(a, names) for a in of[1]]
+        pick = {"abs": lambda: abs(*values), "norm": lambda: sum(v * v for v in values) ** 0.5}
+        pick["min"] = lambda: values[0] if values[0] <= values[1] else values[1]
+        pick["max"] = lambda: values[0] if values[0] >= values[1] else values[1]
+        return pick[of[0]]()
     raise NotImplementedError(form)
 
 
@@ -481,9 +487,10 @@ def run(program, players, limit):
                     deliver(expire)
 
 
-given = json.load(sys.stdin)
-for cast in given["runs"]:
-    players = [Agent(given["program"], one["agent"], one["chosen"]) for one in cast]
-    for time, name, values in run(given["program"], players, given["limit"]):
-        print(time, name, *(str(v).lower() if isinstance(v, bool) else v for v in values))
-    print(".")
+if __name__ == "__main__":
+    given = json.load(sys.stdin)
+    for cast in given["runs"]:
+        players = [Agent(given["program"], one["agent"], one["chosen"]) for one in cast]
+        for time, name, values in run(given["program"], players, given["limit"]):
+            print(time, name, *(str(v).lower() if isinstance(v, bool) else v for v in values))
+        print(".")
