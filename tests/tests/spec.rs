@@ -13,6 +13,8 @@ mod ebnf;
 mod hri;
 #[path = "spec/monitors.rs"]
 mod monitors;
+#[path = "spec/network.rs"]
+mod network;
 #[path = "spec/page.rs"]
 mod page;
 #[path = "spec/tables.rs"]
