@@ -286,7 +286,12 @@ fn merge(rules: &mut Vec<Rule>) {
                 let j = rules.iter().position(|t| t.name == *name && t.params.is_empty())?;
                 Some((i, j))
             }
-            _ => None,
+            Item::Text(_)
+            | Item::Rule(..)
+            | Item::Sequence(_)
+            | Item::Choice(_)
+            | Item::Optional(_)
+            | Item::Repeated(_) => None,
         });
         let Some((i, j)) = alias else { return };
         rules[i].body = rules[j].body.clone();
@@ -310,7 +315,7 @@ fn read_rules(text: &str) -> (Vec<String>, Vec<Rule>) {
                 reader.at += 1;
                 comment = format!("{comment} {text}").trim().to_owned();
             }
-            _ => {
+            Token::Literal(_) | Token::Name(_) | Token::Macro(_) | Token::Mark(_) | Token::Action => {
                 let rule = reader.rule(sections.len() - 1, std::mem::take(&mut comment));
                 rules.push(rule);
             }
