@@ -2,13 +2,15 @@
 //!
 //! `//~ HR0101 "leg_requst" help "leg_request"` on a line means: an error with this code, at exactly this text of the line,
 //! whose help contains that text (quotes in the text are written as backquotes); `help` may be absent. Several expectations follow each other, each after its own `//~`.
-//! Every diagnostic must be expected, and every expectation met. In `NAME.tests.hri` are tests for `NAME.hri`.
+//! `in "Ann"` after that: it is said with the instance `Ann` of a template.
+//! Every diagnostic must be expected, and every expectation met. In `NAME.tests.hri` are tests for `NAME.hri`; in folders
+//! are modules that fixtures use.
 
 #![allow(clippy::disallowed_methods, reason = "the runner reads its fixtures")]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{Compilation, Input, Loader, Source, compile, compile_with};
 
 #[derive(Clone, Debug, PartialEq)]
 struct Expected {
@@ -17,6 +19,20 @@ struct Expected {
     code: String,
     text: String,
     help: String,
+    /// The instance of a template that it is said with.
+    instance: String,
+}
+
+/// The files beside the fixtures.
+struct Beside<'a>(&'a Path);
+
+impl Loader for Beside<'_> {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let folder = Path::new(from).parent().unwrap_or(Path::new(""));
+        let name = folder.join(path);
+        let text = fs::read_to_string(self.0.join(&name)).map_err(|_| "there is no such file".to_owned())?;
+        Ok(Source { name: name.to_string_lossy().into_owned(), text })
+    }
 }
 
 fn quoted(text: &str) -> Option<(String, &str)> {
@@ -30,8 +46,11 @@ fn expectations(file: u16, text: &str) -> Vec<Expected> {
         for note in text.split("//~").skip(1) {
             let (code, rest) = note.trim_start().split_once(' ').unwrap_or((note.trim(), ""));
             let (at, rest) = quoted(rest).unwrap_or_else(|| panic!("line {line}: no text after {code}"));
-            let help = rest.trim_start().strip_prefix("help").and_then(quoted).map_or(String::new(), |q| q.0);
-            all.push(Expected { file, line, code: code.to_owned(), text: at, help });
+            let (help, rest) =
+                rest.trim_start().strip_prefix("help").and_then(quoted).unwrap_or((String::new(), rest));
+            let instance =
+                rest.trim_start().strip_prefix("in").and_then(quoted).map_or(String::new(), |q| q.0);
+            all.push(Expected { file, line, code: code.to_owned(), text: at, help, instance });
         }
     }
     all
@@ -47,6 +66,8 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
             (e.file, e.line, e.code.as_str()) == (d.span().file.0, line, d.code.to_string().as_str())
                 && e.text == text.split_whitespace().collect::<Vec<_>>().join(" ").replace('"', "`")
                 && help.contains(&e.help)
+                && (e.instance.is_empty()
+                    || d.labels.iter().any(|l| l.text == format!("in the instance `{}`", e.instance)))
         };
         match expected.iter().position(met) {
             Some(at) => drop(expected.remove(at)),
@@ -96,6 +117,9 @@ fn every_fixture_gives_what_it_says() {
     let mut fixtures: BTreeMap<String, String> = BTreeMap::new();
     for entry in fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         fixtures.insert(name, fs::read_to_string(path).unwrap());
     }
@@ -104,10 +128,13 @@ fn every_fixture_gives_what_it_says() {
         let tests_name = name.replace(".hri", ".tests.hri");
         let tests: Vec<Input<'_>> =
             fixtures.get(&tests_name).map(|text| Input { name: &tests_name, text }).into_iter().collect();
-        let c = compile(Input { name, text }, &tests);
-        let mut expected = expectations(0, text);
-        expected.extend(tests.iter().flat_map(|t| expectations(1, t.text)));
+        let c = compile_with(Input { name, text }, &tests, &Beside(&folder));
+        let expected = c.files.iter().flat_map(|(id, file)| expectations(id.0, &file.text)).collect();
         all.extend(faults(&c, expected));
+        // What the checker could not make sense of has a diagnostic.
+        if !c.has_errors() && format!("{:?}", c.scenario).contains("kind: Error") {
+            all.push(format!("{name}: something is wrong, and nothing is said"));
+        }
         let errors = c.diagnostics.iter().any(hrdsl_source::Diagnostic::is_error);
         assert_eq!(
             c.program.is_none(),

@@ -69,12 +69,14 @@ impl Checker<'_> {
     }
 
     fn add_point(&mut self, name: &Name, (count, bins): (Vec<EventPattern>, Vec<Bin>), span: Span) {
+        self.not_a_template(Sort::Cover, name);
         if Self::declare(&mut self.issues, &mut self.points, Noun::Point, name).is_some() {
             self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, span });
         }
     }
 
     fn cross(&mut self, name: &Name, cross: Cross) {
+        self.not_a_template(Sort::Cross, name);
         if Self::declare(&mut self.issues, &mut self.crosses, Noun::Cross, name).is_some() {
             self.s.crosses.push(Cross { name: name.text.clone(), ..cross });
         }

@@ -208,7 +208,14 @@ impl Checker<'_> {
             [only] => {
                 let near = self.in_world.below(noun, "");
                 let is = self.in_world.kind_of(given).or((is != noun).then_some(is));
+                let before = self.issues.len();
                 self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
+                // What is to be mended is what the instance gives.
+                for issue in self.issues.iter_mut().skip(before) {
+                    let help = issue.help.take().map_or(String::new(), |help| format!(": {help}"));
+                    issue.help = Some(format!("`{}` stands for `{given}`{help}", only.text));
+                    issue.fixes.clear();
+                }
             }
             [_, .., last] => {
                 let near = self.in_world.below(noun, &format!("{given}."));
@@ -231,6 +238,7 @@ impl Checker<'_> {
         if env.world.is_some() {
             all.extend(MEASURES.map(str::to_owned));
         }
+        all.extend(self.record_names.names().map(str::to_owned));
         let callee = Name { text: name, span: callee.span };
         self.unknown(Noun::Function, &callee, &all, None);
     }

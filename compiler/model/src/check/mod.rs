@@ -61,7 +61,8 @@ pub fn resolve(
     modules: &[&ast::File],
     tests: &[&ast::File],
 ) -> (Scenario, Vec<Diagnostic>) {
-    let mut items: Vec<&ast::Item> = modules.iter().flat_map(|m| &m.items).collect();
+    let mut items: Vec<&ast::Item> =
+        modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
     let from_modules = items.len();
     items.extend(&scenario.items);
     let mut checker = Checker::new(items, from_modules);
@@ -80,6 +81,11 @@ pub fn resolve(
     checker.systems();
     checker.tests(tests);
     (checker.s, distinct(checker.issues))
+}
+
+/// What a module shares. Anything else in it has a diagnostic, and is not the scenario's.
+fn shared(kind: &ItemKind) -> bool {
+    !matches!(kind, ItemKind::World(_) | ItemKind::System(_) | ItemKind::Suite(_) | ItemKind::Test(_))
 }
 
 /// A part that is used twice has its faults once.
@@ -135,6 +141,8 @@ pub(crate) struct Checker<'a> {
     used_templates: BTreeSet<(u8, String)>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
+    /// A template is being checked by itself, with some values.
+    by_itself: bool,
     events: Table,
     /// By [`EventId`]: the parameters as declared.
     event_fields: Vec<Fields>,
@@ -183,6 +191,7 @@ impl<'a> Checker<'a> {
             templates: IndexMap::new(),
             used_templates: BTreeSet::new(),
             given: None,
+            by_itself: false,
             events: Table::default(),
             event_fields: Vec::new(),
             players: Table::default(),

@@ -58,6 +58,7 @@ impl Checker<'_> {
         span: Span,
         names: &mut Table,
     ) {
+        self.not_a_template(Sort::Require, name);
         Self::declare(&mut self.issues, names, Noun::Requirement, name);
         if let Some((kind, title, pattern)) = resolved {
             let name = name.text.clone();
@@ -95,7 +96,8 @@ impl Checker<'_> {
             reads |=
                 matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);
         });
-        if !reads {
+        // A parameter may stand for something measured.
+        if !reads && !self.by_itself {
             self.report(says_nothing(e.span));
         }
         e

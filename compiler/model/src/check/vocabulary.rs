@@ -158,6 +158,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_agent(&mut self, agent: Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Agent, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Agent(id));
@@ -185,6 +186,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_automaton(&mut self, automaton: Declared<'a, ast::Automaton>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Automaton, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Automaton(id));

@@ -5,7 +5,10 @@ use hrdsl_syntax::ast::{
     self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member,
 };
 
-use super::{Checker, Env, world_parts::Placed};
+use super::{
+    Checker, Env,
+    world_parts::{Placed, WorldNames},
+};
 use crate::{
     ActorId, BodyId, Dim, GripperId, JointId, Kind, Value,
     noun::Noun,
@@ -60,8 +63,12 @@ impl<'a> Checker<'a> {
         for pass in passes {
             for p in &placed {
                 let outer = std::mem::replace(&mut self.given, p.given.clone());
+                let before = self.issues.len();
                 pass(self, p);
                 self.given = outer;
+                if let Some((name, span)) = &p.instance {
+                    self.said_in(before, Some((name, *span)));
+                }
             }
         }
     }
@@ -79,14 +86,12 @@ impl<'a> Checker<'a> {
             let kept_names = std::mem::take(&mut self.in_world);
             let kept_world = self.s.world.take();
             let kept_flag = std::mem::replace(&mut self.has_world, true);
-            let params = part.params.as_deref();
-            let outer = params.map(|params| {
-                let given = self.placeholders(params);
-                self.given.replace(given)
-            });
-            self.build(&part.members, part.name.span);
-            if let Some(outer) = outer {
-                self.given = outer;
+            match &part.params {
+                Some(params) => self.by_itself(params, |c| {
+                    c.in_world = WorldNames::default();
+                    c.build(&part.members, part.name.span);
+                }),
+                None => self.build(&part.members, part.name.span),
             }
             self.in_world = kept_names;
             self.s.world = kept_world;

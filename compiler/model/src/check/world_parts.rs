@@ -80,6 +80,8 @@ pub(crate) struct Placed<'a> {
     pub member: &'a WorldMember,
     /// What the parameters of its part stand for.
     pub given: Option<Rc<Givens>>,
+    /// The part of the world that gives them.
+    pub instance: Option<(Name, Span)>,
 }
 
 impl<'a> Checker<'a> {
@@ -90,6 +92,17 @@ impl<'a> Checker<'a> {
         prefix: &str,
         frame: Frame,
         depth: usize,
+    ) -> Vec<Placed<'a>> {
+        self.flatten_in(members, prefix, frame, depth, None)
+    }
+
+    fn flatten_in(
+        &mut self,
+        members: &'a [WorldMember],
+        prefix: &str,
+        frame: Frame,
+        depth: usize,
+        instance: Option<(Name, Span)>,
     ) -> Vec<Placed<'a>> {
         let mut all = Vec::new();
         for member in members {
@@ -110,9 +123,17 @@ impl<'a> Checker<'a> {
                     };
                     if new {
                         let frame = compose(frame, inner);
+                        let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
+                        let here = Name { text: full.clone(), span: name.span };
+                        let instance = given.is_some().then(|| (here, name.span.to(end)));
                         let outer = std::mem::replace(&mut self.given, given);
-                        let inner = self.flatten(&part.members, &format!("{full}."), frame, depth + 1);
+                        let (before, prefix) = (self.issues.len(), format!("{full}."));
+                        let inner =
+                            self.flatten_in(&part.members, &prefix, frame, depth + 1, instance.clone());
                         self.given = outer;
+                        if let Some((name, span)) = &instance {
+                            self.said_in(before, Some((name, *span)));
+                        }
                         all.extend(inner);
                     }
                 }
@@ -127,8 +148,8 @@ impl<'a> Checker<'a> {
                 | Member::Signal { .. }
                 | Member::Rule(_)
                 | Member::Error => {
-                    let given = self.given.clone();
-                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given });
+                    let (given, instance) = (self.given.clone(), instance.clone());
+                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given, instance });
                 }
                 Member::Allow(_) => {}
             }
