@@ -74,8 +74,10 @@ impl Item {
         }
     }
 
-    fn is_array_of_one(&self) -> bool {
-        matches!(self, Item::Array(parts, _) | Item::Tuple(parts, _) if parts.len() == 1)
+    /// Whether it is an array of one where that is due.
+    fn is_one_of(&self, layout: &Layout) -> bool {
+        let one = matches!(self, Item::Array(parts, _) | Item::Tuple(parts, _) if parts.len() == 1);
+        one && matches!(layout, Layout::Array(..))
     }
 
     /// The names of its parts, if it is a vector: two or three numbers.
@@ -212,15 +214,22 @@ impl Checker<'_> {
             let (then, otherwise) = (self.item_for(then, layout, env), self.item_for(otherwise, layout, env));
             return self.either_item(&condition, then, otherwise, e.span, env);
         }
-        // One part alone needs no parentheses of a tuple, which would be no tuple.
-        if let (Layout::Array(of, 1), true) =
-            (layout, self.needs_due(e) || matches!(e.kind, Syntax::Tuple(_)))
+        if let Some(of) = self.only_part(layout)
+            && (matches!(e.kind, Syntax::Tuple(_)) || self.needs_due(e))
         {
-            let only = self.item_for(e, of, env);
+            let only = self.item_for(e, &of, env);
             return self.whole(layout, vec![only], e.span);
         }
         let item = self.item(e, env);
         self.coerce(item, layout, env)
+    }
+
+    /// The layout of what has one part alone: its value needs no parentheses of a tuple, which would be no tuple.
+    fn only_part(&self, layout: &Layout) -> Option<Layout> {
+        match self.parts_of(layout).as_slice() {
+            [(_, of)] => Some(of.clone()),
+            [] | [_, ..] => None,
+        }
     }
 
     fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
@@ -239,15 +248,13 @@ impl Checker<'_> {
                 self.in_range(&e, *ty);
                 return Item::One(e);
             }
-            (_, Layout::Array(of, 1)) if !item.is_unknown() && !item.is_array_of_one() => {
-                let part = self.coerce(item, of, env);
-                return self.whole(layout, vec![part], span);
-            }
-            (Item::One(e), Layout::Record(_)) if due.len() == 1 && e.ty != Kind::Unknown => {
+            (Item::Record(id, ..), Layout::Record(want)) if id == want => true,
+            (_, Layout::Record(_) | Layout::Array(_, 1))
+                if due.len() == 1 && !item.is_unknown() && !item.is_one_of(layout) =>
+            {
                 let part = self.coerce(item, &due[0].1, env);
                 return self.whole(layout, vec![part], span);
             }
-            (Item::Record(id, ..), Layout::Record(want)) => id == want,
             (Item::Tuple(parts, _), Layout::Record(_) | Layout::Array(..))
             | (Item::Array(parts, _), Layout::Array(..)) => parts.len() == due.len(),
             (Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..), _) => false,
@@ -340,8 +347,10 @@ impl Checker<'_> {
             Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
             _ => None,
         };
-        if let (Layout::Array(of, 1), Syntax::Tuple(_) | Syntax::Call { .. }) = (layout, &arg.kind) {
-            return self.spread(arg, of, env, variable, out);
+        if let (Some(of), Syntax::Tuple(_) | Syntax::Call { .. }) = (self.only_part(layout), &arg.kind)
+            && !matches!(&arg.kind, Syntax::Call { callee, .. } if self.is_record(callee, layout))
+        {
+            return self.spread(arg, &of, env, variable, out);
         }
         let mut leaves = Vec::new();
         if let Some(parts) = given {
