@@ -27,6 +27,7 @@ impl Checker<'_> {
                     self.item(arg, env);
                 }
                 Layout::Scalar(ty) => values.push(self.expr_for(arg, *ty, env)),
+                Layout::Unknown => {}
                 Layout::Record(_) | Layout::Array(..) => self.item_for(arg, layout, env).flatten(&mut values),
             }
         }

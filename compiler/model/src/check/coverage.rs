@@ -177,7 +177,8 @@ impl Checker<'_> {
         }
         let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
         let Some(id) = points.iter().copied().find(|p| name_of(self, p) == point.text) else {
-            let all: Vec<String> = points.iter().map(|p| name_of(self, p)).collect();
+            let own = points.iter().map(|p| name_of(self, p));
+            let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };

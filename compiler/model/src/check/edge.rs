@@ -213,6 +213,9 @@ impl Checker<'_> {
             return updates.extend(reset.then_some(Update::Reset(ClockId(clock))));
         }
         let slot = env.find(&target.text).map(|l| l.leaf);
+        if env.layout(&target.text) == Some(&Layout::Unknown) {
+            return;
+        }
         let layout = match slot {
             Some(Some(leaf @ (Leaf::Own(_) | Leaf::Shared(_)))) => Layout::Scalar(self.type_of(scope, leaf)),
             Some(Some(Leaf::Local(_) | Leaf::Signal(_)) | None) => {
@@ -225,7 +228,8 @@ impl Checker<'_> {
                 Some(layout) => layout.clone(),
                 None => {
                     let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
-                    let all: Vec<String> = vars.map(|l| l.name.clone()).collect();
+                    let single = vars.map(|l| l.name.clone()).filter(|n| !n.contains(['.', '[']));
+                    let all: Vec<String> = single.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
                     self.unknown(Noun::Variable, target, &all, None);
                     self.item(value, env);
                     return;
@@ -318,6 +322,7 @@ impl Checker<'_> {
                         }),
                         None => return Vec::new(),
                     },
+                    (Access::Index(_), Layout::Unknown) => return Vec::new(),
                     (Access::Index(_), layout) => {
                         let message = format!("{} has no elements", self.shown_layout(layout));
                         self.report(types::no_elements(message, target.span));
@@ -373,6 +378,10 @@ impl Checker<'_> {
                 let issue = types::other_shape("one number", &got, target.span);
                 return self.report(issue.help("`+=` and `-=` change one number: name a part of it"));
             }
+        }
+        if values.len() != leaves.len() {
+            // A part is of a type that has a diagnostic.
+            return;
         }
         let slots: Vec<Option<Leaf>> =
             leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();

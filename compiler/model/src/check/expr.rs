@@ -102,8 +102,17 @@ impl Checker<'_> {
             }
             Syntax::Path(path) if path.names.len() == 1 && self.means_nothing(&path.names[0], env) => {
                 let name = &path.names[0];
-                let near = of.values().iter().map(|v| v.name());
-                let issue = names::unknown(Noun::EnumValue, &name.text, name.span, near);
+                let values = of.values().iter().map(|v| v.name());
+                let others = self.names_with_value(env);
+                // Another name is offered only if it is near.
+                let near = crate::nearest::nearest(
+                    &name.text,
+                    values.clone().chain(others.iter().map(String::as_str)),
+                );
+                let issue = match near {
+                    Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
+                    None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
+                };
                 if !self.unread_items {
                     self.report(issue);
                 }
@@ -242,7 +251,7 @@ impl Checker<'_> {
             return Item::error(path.span);
         }
         let Some(mut item) = self.named(first, env) else {
-            let alone = fields.is_empty();
+            let alone = fields.is_empty() || env.world.is_none();
             return Item::One(if alone { self.without_value(first, env) } else { self.dotted(path, env) });
         };
         for field in fields {
@@ -329,9 +338,7 @@ impl Checker<'_> {
 
     /// A name that has no value here.
     fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
-        let mut names: Vec<String> = env.locals.iter().filter(|l| l.bound).map(|l| l.name.clone()).collect();
-        names.extend(self.consts.keys().map(|k| (*k).to_owned()));
-        names.extend(self.signal_names(env));
+        let names = self.names_with_value(env);
         if let Some(help) = self.values_of_type(name) {
             let is = if self.enums.get(&name.text).is_some() { Noun::Enum } else { Noun::Record };
             let noun = env.noun.unwrap_or(Noun::Constant);
@@ -342,6 +349,18 @@ impl Checker<'_> {
             self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, None);
         }
         Expr::error(name.span)
+    }
+
+    /// All names that have a value here.
+    fn names_with_value(&self, env: &Env) -> Vec<String> {
+        let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
+        let locals = env.locals.iter().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.clone());
+        let mut names: Vec<String> = locals.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
+        let given = self.given.iter().flat_map(|given| given.iter());
+        names.extend(given.filter(|(_, g)| matches!(g, Given::Value(_))).map(|(n, _)| n.clone()));
+        names.extend(self.consts.keys().map(|k| (*k).to_owned()));
+        names.extend(self.signal_names(env));
+        names
     }
 
     /// How a value of the type of this name is written.
@@ -597,6 +616,9 @@ impl Checker<'_> {
         span: Span,
         env: &mut Env,
     ) -> Expr {
+        if then.kind == ExprKind::Error || otherwise.kind == ExprKind::Error {
+            return Expr::error(span);
+        }
         let sides =
             ((then.ty, then.span, then.constant()), (otherwise.ty, otherwise.span, otherwise.constant()));
         let Some(ty) = self.same("if", sides.0, sides.1) else { return Expr::error(span) };

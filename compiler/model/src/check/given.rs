@@ -88,6 +88,9 @@ fn kind_word(text: &str) -> Option<Noun> {
     })
 }
 
+/// What parameters of templates can be besides values.
+pub(super) const KIND_WORDS: [&str; 6] = ["event", "actor", "cover", "place", "arm", "gripper"];
+
 pub(super) fn is_kind_word(text: &str) -> bool {
     kind_word(text).is_some()
 }
@@ -162,6 +165,12 @@ impl<'a> Checker<'a> {
         self.given.as_ref()?.get(name)
     }
 
+    /// The parameters that stand for something of this kind, or may do so.
+    pub(super) fn given_names(&self, kind: Noun) -> Vec<String> {
+        let given = self.given.iter().flat_map(|given| given.iter());
+        given.filter(|(_, g)| g.is(kind)).map(|(name, _)| name.clone()).collect()
+    }
+
     /// A name that is never bound by a pattern: a constant, a value of an enumeration, a parameter of the template.
     pub(super) fn has_value(&self, text: &str) -> bool {
         self.consts.contains_key(text) || self.values.contains_key(text) || self.given(text).is_some()
@@ -169,6 +178,18 @@ impl<'a> Checker<'a> {
 
     /// The template that an instance is of, and what is given for its parameters.
     pub(super) fn instance(
+        &mut self,
+        instance: &'a ast::Instance,
+        env: &Env,
+    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        let made = self.make_instance(instance, env);
+        if made.is_none() {
+            self.broken_instances.insert(instance.name.text.clone());
+        }
+        made
+    }
+
+    fn make_instance(
         &mut self,
         instance: &'a ast::Instance,
         env: &Env,
@@ -337,6 +358,7 @@ impl<'a> Checker<'a> {
         };
         match layout {
             Layout::Scalar(ty) => one(*ty),
+            Layout::Unknown => Item::error(span),
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
                 let parts = fields.iter().map(|(_, l)| self.some_value(l, span, great)).collect();

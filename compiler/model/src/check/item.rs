@@ -131,6 +131,7 @@ impl Checker<'_> {
     pub(super) fn shown_layout(&self, layout: &Layout) -> String {
         match layout {
             Layout::Scalar(ty) => ty.kind().to_string(),
+            Layout::Unknown => Kind::Unknown.to_string(),
             Layout::Record(id) => format!("a `{}`", self.records[usize::from(*id)].name.text),
             Layout::Array(_, n) => format!("an array of {n}"),
         }
@@ -139,7 +140,7 @@ impl Checker<'_> {
     /// The layouts of the parts, with the names that they are reached by.
     fn parts_of(&self, layout: &Layout) -> Vec<(String, Layout)> {
         match layout {
-            Layout::Scalar(_) => Vec::new(),
+            Layout::Scalar(_) | Layout::Unknown => Vec::new(),
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
                 fields.iter().map(|(name, layout)| (format!(".{name}"), layout.clone())).collect()
@@ -192,6 +193,7 @@ impl Checker<'_> {
             },
             Layout::Record(id) => Item::Record(*id, parts(self), span),
             Layout::Array(..) => Item::Array(parts(self), span),
+            Layout::Unknown => Item::error(span),
         }
     }
 
@@ -199,8 +201,10 @@ impl Checker<'_> {
 
     /// An expression where something of this layout is due.
     pub(super) fn item_for(&mut self, e: &ast::Expr, layout: &Layout, env: &mut Env) -> Item {
-        if let Layout::Scalar(ty) = layout {
-            return Item::One(self.expr_for(e, *ty, env));
+        match layout {
+            Layout::Scalar(ty) => return Item::One(self.expr_for(e, *ty, env)),
+            Layout::Unknown => return Item::error(e.span),
+            Layout::Record(_) | Layout::Array(..) => {}
         }
         if let Syntax::Tuple(parts) = &e.kind {
             let due = self.parts_of(layout);
@@ -235,12 +239,15 @@ impl Checker<'_> {
     fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
         match layout {
             Layout::Record(id) => Item::Record(*id, parts, span),
-            Layout::Scalar(_) | Layout::Array(..) => Item::Array(parts, span),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Item::Array(parts, span),
         }
     }
 
     fn coerce(&mut self, item: Item, layout: &Layout, env: &mut Env) -> Item {
         let span = item.span();
+        if *layout == Layout::Unknown {
+            return Item::error(span);
+        }
         let due = self.parts_of(layout);
         let fits = match (&item, layout) {
             (Item::One(e), Layout::Scalar(ty)) => {
@@ -282,7 +289,7 @@ impl Checker<'_> {
         let due = self.parts_of(layout);
         let form: Vec<&str> = match layout {
             Layout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
-            Layout::Scalar(_) | Layout::Array(..) => Vec::new(),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Vec::new(),
         };
         self.report(match form.as_slice() {
             [] => issue,
@@ -291,7 +298,7 @@ impl Checker<'_> {
     }
 
     fn error_item(&self, layout: &Layout, span: Span) -> Item {
-        if matches!(layout, Layout::Scalar(_)) {
+        if matches!(layout, Layout::Scalar(_) | Layout::Unknown) {
             return Item::error(span);
         }
         let parts = self.parts_of(layout).iter().map(|(_, l)| self.error_item(l, span)).collect();
@@ -314,7 +321,7 @@ impl Checker<'_> {
     pub(super) fn item_like(&mut self, e: &ast::Expr, like: &Item, env: &mut Env) -> Item {
         match (&e.kind, like) {
             (Syntax::Path(_) | Syntax::If { .. }, Item::One(Expr { ty: ty @ Kind::Enum(_), .. }))
-                if self.needs_due(e) =>
+                if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) =>
             {
                 self.item_due(e, *ty, env)
             }
@@ -340,6 +347,9 @@ impl Checker<'_> {
         if let Layout::Scalar(ty) = layout {
             out.push(if arg.kind == Syntax::Any { Part::Any } else { Part::Syntax(arg, *ty) });
             return;
+        }
+        if *layout == Layout::Unknown {
+            return self.bind_names(arg, env, variable);
         }
         let due = self.parts_of(layout);
         let given: Option<&[ast::Expr]> = match &arg.kind {
@@ -395,6 +405,12 @@ impl Checker<'_> {
         }
         let item = self.item_for(arg, layout, env);
         self.leaves("", layout, &mut leaves);
+        if matches!(&arg.kind, Syntax::Call { .. })
+            && matches!(item.parts(), Some([first, ..]) if first.is_unknown())
+        {
+            // It may have been meant as a record, whose parts are bound.
+            self.bind_names(arg, env, variable);
+        }
         let mut values = Vec::new();
         item.flatten(&mut values);
         out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
@@ -404,6 +420,7 @@ impl Checker<'_> {
     fn stands_for_other(&self, name: &Name, layout: &Layout, env: &Env) -> Option<String> {
         match (env.find(&name.text), env.layout(&name.text)) {
             (Some(local), _) => Some(local.ty.to_string()),
+            (None, Some(Layout::Unknown)) => None,
             (None, Some(other)) => (other != layout).then(|| self.shown_layout(other)),
             (None, None) => None,
         }
@@ -485,10 +502,12 @@ impl Checker<'_> {
                 Layout::Scalar(Type::Int { .. } | Type::Float(_)) => {
                     axes(usize::from(*n)).iter().map(|a| (*a).to_owned()).collect()
                 }
-                Layout::Scalar(Type::Bool | Type::Enum(_)) | Layout::Record(_) | Layout::Array(..) => {
-                    Vec::new()
-                }
+                Layout::Scalar(Type::Bool | Type::Enum(_))
+                | Layout::Record(_)
+                | Layout::Array(..)
+                | Layout::Unknown => Vec::new(),
             },
+            Layout::Unknown => return None,
             Layout::Scalar(_) => Vec::new(),
             Layout::Record(_) => parts.iter().map(|(n, _)| n.trim_start_matches('.').to_owned()).collect(),
         };
@@ -682,6 +701,9 @@ impl Checker<'_> {
         }
         let mut parts = Vec::new();
         item.flatten(&mut parts);
+        if parts.iter().any(|p| p.kind == ExprKind::Error) {
+            return Expr::error(span);
+        }
         let known = parts.iter().map(|p| p.ty).find(|ty| *ty != Kind::Unknown);
         let ty = match known {
             Some(Kind::Int) | None => Kind::Float(Dim::NUMBER),

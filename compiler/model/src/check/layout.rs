@@ -127,7 +127,7 @@ impl<'a> Checker<'a> {
         let mut table = Table::default();
         let mut resolved = Vec::new();
         for param in params {
-            let layout = self.layout(&param.ty).unwrap_or(Layout::Scalar(Type::Bool));
+            let layout = self.layout(&param.ty).unwrap_or(Layout::Unknown);
             Self::declare(&mut self.issues, &mut table, noun, &param.name);
             resolved.push((param.name.text.clone(), layout));
         }
@@ -147,6 +147,7 @@ impl<'a> Checker<'a> {
     pub(super) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
         match self.layout(ty)? {
             Layout::Scalar(ty) => Some(ty),
+            Layout::Unknown => None,
             layout @ (Layout::Record(_) | Layout::Array(..)) => {
                 let got = self.shown_layout(&layout);
                 let issue = types::other_shape("the type of one value", &got, type_span(ty));
@@ -196,6 +197,7 @@ impl<'a> Checker<'a> {
     fn size(&self, layout: &Layout) -> usize {
         match layout {
             Layout::Scalar(_) => 1,
+            Layout::Unknown => 0,
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
                 fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)))
@@ -219,7 +221,10 @@ impl<'a> Checker<'a> {
             }
             return Some(Layout::Record(id));
         }
-        let all = self.type_names();
+        let mut all = self.type_names();
+        if self.given.is_some() {
+            all.extend(super::given::KIND_WORDS.map(str::to_owned));
+        }
         let issue_before = self.issues.len();
         self.unknown(Noun::Type, name, &all, None);
         if super::given::is_kind_word(&name.text)

@@ -61,11 +61,23 @@ pub fn resolve(
     modules: &[&ast::File],
     tests: &[&ast::File],
 ) -> (Scenario, Vec<Diagnostic>) {
+    resolve_part(scenario, modules, tests, false)
+}
+
+/// The same, where some module may be `missing`: nothing is said about parts that it may have.
+#[must_use]
+pub fn resolve_part(
+    scenario: &ast::File,
+    modules: &[&ast::File],
+    tests: &[&ast::File],
+    missing: bool,
+) -> (Scenario, Vec<Diagnostic>) {
     let mut items: Vec<&ast::Item> =
         modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
     let from_modules = items.len();
     items.extend(&scenario.items);
     let mut checker = Checker::new(items, from_modules);
+    checker.missing_modules = missing;
     checker.unread_items = checker.items.iter().any(|i| unread::in_item(&i.kind));
     checker.s.name = scenario.scenario.as_ref().map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
@@ -139,6 +151,8 @@ pub(crate) struct Checker<'a> {
     /// By sort and name.
     templates: IndexMap<(u8, &'a str), Template<'a>>,
     used_templates: BTreeSet<(u8, String)>,
+    /// Instances that could not be made: nothing is said about their names.
+    broken_instances: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
     /// A template is being checked by itself, with some values.
@@ -169,6 +183,8 @@ pub(crate) struct Checker<'a> {
     belief_fields: Vec<Vec<Fields>>,
     has_world: bool,
     in_world: world_parts::WorldNames,
+    /// A module is missing, which may have the parts that are used.
+    missing_modules: bool,
     /// A declaration of the scenario, or a member of its world, could not be read.
     unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
@@ -190,6 +206,7 @@ impl<'a> Checker<'a> {
             records: Vec::new(),
             templates: IndexMap::new(),
             used_templates: BTreeSet::new(),
+            broken_instances: BTreeSet::new(),
             given: None,
             by_itself: false,
             events: Table::default(),
@@ -211,6 +228,7 @@ impl<'a> Checker<'a> {
             beliefs: Vec::new(),
             belief_fields: Vec::new(),
             has_world,
+            missing_modules: false,
             unread_items: false,
             unread_members: false,
             in_world: world_parts::WorldNames::default(),
@@ -269,6 +287,9 @@ impl<'a> Checker<'a> {
         }
         let names: Vec<String> =
             self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n.to_owned()).collect();
+        let given = self.given_names(Noun::Event);
+        let names: Vec<String> =
+            if noun == Noun::EventOrStimulus { names.into_iter().chain(given).collect() } else { names };
         self.unknown(noun, name, &names, local);
         None
     }
@@ -282,7 +303,8 @@ impl<'a> Checker<'a> {
         }
         let found = self.points.get(&name.text).map(PointId);
         if found.is_none() {
-            let all: Vec<String> = self.points.names().map(str::to_owned).collect();
+            let own = self.points.names().map(str::to_owned);
+            let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, name, &all, None);
         }
         found
@@ -290,6 +312,9 @@ impl<'a> Checker<'a> {
 
     /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
     fn unknown(&mut self, noun: Noun, name: &Name, names: &[String], local: Option<Noun>) {
+        if self.broken_instances.contains(&name.text) {
+            return;
+        }
         let is = local.or_else(|| self.kind_of(&name.text));
         if is.is_none() && unread::may_declare(noun, self.unread_items, self.unread_members) {
             return;

@@ -237,7 +237,7 @@ impl<'a> Checker<'a> {
     pub(super) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
         let span = var.name.span;
         let layout = self.layout(&var.ty).filter(|l| self.finite_layout(l, "a variable of automata", span));
-        let layout = layout.unwrap_or(Layout::Scalar(Type::Bool));
+        let layout = layout.unwrap_or(Layout::Unknown);
         let mut values = Vec::new();
         if let Some(e) = &var.init {
             self.item_for(e, &layout, &mut Env::constants()).flatten(&mut values);

@@ -334,6 +334,9 @@ impl<'a> Checker<'a> {
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.in_world.signals);
         if Self::declare_as(issues, table, Noun::Signal, &full, name.span).is_some() {
+            if ty.is_none() {
+                self.in_world.broken.push(full.clone());
+            }
             let ty = ty.unwrap_or(crate::Type::Bool);
             self.world_mut().signals.push(Signal { name: full, ty, to, value, span: p.member.span });
         }

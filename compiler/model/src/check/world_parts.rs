@@ -179,6 +179,9 @@ impl<'a> Checker<'a> {
     fn part(&mut self, of: &Name, depth: usize) -> Option<&'a ast::Part> {
         let Some((part, _)) = self.parts.get(of.text.as_str()) else {
             let names: Vec<String> = self.parts.keys().map(|k| (*k).to_owned()).collect();
+            if self.unread_items || self.missing_modules {
+                return None;
+            }
             // A part often has the name of an actor or of its instance, which would say nothing.
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
             return None;
