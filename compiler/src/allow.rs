@@ -37,7 +37,7 @@ pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
     });
     for (allowance, used) in allowances.iter().zip(used) {
         let errors = || diagnostics.iter().any(|d| d.is_error() && fits(allowance, d));
-        diagnostics.extend(judge(&allowance, used, broken, errors()));
+        diagnostics.extend(judge(allowance, used, broken, errors()));
     }
 }
 

@@ -61,8 +61,8 @@ impl Trial {
         match self {
             Trial::Least => false,
             Trial::Greatest => true,
-            Trial::Mixed => index % 2 == 0,
-            Trial::Mirrored => index % 2 == 1,
+            Trial::Mixed => index.is_multiple_of(2),
+            Trial::Mirrored => !index.is_multiple_of(2),
         }
     }
 }
