@@ -9,6 +9,8 @@ use hrdsl_syntax::ast::{
 /// One `allow` line and what it stands before.
 struct Allowance<'a> {
     allow: &'a Allow,
+    /// The line itself.
+    span: Span,
     /// `None`: nothing follows it.
     target: Option<Span>,
 }
@@ -35,17 +37,28 @@ pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
     });
     for (allowance, used) in allowances.iter().zip(used) {
         let errors = || diagnostics.iter().any(|d| d.is_error() && fits(allowance, d));
-        diagnostics.extend(judge(allowance.allow, used, broken, errors()));
+        diagnostics.extend(judge(allowance, used, broken, errors()));
     }
 }
 
 /// What is wrong with an allowance itself.
-fn judge(allow: &Allow, used: bool, broken: bool, on_error: bool) -> Option<Diagnostic> {
+fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) -> Option<Diagnostic> {
+    let allow = allowance.allow;
     let code = &allow.code;
     if !REGISTRY.iter().any(|info| info.code.to_string() == code.text) {
         let message = format!("no diagnostic has the code `{}`", code.text);
         let error = Diagnostic::error(Code::UNKNOWN_NAME, code.span, message);
-        return Some(error.help("`hrdsl explain` lists the codes"));
+        let codes: Vec<String> = REGISTRY.iter().map(|info| info.code.to_string()).collect();
+        let near = hrdsl_model::nearest(&code.text, codes.iter().map(String::as_str));
+        return Some(match near {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(
+                format!("replace `{}` by `{near}`", code.text),
+                code.span,
+                near,
+                false,
+            ),
+            None => error.help("`hrdsl explain` lists the codes"),
+        });
     }
     if allow.reason.text.trim().is_empty() {
         let error = Diagnostic::warning(Code::USELESS_ALLOW, allow.reason.span, "the reason is empty");
@@ -53,16 +66,15 @@ fn judge(allow: &Allow, used: bool, broken: bool, on_error: bool) -> Option<Diag
     }
     if on_error {
         let message = format!("`{}` is an error here, which cannot be allowed", code.text);
-        return Some(Diagnostic::warning(Code::USELESS_ALLOW, code.span, message));
+        let error = Diagnostic::warning(Code::USELESS_ALLOW, code.span, message);
+        return Some(error.help("mend the error, and take the line away"));
     }
     // With errors in the text some warnings were not looked for.
     (!used && !broken).then(|| {
         let message = format!("nothing that follows has a warning `{}`", code.text);
-        let span = code.span.to(allow.reason.span);
-        let line = Span { start: span.start.saturating_sub("allow ".len() as u32), ..span };
         Diagnostic::warning(Code::USELESS_ALLOW, code.span, message).help("take the line away").fix(
             "remove the allowance",
-            line,
+            allowance.span,
             "",
             true,
         )
@@ -133,14 +145,14 @@ fn members<'a>(item: &'a Item, all: &mut Vec<Allowance<'a>>) {
 
 /// Each allowance stands for the next thing that is none.
 fn pair<'a>(list: impl Iterator<Item = (Option<&'a Allow>, Span)>, all: &mut Vec<Allowance<'a>>) {
-    let mut waiting: Vec<&Allow> = Vec::new();
-    for (allow, span) in list {
+    let first = all.len();
+    for (allow, target) in list {
         match allow {
-            Some(allow) => waiting.push(allow),
+            Some(allow) => all.push(Allowance { allow, span: target, target: None }),
             None => {
-                all.extend(waiting.drain(..).map(|allow| Allowance { allow, target: Some(span) }));
+                let waiting = all[first..].iter_mut().rev().take_while(|a| a.target.is_none());
+                waiting.for_each(|a| a.target = Some(target));
             }
         }
     }
-    all.extend(waiting.into_iter().map(|allow| Allowance { allow, target: None }));
 }

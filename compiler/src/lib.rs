@@ -91,7 +91,8 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));
     }
-    let (resolved, issues) = hrdsl_model::resolve(&ast[0], &used, &tests);
+    let missing = diagnostics.iter().any(|d| d.code == hrdsl_source::Code::UNKNOWN_MODULE);
+    let (resolved, issues) = hrdsl_model::resolve_part(&ast[0], &used, &tests, missing);
     diagnostics.extend(issues);
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));

@@ -53,6 +53,8 @@ pub fn load(
                 }
             };
             if known.contains(&source.name) {
+                let whole = source.name == known[0] && !is_module(&ast[0]);
+                diagnostics.extend((whole || source.name == from).then(|| not_a_module(&used)));
                 continue;
             }
             if ast.len() - first >= MAX_MODULES {
@@ -151,6 +153,12 @@ fn span_of(used: &Module) -> Span {
         Module::Library(path) => path.span,
         Module::File(path) => path.span,
     }
+}
+
+/// HR0106
+fn not_a_module(used: &Module) -> Diagnostic {
+    Diagnostic::error(Code::MODULE_ITEM, span_of(used), "a scenario is no module, and no file uses itself")
+        .help("take the line away, or move what is shared to a file of its own")
 }
 
 /// HR0104, at the first name that differs from those of the nearest module.

@@ -1,14 +1,16 @@
-//! The fixtures in `check/` and `lint/`: scenarios with the diagnostics they must give, each named at its place.
+//! The fixtures in `check/`: scenarios with the diagnostics they must give, each named at its place.
 //!
 //! `//~ HR0101 "leg_requst" help "leg_request"` on a line means: an error with this code, at exactly this text of the line,
 //! whose help contains that text (quotes in the text are written as backquotes); `help` may be absent. Several expectations follow each other, each after its own `//~`.
-//! Every diagnostic must be expected, and every expectation met. In `NAME.tests.hri` are tests for `NAME.hri`.
+//! `in "Ann"` after that: it is said with the instance `Ann` of a template.
+//! Every diagnostic must be expected, and every expectation met. In `NAME.tests.hri` are tests for `NAME.hri`; in folders
+//! are modules that fixtures use.
 
 #![allow(clippy::disallowed_methods, reason = "the runner reads its fixtures")]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{Compilation, Input, Loader, Source, compile, compile_with};
 use hrdsl_source::Fix;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +20,20 @@ struct Expected {
     code: String,
     text: String,
     help: String,
+    /// The instance of a template that it is said with.
+    instance: String,
+}
+
+/// The files beside the fixtures.
+struct Beside<'a>(&'a Path);
+
+impl Loader for Beside<'_> {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let folder = Path::new(from).parent().unwrap_or(Path::new(""));
+        let name = folder.join(path);
+        let text = fs::read_to_string(self.0.join(&name)).map_err(|_| "there is no such file".to_owned())?;
+        Ok(Source { name: name.to_string_lossy().into_owned(), text })
+    }
 }
 
 fn quoted(text: &str) -> Option<(String, &str)> {
@@ -31,8 +47,11 @@ fn expectations(file: u16, text: &str) -> Vec<Expected> {
         for note in text.split("//~").skip(1) {
             let (code, rest) = note.trim_start().split_once(' ').unwrap_or((note.trim(), ""));
             let (at, rest) = quoted(rest).unwrap_or_else(|| panic!("line {line}: no text after {code}"));
-            let help = rest.trim_start().strip_prefix("help").and_then(quoted).map_or(String::new(), |q| q.0);
-            all.push(Expected { file, line, code: code.to_owned(), text: at, help });
+            let (help, rest) =
+                rest.trim_start().strip_prefix("help").and_then(quoted).unwrap_or((String::new(), rest));
+            let instance =
+                rest.trim_start().strip_prefix("in").and_then(quoted).map_or(String::new(), |q| q.0);
+            all.push(Expected { file, line, code: code.to_owned(), text: at, help, instance });
         }
     }
     all
@@ -48,6 +67,8 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
             (e.file, e.line, e.code.as_str()) == (d.span().file.0, line, d.code.to_string().as_str())
                 && e.text == text.split_whitespace().collect::<Vec<_>>().join(" ").replace('"', "`")
                 && help.contains(&e.help)
+                && (e.instance.is_empty()
+                    || d.labels.iter().any(|l| l.text == format!("in the instance `{}`", e.instance)))
         };
         match expected.iter().position(met) {
             Some(at) => drop(expected.remove(at)),
@@ -63,31 +84,58 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
     faults
 }
 
-/// The fixtures of a folder and its subfolders, by path.
-fn fixtures(folder: &Path) -> BTreeMap<String, String> {
-    let mut found = BTreeMap::new();
+/// The fixtures in a folder and those below it, by path.
+fn fixtures(folder: &Path, all: &mut BTreeMap<String, String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            found.extend(fixtures(&path));
+            fixtures(&path, all);
         } else {
-            found.insert(path.to_string_lossy().into_owned(), fs::read_to_string(path).unwrap());
+            all.insert(path.to_string_lossy().into_owned(), fs::read_to_string(&path).unwrap());
         }
     }
-    found
 }
 
-fn every_fixture_of(folder: &str, at_least: usize) {
-    let fixtures = fixtures(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder));
+/// In `lint/` are scenarios in which each lint's diagnostic must be expected just as an error is.
+#[test]
+fn every_lint_says_what_it_should_and_nothing_else() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
+    let mut all = BTreeMap::new();
+    fixtures(&folder, &mut all);
+    let mut wrong = Vec::new();
+    for (path, text) in &all {
+        let name = path.trim_start_matches(&*folder.to_string_lossy());
+        let c = compile(Input { name, text }, &[]);
+        wrong.extend(faults(&c, expectations(0, text)));
+    }
+    assert!(all.len() >= 8, "the fixtures are not found");
+    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn every_fixture_gives_what_it_says() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check");
+    let mut fixtures: BTreeMap<String, String> = BTreeMap::new();
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        fixtures.insert(name, fs::read_to_string(path).unwrap());
+    }
     let mut all = Vec::new();
     for (name, text) in fixtures.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
         let tests_name = name.replace(".hri", ".tests.hri");
         let tests: Vec<Input<'_>> =
             fixtures.get(&tests_name).map(|text| Input { name: &tests_name, text }).into_iter().collect();
-        let c = compile(Input { name, text }, &tests);
-        let mut expected = expectations(0, text);
-        expected.extend(tests.iter().flat_map(|t| expectations(1, t.text)));
+        let c = compile_with(Input { name, text }, &tests, &Beside(&folder));
+        let expected = c.files.iter().flat_map(|(id, file)| expectations(id.0, &file.text)).collect();
         all.extend(faults(&c, expected));
+        // What the checker could not make sense of has a diagnostic.
+        if !c.has_errors() && format!("{:?}", c.scenario).contains("kind: Error") {
+            all.push(format!("{name}: something is wrong, and nothing is said"));
+        }
         let errors = c.diagnostics.iter().any(hrdsl_source::Diagnostic::is_error);
         assert_eq!(
             c.program.is_none(),
@@ -96,19 +144,8 @@ fn every_fixture_of(folder: &str, at_least: usize) {
         );
         assert!(c.diagnostics.is_sorted_by_key(|d| d.span()), "{name}: not in the order of the text");
     }
-    assert!(fixtures.len() >= at_least, "the fixtures are not found");
+    assert!(fixtures.len() >= 10, "the fixtures are not found");
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
-}
-
-#[test]
-fn every_fixture_gives_what_it_says() {
-    every_fixture_of("check", 10);
-}
-
-/// What is well formed and cannot be meant, and its look-alikes that can.
-#[test]
-fn every_lint_says_what_it_should() {
-    every_fixture_of("lint", 12);
 }
 
 /// The text with a change made.
@@ -124,8 +161,10 @@ fn changed(text: &str, fix: &Fix) -> String {
 #[test]
 fn certain_fixes_mend() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
+    let mut all = BTreeMap::new();
+    fixtures(&folder, &mut all);
     let mut tried = 0;
-    for (name, text) in fixtures(&folder).iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
+    for (name, text) in all.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
         let compiled = |text: &str| compile(Input { name, text }, &[]);
         let before = compiled(text);
         let errors = |c: &Compilation| c.diagnostics.iter().filter(|d| d.is_error()).count();

@@ -458,3 +458,82 @@ fn constants_fold_as_the_run_time_evaluates() {
     // All but the divisions by zero have a value.
     assert_eq!(compared, values.len() * (values.len() * operators.len() - 2));
 }
+
+/// Expressions over the vectors `v` and `w` and the number `k`, each with what f64 makes of them.
+type Formula = (&'static str, fn([f64; 3], [f64; 3], f64) -> f64);
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+#[test]
+fn vectors_fold_as_the_run_time_evaluates_and_as_f64() {
+    let formulas: [Formula; 8] = [
+        ("norm(v - w) / 1 m", |v, w, _| length([v[0] - w[0], v[1] - w[1], v[2] - w[2]])),
+        ("norm(v + k * w) / 1 m", |v, w, k| length([v[0] + k * w[0], v[1] + k * w[1], v[2] + k * w[2]])),
+        ("norm(-v / 4) / 1 m", |v, _, _| length(v.map(|x| -x / 4.0))),
+        ("norm(if k < 1 { v } else { w }) / 1 m", |v, w, k| length(if k < 1.0 { v } else { w })),
+        ("norm((v.x, w[1], v.z)) / 1 m", |v, w, _| length([v[0], w[1], v[2]])),
+        ("(v.x * w.x + v.y * w.y + v.z * w.z) / (1 m * 1 m)", |v, w, _| {
+            v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
+        }),
+        ("if v == w { 1 } else { 2 } * k", |v, w, k| if v == w { k } else { 2.0 * k }),
+        ("if (v, w) != (w, v) && norm(w) > 1 m { k } else { -k }", |v, w, k| {
+            if v != w && length(w) > 1.0 { k } else { -k }
+        }),
+    ];
+    let points = [
+        ([3.0, 4.0, 0.0], [0.5, -1.25, 2.0], 0.5),
+        ([0.0, 0.0, 0.0], [0.125, 0.0, -0.5], 2.0),
+        ([1.0, 2.5, -3.0], [1.0, 2.5, -3.0], 1.5),
+    ];
+    let hold = |text: String| {
+        let p = program(&text);
+        let steps = p.events[0].stimulus.clone().unwrap().steps;
+        let Some(StimulusStep::Hold { seconds }) = steps.into_iter().next() else { panic!("{text}") };
+        seconds
+    };
+    let written = |v: [f64; 3]| format!("({:?} m, {:?} m, {:?} m)", v[0], v[1], v[2]);
+    for (formula, f64) in formulas {
+        let read = hold(format!(
+            "stimulus s(v: length[3], w: length[3], k: float) by person {{ hold ({formula}) * 1 s }}"
+        ));
+        for (v, w, k) in points {
+            let values: Vec<f64> = v.into_iter().chain(w).chain([k]).collect();
+            let evaluated =
+                read.eval(&|i| Some(Value::Float(values[usize::from(i)]))).unwrap().as_f64().unwrap();
+            let constants = format!("const v = {}\nconst w = {}\nconst k = {k:?}\n", written(v), written(w));
+            let folded = hold(format!("{constants}stimulus s by person {{ hold ({formula}) * 1 s }}"));
+            assert_eq!(folded, Expr::float(evaluated), "{formula} at {v:?} {w:?} {k}");
+            let want = f64(v, w, k);
+            assert!((evaluated - want).abs() <= 1e-12 * want.abs(), "{formula}: {evaluated}, not {want}");
+        }
+    }
+}
+
+#[test]
+fn symbols_fold_as_the_run_time_evaluates() {
+    let orders = "enum Order { feed, clean, rest }\nrecord Job { what: Order, times: 0..3 }\n";
+    for value in ["feed", "clean", "rest"] {
+        for condition in
+            ["o == clean", "clean != o", "(o, 2) == (Order.clean, 2)", "Job(o, 1) != Job(clean, 1)"]
+        {
+            let fold = |text: String| {
+                let steps = program(&text).events[0].stimulus.clone().unwrap().steps;
+                let Some(StimulusStep::If { condition, .. }) = steps.into_iter().next() else {
+                    panic!("{text}")
+                };
+                let value = Value::Symbol(hrdsl_ir::Symbol::intern(value));
+                condition.eval(&|_| Some(value)).unwrap()
+            };
+            let folded = fold(format!(
+                "{orders}const o = Order.{value}\nstimulus s by person {{ if {condition} {{ hold 1 s }} }}"
+            ));
+            let read =
+                fold(format!("{orders}stimulus s(o: Order) by person {{ if {condition} {{ hold 1 s }} }}"));
+            assert_eq!(folded, read, "{value} {condition}");
+            let is = condition.contains("==") == (value == "clean");
+            assert_eq!(read, Value::Bool(is), "{value} {condition}");
+        }
+    }
+}

@@ -257,3 +257,69 @@ fn every_misspelt_name_is_found_where_it_stands() {
         .collect();
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.concat());
 }
+
+// ── a scenario of all types and templates ──
+
+const WHOLE: &str = include_str!("scenarios/whole.hri");
+
+/// How many misspellings still have an error that only follows from another; it must not grow.
+const LEFT: usize = 16;
+
+/// What is said of the scenario with another spelling of one name.
+struct Said {
+    /// A diagnostic stands at the name and offers the right one.
+    found: bool,
+    /// The others stand where the name is used, or offer the new spelling.
+    cascades: Vec<String>,
+    errors: usize,
+}
+
+fn said(name: &Token, wrong: &str) -> Said {
+    let text = format!("{}{wrong}{}", &WHOLE[..name.at], &WHOLE[name.at + name.text.len()..]);
+    let c = compiled(&text);
+    let place = name.at..name.at + wrong.len();
+    let here = |d: &Diagnostic| d.span().file.0 == 0 && d.span().range() == place && offers(d, &name.text);
+    let elsewhere = |d: &Diagnostic| {
+        let text = c.files.text(d.span());
+        offers(d, wrong) || text == name.text || text.split('.').any(|part| part == name.text)
+    };
+    let found = c.diagnostics.iter().any(here);
+    let errors = c.diagnostics.iter().filter(|d| d.is_error());
+    let rest = errors.filter(|d| !here(d) && (found || !elsewhere(d)));
+    let shown = |d: &Diagnostic| {
+        let help = d.help.as_deref().unwrap_or("-");
+        format!("    {} {}: {} ({help})\n", d.code, c.files.place(d.span()), d.message)
+    };
+    let errors = c.diagnostics.iter().filter(|d| d.is_error()).count();
+    Said { found, cascades: rest.map(shown).collect(), errors }
+}
+
+#[test]
+fn one_misspelt_name_is_one_error() {
+    assert_eq!(compiled(WHOLE).diagnostics, [], "the scenario itself is right");
+    let tokens = tokens(WHOLE);
+    let (mut found, mut free, mut faults) = (0, 0, Vec::new());
+    for (i, name) in tokens.iter().enumerate().filter(|(i, _)| is_name(&tokens, *i)) {
+        // Units are not names.
+        let before = |n: usize| i.checked_sub(n).map_or("", |i| tokens[i].text.as_str());
+        if before(1) == "0" || before(1) == "/" && before(3) == "0" {
+            continue;
+        }
+        for wrong in misspellings(&name.text) {
+            let said = said(name, &wrong);
+            found += usize::from(said.found);
+            free += usize::from(!said.found && said.errors == 0);
+            if !said.cascades.is_empty() {
+                let line = WHOLE[..name.at].matches('\n').count() + 1;
+                faults.push(format!(
+                    "line {line}: `{}` as `{wrong}`:\n{}",
+                    name.text,
+                    said.cascades.concat()
+                ));
+            }
+        }
+    }
+    // Left: a part's name that its parameters are given by, and names beside both a world and constants.
+    assert!(faults.len() <= LEFT, "{} faults:\n{}", faults.len(), faults.concat());
+    assert!(found > 500 && free < 200, "{found} are found where they stand, of {free} nothing is said");
+}

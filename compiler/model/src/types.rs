@@ -113,6 +113,8 @@ pub(crate) enum Layout {
     Record(u16),
     /// Of this many.
     Array(Box<Layout>, u16),
+    /// The type has a diagnostic: nothing is said about what is of it.
+    Unknown,
 }
 
 impl Type {

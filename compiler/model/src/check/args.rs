@@ -22,7 +22,12 @@ impl Checker<'_> {
         let mut values = Vec::with_capacity(fields.len());
         for (arg, (_, layout)) in args.iter().zip(fields) {
             match layout {
+                // With a wrong number of arguments, which is for which is not known.
+                Layout::Record(_) | Layout::Array(..) if args.len() != fields.len() => {
+                    self.item(arg, env);
+                }
                 Layout::Scalar(ty) => values.push(self.expr_for(arg, *ty, env)),
+                Layout::Unknown => {}
                 Layout::Record(_) | Layout::Array(..) => self.item_for(arg, layout, env).flatten(&mut values),
             }
         }

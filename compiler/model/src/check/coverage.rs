@@ -69,12 +69,14 @@ impl Checker<'_> {
     }
 
     fn add_point(&mut self, name: &Name, (count, bins): (Vec<EventPattern>, Vec<Bin>), span: Span) {
+        self.not_a_template(Sort::Cover, name);
         if Self::declare(&mut self.issues, &mut self.points, Noun::Point, name).is_some() {
             self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, span });
         }
     }
 
     fn cross(&mut self, name: &Name, cross: Cross) {
+        self.not_a_template(Sort::Cross, name);
         if Self::declare(&mut self.issues, &mut self.crosses, Noun::Cross, name).is_some() {
             self.s.crosses.push(Cross { name: name.text.clone(), ..cross });
         }
@@ -175,7 +177,8 @@ impl Checker<'_> {
         }
         let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
         let Some(id) = points.iter().copied().find(|p| name_of(self, p) == point.text) else {
-            let all: Vec<String> = points.iter().map(|p| name_of(self, p)).collect();
+            let own = points.iter().map(|p| name_of(self, p));
+            let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };

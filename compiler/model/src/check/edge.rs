@@ -100,7 +100,8 @@ impl Checker<'_> {
             self.wrong_arity(self.noun_of(event), call, &fields);
             return None;
         }
-        let known: Vec<String> = env.layouts.iter().map(|(n, _)| n.clone()).collect();
+        let layouts = env.layouts.iter().map(|(n, _)| n.clone());
+        let known: Vec<String> = layouts.chain(env.locals.iter().map(|l| l.name.clone())).collect();
         let free = |c: &Checker<'_>, name: &Name| {
             !known.contains(&name.text) && !c.has_value(&name.text) && !is_variable_name(&name.text)
         };
@@ -111,14 +112,8 @@ impl Checker<'_> {
 
     /// What an unknown event would bind is known, but not its types.
     fn bind_unknown(&mut self, call: &Call, env: &mut Env) {
-        for arg in call.args.iter().flatten() {
-            if let Syntax::Path(path) = &arg.kind
-                && let [name] = path.names.as_slice()
-                && env.find(&name.text).is_none()
-            {
-                env.push_local(&name.text, Noun::Variable, Kind::Unknown);
-            }
-        }
+        let free = |c: &Checker<'_>, name: &Name| !c.has_value(&name.text) && !is_variable_name(&name.text);
+        call.args.iter().flatten().for_each(|arg| self.bind_names(arg, env, &free));
     }
 
     fn received_part(&mut self, part: Part<'_>, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
@@ -126,6 +121,11 @@ impl Checker<'_> {
             Part::Any => ReceiveArg::Any,
             Part::Syntax(arg, ty) => self.received(arg, ty, env, equal),
             Part::Done(e, ty) => self.compared(e, ty, env, equal),
+            // The same name a second time: the parts are compared.
+            Part::Variable(name, ty) if env.find(&name.text).is_some() => {
+                let value = self.variable(&name, env);
+                self.compared(value, ty, env, equal)
+            }
             Part::Variable(name, ty) => {
                 self.finite(ty, "what an automaton binds", name.span);
                 env.push_typed(&name.text, Noun::Variable, ty);
@@ -213,19 +213,23 @@ impl Checker<'_> {
             return updates.extend(reset.then_some(Update::Reset(ClockId(clock))));
         }
         let slot = env.find(&target.text).map(|l| l.leaf);
+        if env.layout(&target.text) == Some(&Layout::Unknown) {
+            return;
+        }
         let layout = match slot {
             Some(Some(leaf @ (Leaf::Own(_) | Leaf::Shared(_)))) => Layout::Scalar(self.type_of(scope, leaf)),
             Some(Some(Leaf::Local(_) | Leaf::Signal(_)) | None) => {
-                let message = format!("`{}` is bound by the edge: it cannot be assigned", target.text);
-                let issue =
-                    hrdsl_source::Diagnostic::error(hrdsl_source::Code::WRONG_KIND, target.span, message);
-                return self.report(issue.help("assign a variable declared by `var`"));
+                return self.report(automata::bound_by_edge(&target.text, target.span));
             }
             None => match env.layout(&target.text) {
+                Some(layout) if self.bound_by_edge(&target.text, layout, env) => {
+                    return self.report(automata::bound_by_edge(&target.text, target.span));
+                }
                 Some(layout) => layout.clone(),
                 None => {
                     let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
-                    let all: Vec<String> = vars.map(|l| l.name.clone()).collect();
+                    let single = vars.map(|l| l.name.clone()).filter(|n| !n.contains(['.', '[']));
+                    let all: Vec<String> = single.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
                     self.unknown(Noun::Variable, target, &all, None);
                     self.item(value, env);
                     return;
@@ -242,6 +246,14 @@ impl Checker<'_> {
                 self.assign(scope, &place, op, value, target, env, updates);
             }
         }
+    }
+
+    /// Whether the parts of a name are not those of a variable.
+    fn bound_by_edge(&self, name: &str, layout: &Layout, env: &Env) -> bool {
+        let mut leaves = Vec::new();
+        self.leaves(name, layout, &mut leaves);
+        let own = |l: &super::env::Local| matches!(l.leaf, Some(Leaf::Own(_) | Leaf::Shared(_)));
+        !leaves.iter().all(|(name, _)| env.find(name).is_some_and(own))
     }
 
     /// `x = 0`
@@ -310,6 +322,7 @@ impl Checker<'_> {
                         }),
                         None => return Vec::new(),
                     },
+                    (Access::Index(_), Layout::Unknown) => return Vec::new(),
                     (Access::Index(_), layout) => {
                         let message = format!("{} has no elements", self.shown_layout(layout));
                         self.report(types::no_elements(message, target.span));
@@ -361,9 +374,14 @@ impl Checker<'_> {
                 values.push(self.new_value(leaf, *ty, op, value, target, env));
             }
             (Some(_), _) => {
-                let issue = types::no_value(&self.shown_layout(&place.layout), target.span);
-                return self.report(issue.help("`+=` and `-=` change one number"));
+                let got = self.shown_layout(&place.layout);
+                let issue = types::other_shape("one number", &got, target.span);
+                return self.report(issue.help("`+=` and `-=` change one number: name a part of it"));
             }
+        }
+        if values.len() != leaves.len() {
+            // A part is of a type that has a diagnostic.
+            return;
         }
         let slots: Vec<Option<Leaf>> =
             leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();
@@ -378,11 +396,7 @@ impl Checker<'_> {
             let early = whole && reads(&value, &slots[..i]);
             let index = place.only_if.as_ref().is_some_and(|c| self.reads_variable(c, target, env));
             if early || index {
-                let message = format!("`{}` is read while its parts are being set", target.text);
-                let issue = types::no_value("this", value.span);
-                let issue = hrdsl_source::Diagnostic { message, ..issue };
-                return self
-                    .report(issue.help("set the parts one by one, or keep the old value in a variable"));
+                return self.report(automata::read_while_set(&target.text, value.span));
             }
             let value = match &place.only_if {
                 None => value,

@@ -26,6 +26,8 @@ pub(crate) struct Env {
     pub locals: Vec<Local>,
     /// Names that stand for several locals, which are called `name.x` or `name[0]`.
     pub layouts: Vec<(String, Layout)>,
+    /// Names that are bound by something with a diagnostic: nothing is said about what they stand for.
+    pub broken: Vec<String>,
     /// Measurements are allowed; names of the world have this prefix (`robot.` inside of a part, else empty).
     pub world: Option<String>,
     /// Names that start with an upper-case letter are an agent's variables.

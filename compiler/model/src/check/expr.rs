@@ -14,15 +14,23 @@ use crate::{
 pub(super) const FUNCTIONS: [(&str, Function); 4] =
     [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max), ("norm", Function::Norm)];
 
+/// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
+const MAX_TIME: f64 = 1e9;
+
 impl Checker<'_> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
     pub(super) fn expr(&mut self, e: &ast::Expr, env: &mut Env) -> Expr {
-        match self.item(e, env) {
+        let item = self.item(e, env);
+        self.one(item)
+    }
+
+    fn one(&mut self, item: Item) -> Expr {
+        match item {
             Item::One(e) => e,
             other => {
-                let issue = types::no_value(&self.shown(&other), other.span());
-                self.report(issue.help("one value is needed here: name a part of it"));
-                Expr::error(e.span)
+                let got = self.shown(&other);
+                self.report(types::several_values(&got, other.span()));
+                Expr::error(other.span())
             }
         }
     }
@@ -45,7 +53,7 @@ impl Checker<'_> {
             Syntax::Binary { op, left, right } => return self.binary(*op, left, right, span, env),
             Syntax::If { condition, then, otherwise } => {
                 let condition = self.expr_of(condition, Kind::Bool, env);
-                let (then, otherwise) = (self.item(then, env), self.item(otherwise, env));
+                let (then, otherwise) = self.sides(then, otherwise, env);
                 return self.either_item(&condition, then, otherwise, span, env);
             }
             Syntax::Tuple(parts) => {
@@ -64,18 +72,65 @@ impl Checker<'_> {
     fn symbol_of(&self, e: &ast::Expr, of: Enumeration) -> Option<Expr> {
         let Syntax::Path(path) = &e.kind else { return None };
         let [name] = path.names.as_slice() else { return None };
+        if self.given(&name.text).is_some() {
+            return None;
+        }
         of.symbol(&name.text).map(|symbol| symbol_value(of, symbol, e.span))
     }
 
     /// An expression that must be of this kind.
     pub(super) fn expr_of(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Expr {
-        if let Kind::Enum(id) = want
-            && let Some(symbol) = self.symbol_of(e, id)
-        {
-            return symbol;
-        }
-        let e = self.expr(e, env);
+        let e = match self.item_due(e, want, env) {
+            Item::One(e) => e,
+            other => self.one(other),
+        };
         self.fit(e, want, env)
+    }
+
+    /// An expression where a value of this kind is due, which may be written by its bare name.
+    pub(super) fn item_due(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Item {
+        let Kind::Enum(of) = want else { return self.item(e, env) };
+        if let Some(symbol) = self.symbol_of(e, of) {
+            return Item::One(symbol);
+        }
+        match &e.kind {
+            Syntax::If { condition, then, otherwise } if self.needs_due(e) => {
+                let condition = self.expr_of(condition, Kind::Bool, env);
+                let then = self.expr_of(then, want, env);
+                let otherwise = self.expr_of(otherwise, want, env);
+                Item::One(self.conditional(condition, then, otherwise, e.span, env))
+            }
+            Syntax::Path(path) if path.names.len() == 1 && self.means_nothing(&path.names[0], env) => {
+                let name = &path.names[0];
+                let values = of.values().iter().map(|v| v.name());
+                let others = self.names_with_value(env);
+                // Another name is offered only if it is near.
+                let near = crate::nearest::nearest(
+                    &name.text,
+                    values.clone().chain(others.iter().map(String::as_str)),
+                );
+                let issue = match near {
+                    Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
+                    None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
+                };
+                if !self.unread_items {
+                    self.report(issue);
+                }
+                Item::error(e.span)
+            }
+            _ => self.item(e, env),
+        }
+    }
+
+    /// A name that nothing has.
+    fn means_nothing(&self, name: &Name, env: &Env) -> bool {
+        let local = env.find(&name.text).is_some() || env.layout(&name.text).is_some();
+        let signal = env
+            .world
+            .as_ref()
+            .is_some_and(|prefix| self.in_world.kind_of(&format!("{prefix}{}", name.text)).is_some());
+        let variable = env.plan && is_variable_name(&name.text);
+        !local && !signal && !variable && !self.has_value(&name.text) && self.kind_of(&name.text).is_none()
     }
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
@@ -116,14 +171,20 @@ impl Checker<'_> {
             self.report(types::must_be(what, rule, e.span));
             return None;
         }
+        if t > MAX_TIME {
+            self.report(types::must_be(what, &format!("at most {MAX_TIME} s"), e.span));
+            return None;
+        }
         Some(t)
     }
 
     /// A constant whole number of at least `lo`.
     pub(super) fn count(&mut self, e: &ast::Expr, what: &str, lo: i64) -> Option<i64> {
         let Value::Int(n) = self.constant(e, Kind::Int, &mut Env::constants())? else { return None };
-        if n < lo || n > i64::from(u32::MAX) {
-            self.report(types::must_be(what, &format!("at least {lo}"), e.span));
+        let most = i64::from(u32::MAX);
+        if n < lo || n > most {
+            let rule = if n < lo { format!("at least {lo}") } else { format!("at most {most}") };
+            self.report(types::must_be(what, &rule, e.span));
             return None;
         }
         Some(n)
@@ -156,7 +217,10 @@ impl Checker<'_> {
 
     fn quantity(&mut self, number: f64, unit: &Name, span: Span) -> Expr {
         match Unit::of(&unit.text) {
-            Some(unit) => Expr::value(Value::Float(unit.to_si(number)), Kind::Float(unit.dim), span),
+            Some(unit) => {
+                let si = Ok(Value::Float(unit.to_si(number)));
+                self.folded(Some(si), Expr::value(Value::Float(0.0), Kind::Float(unit.dim), span))
+            }
             None => {
                 self.report(types::unknown_unit(&unit.text, unit.span));
                 Expr::error(span)
@@ -174,13 +238,21 @@ impl Checker<'_> {
             }
         }
         let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
-        if let ([value], Some(of)) = (fields, self.enums.get(&first.text)) {
+        if let ([value, parts @ ..], Some(of)) = (fields, self.enums.get(&first.text)) {
             let of = self.s.enums[usize::from(of)].of;
             self.used_types.insert(of.name().to_owned());
-            return Item::One(self.symbol_named(of, value, path.span));
+            let symbol = Item::One(self.symbol_named(of, value, first.span.to(value.span)));
+            return parts.iter().fold(symbol, |item, part| self.field(item, part));
+        }
+        if let ([value, ..], None, None) = (fields, env.find(&first.text), env.layout(&first.text))
+            && env.world.is_none()
+            && let Some(of) = self.misspelt_enum(first, value)
+        {
+            self.report(names::unknown(Noun::Enum, &first.text, first.span, [of]));
+            return Item::error(path.span);
         }
         let Some(mut item) = self.named(first, env) else {
-            let alone = fields.is_empty();
+            let alone = fields.is_empty() || env.world.is_none();
             return Item::One(if alone { self.without_value(first, env) } else { self.dotted(path, env) });
         };
         for field in fields {
@@ -191,6 +263,9 @@ impl Checker<'_> {
 
     /// What a name stands for that has a value; `None` if it has none.
     fn named(&mut self, name: &Name, env: &mut Env) -> Option<Item> {
+        if env.broken.contains(&name.text) {
+            return Some(Item::error(name.span));
+        }
         if let Some(local) = env.find(&name.text) {
             return Some(Item::One(match local.leaf {
                 Some(leaf) if local.bound => {
@@ -204,6 +279,9 @@ impl Checker<'_> {
             }));
         }
         if let Some(layout) = env.layout(&name.text).cloned() {
+            if !self.all_bound(&name.text, &layout, env) {
+                return Some(Item::One(self.without_value(name, env)));
+            }
             return Some(self.assembled(&name.text, &layout, env, name.span));
         }
         match self.given(&name.text) {
@@ -239,6 +317,16 @@ impl Checker<'_> {
         }
     }
 
+    /// `Odrer.feed`: the enumeration that a name was meant to be, if it has the value and nothing has the name.
+    fn misspelt_enum(&self, name: &Name, value: &Name) -> Option<&'static str> {
+        if self.has_value(&name.text) || self.kind_of(&name.text).is_some() {
+            return None;
+        }
+        let of = self.values.get(value.text.as_str())?;
+        let names = of.iter().map(|of| of.name());
+        crate::nearest::nearest(&name.text, names)
+    }
+
     /// `Order.feed`
     fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> Expr {
         match of.symbol(&value.text) {
@@ -253,15 +341,41 @@ impl Checker<'_> {
 
     /// A name that has no value here.
     fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
-        let mut names: Vec<String> = env.locals.iter().filter(|l| l.bound).map(|l| l.name.clone()).collect();
-        names.extend(self.consts.keys().map(|k| (*k).to_owned()));
-        names.extend(self.signal_names(env));
-        if env.plan && is_variable_name(&name.text) {
+        let names = self.names_with_value(env);
+        if let Some(help) = self.values_of_type(name) {
+            let is = if self.enums.get(&name.text).is_some() { Noun::Enum } else { Noun::Record };
+            let noun = env.noun.unwrap_or(Noun::Constant);
+            self.report(names::wrong_kind(noun, is, &name.text, name.span, []).help(help));
+        } else if env.plan && is_variable_name(&name.text) {
             self.report(unbound(&name.text, name.span, names.iter().map(String::as_str)));
         } else {
             self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, None);
         }
         Expr::error(name.span)
+    }
+
+    /// All names that have a value here.
+    fn names_with_value(&self, env: &Env) -> Vec<String> {
+        let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
+        let locals = env.locals.iter().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.clone());
+        let mut names: Vec<String> = locals.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
+        let given = self.given.iter().flat_map(|given| given.iter());
+        names.extend(given.filter(|(_, g)| matches!(g, Given::Value(_))).map(|(n, _)| n.clone()));
+        names.extend(self.consts.keys().map(|k| (*k).to_owned()));
+        names.extend(self.signal_names(env));
+        names
+    }
+
+    /// How a value of the type of this name is written.
+    fn values_of_type(&self, name: &Name) -> Option<String> {
+        if let Some(of) = self.enums.get(&name.text) {
+            let first = self.s.enums[usize::from(of)].of.values().first().copied()?;
+            return Some(format!("name one of its values: `{}.{first}`", name.text));
+        }
+        let record = self.record_names.get(&name.text)?;
+        let fields: Vec<&str> =
+            self.records[usize::from(record)].fields.iter().map(|(n, _)| n.as_str()).collect();
+        Some(format!("write `{}({})`", name.text, fields.join(", ")))
     }
 
     /// The value of a constant, worked out at its first use.
@@ -338,7 +452,7 @@ impl Checker<'_> {
 
     /// `Pose(1 m, 2 m)`
     fn record(&mut self, id: u16, name: &Name, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
-        let fields = self.records[usize::from(id)].fields.clone();
+        let Some(fields) = self.record_fields(id, name) else { return Item::error(span) };
         if args.len() != fields.len() {
             let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
             let issue = types::counts(Noun::Record, &name.text, fields.len(), args.len(), span);
@@ -370,7 +484,8 @@ impl Checker<'_> {
                 return Item::Array(parts.into_iter().map(|p| self.unary_item(op, p, span)).collect(), span);
             }
             Item::Record(..) => {
-                let issue = types::no_value(&self.shown(&operand), span);
+                let got = self.shown(&operand);
+                let issue = types::other_shape("a number", &got, operand.span());
                 self.report(issue.help("a record has no negative: name a part of it"));
                 return Item::error(span);
             }
@@ -397,31 +512,15 @@ impl Checker<'_> {
         }
     }
 
-    /// Both operands; the bare name of an enumeration's value is one of the other side's enumeration.
+    /// Both operands; bare names of an enumeration's values are of the other side's enumeration.
     fn sides(&mut self, l: &ast::Expr, r: &ast::Expr, env: &mut Env) -> (Item, Item) {
-        let of = |item: &Item| match item {
-            Item::One(Expr { ty: Kind::Enum(id), .. }) => Some(*id),
-            Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..) => None,
-        };
-        if !self.values.is_empty() && self.is_value(l) {
+        if !self.values.is_empty() && self.needs_due(l) && !self.needs_due(r) {
             let right = self.item(r, env);
-            let left = of(&right).and_then(|id| self.symbol_of(l, id)).map(Item::One);
-            return (left.unwrap_or_else(|| self.item(l, env)), right);
+            return (self.item_like(l, &right, env), right);
         }
         let left = self.item(l, env);
-        let right = of(&left).and_then(|id| self.symbol_of(r, id)).map(Item::One);
-        let right = right.unwrap_or_else(|| self.item(r, env));
+        let right = self.item_like(r, &left, env);
         (left, right)
-    }
-
-    /// The bare name of some enumeration's value.
-    fn is_value(&self, e: &ast::Expr) -> bool {
-        match &e.kind {
-            Syntax::Path(path) => {
-                path.names.len() == 1 && self.values.contains_key(path.names[0].text.as_str())
-            }
-            _ => false,
-        }
     }
 
     /// An operator on single values.
@@ -431,6 +530,10 @@ impl Checker<'_> {
             self.learn(&l, r.ty, env);
         } else if r.ty == Kind::Unknown && !logical {
             self.learn(&r, l.ty, env);
+        }
+        if !logical && (l.kind == ExprKind::Error || r.kind == ExprKind::Error) {
+            // One of them has a diagnostic; nothing follows from the other.
+            return Expr::error(span);
         }
         let ty = if logical { Some(Kind::Bool) } else { self.result(op, &l, &r) };
         let Some(ty) = ty else { return Expr::error(span) };
@@ -517,6 +620,9 @@ impl Checker<'_> {
         span: Span,
         env: &mut Env,
     ) -> Expr {
+        if then.kind == ExprKind::Error || otherwise.kind == ExprKind::Error {
+            return Expr::error(span);
+        }
         let sides =
             ((then.ty, then.span, then.constant()), (otherwise.ty, otherwise.span, otherwise.constant()));
         let Some(ty) = self.same("if", sides.0, sides.1) else { return Expr::error(span) };
@@ -531,6 +637,10 @@ impl Checker<'_> {
     fn folded(&mut self, value: Option<Result<Value, value::FoldError>>, e: Expr) -> Expr {
         match value {
             None => e,
+            Some(Ok(Value::Float(x))) if !x.is_finite() => {
+                self.report(types::fold(value::FoldError::Overflow, e.span));
+                Expr::error(e.span)
+            }
             Some(Ok(value)) => Expr::value(value, e.ty, e.span),
             Some(Err(error)) => {
                 self.report(types::fold(error, e.span));

@@ -30,6 +30,43 @@ pub(crate) enum Given {
 
 pub(crate) type Givens = IndexMap<String, Given>;
 
+impl Given {
+    /// Whether it is what a parameter of this kind stands for.
+    fn is(&self, kind: Noun) -> bool {
+        match self {
+            Given::Unknown => true,
+            Given::Value(_) => false,
+            Given::Events(_) => kind == Noun::Event,
+            Given::Actor(_) => kind == Noun::Actor,
+            Given::Point(_) => kind == Noun::Point,
+            Given::Thing(of, _) => *of == kind,
+        }
+    }
+}
+
+/// Values that stand for the parameters of a template that is checked by itself.
+#[derive(Clone, Copy)]
+pub(super) enum Trial {
+    Least,
+    Greatest,
+    /// Least and greatest in turn.
+    Mixed,
+    Mirrored,
+}
+
+impl Trial {
+    pub const ALL: [Trial; 4] = [Trial::Greatest, Trial::Least, Trial::Mixed, Trial::Mirrored];
+
+    fn great(self, index: usize) -> bool {
+        match self {
+            Trial::Least => false,
+            Trial::Greatest => true,
+            Trial::Mixed => index.is_multiple_of(2),
+            Trial::Mirrored => !index.is_multiple_of(2),
+        }
+    }
+}
+
 /// A declaration with parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct Template<'a> {
@@ -50,6 +87,9 @@ fn kind_word(text: &str) -> Option<Noun> {
         _ => return None,
     })
 }
+
+/// What parameters of templates can be besides values.
+pub(super) const KIND_WORDS: [&str; 6] = ["event", "actor", "cover", "place", "arm", "gripper"];
 
 pub(super) fn is_kind_word(text: &str) -> bool {
     kind_word(text).is_some()
@@ -108,6 +148,14 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// A name that a template of the sort has already.
+    pub(super) fn not_a_template(&mut self, sort: Sort, name: &Name) {
+        let first = self.templates.get(&(sort, name.text.as_str())).map(|t| t.name.span);
+        if first.is_some() {
+            self.report(names::duplicate(Noun::Template, &name.text, name.span, first));
+        }
+    }
+
     pub(super) fn is_template(&self, text: &str) -> bool {
         self.templates.keys().any(|(_, name)| *name == text)
     }
@@ -117,6 +165,12 @@ impl<'a> Checker<'a> {
         self.given.as_ref()?.get(name)
     }
 
+    /// The parameters that stand for something of this kind, or may do so.
+    pub(super) fn given_names(&self, kind: Noun) -> Vec<String> {
+        let given = self.given.iter().flat_map(|given| given.iter());
+        given.filter(|(_, g)| g.is(kind)).map(|(name, _)| name.clone()).collect()
+    }
+
     /// A name that is never bound by a pattern: a constant, a value of an enumeration, a parameter of the template.
     pub(super) fn has_value(&self, text: &str) -> bool {
         self.consts.contains_key(text) || self.values.contains_key(text) || self.given(text).is_some()
@@ -124,6 +178,18 @@ impl<'a> Checker<'a> {
 
     /// The template that an instance is of, and what is given for its parameters.
     pub(super) fn instance(
+        &mut self,
+        instance: &'a ast::Instance,
+        env: &Env,
+    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        let made = self.make_instance(instance, env);
+        if made.is_none() {
+            self.broken_instances.insert(instance.name.text.clone());
+        }
+        made
+    }
+
+    fn make_instance(
         &mut self,
         instance: &'a ast::Instance,
         env: &Env,
@@ -189,20 +255,28 @@ impl<'a> Checker<'a> {
         }
         let Syntax::Path(path) = &arg.kind else {
             if arg.kind != Syntax::Error {
-                let issue = types::no_value("this", arg.span);
-                self.report(issue.help(format!("name {} here", kind.with_article())));
+                self.report(types::needs_name(kind, arg.span));
             }
             return Given::Unknown;
         };
         if let [name] = path.names.as_slice()
-            && let Some(outer) = self.given(&name.text)
+            && let Some(outer) = self.given(&name.text).cloned()
         {
-            return outer.clone();
+            if outer.is(kind) {
+                return outer;
+            }
+            let issue = names::wrong_kind(kind, Noun::Parameter, &name.text, name.span, []);
+            self.report(issue.help(format!("this parameter does not stand for {}", kind.with_article())));
+            return Given::Unknown;
         }
-        match kind {
-            Noun::Actor => self.actor(&path.names[0]).map_or(Given::Unknown, Given::Actor),
-            Noun::Point => self.point_named(&path.names[0]).map_or(Given::Unknown, Given::Point),
-            _ => {
+        match (kind, path.names.as_slice()) {
+            (Noun::Actor, [name]) => self.actor(name).map_or(Given::Unknown, Given::Actor),
+            (Noun::Point, [name]) => self.point_named(name).map_or(Given::Unknown, Given::Point),
+            (Noun::Actor | Noun::Point | Noun::Event, _) => {
+                self.report(types::needs_name(kind, arg.span));
+                Given::Unknown
+            }
+            (_, _) => {
                 let prefix = env.world.clone().unwrap_or_default();
                 let known = !whole
                     || match kind {
@@ -247,14 +321,16 @@ impl<'a> Checker<'a> {
     // ── the template by itself ──
 
     /// What the parameters are in the check of the template by itself: some value of their type, or nothing known.
-    pub(super) fn placeholders(&mut self, params: &[ast::Param]) -> Rc<Givens> {
+    fn placeholders(&mut self, params: &[ast::Param], trial: Trial) -> Rc<Givens> {
         let mut given = Givens::default();
-        for param in params {
+        for (index, param) in params.iter().enumerate() {
             let bound = if kind_of_param(param).is_some() {
                 Given::Unknown
             } else {
                 match self.inside(&given, |c| c.layout(&param.ty)) {
-                    Some(layout) => Given::Value(self.some_value(&layout, param.name.span)),
+                    Some(layout) => {
+                        Given::Value(self.some_value(&layout, param.name.span, trial.great(index)))
+                    }
                     None => Given::Unknown,
                 }
             };
@@ -265,23 +341,31 @@ impl<'a> Checker<'a> {
         Rc::new(given)
     }
 
-    fn some_value(&self, layout: &Layout, span: Span) -> Item {
+    fn some_value(&self, layout: &Layout, span: Span, great: bool) -> Item {
         let one = |ty: Type| {
             let value = match ty {
-                Type::Bool => Value::Bool(true),
-                Type::Int { hi, .. } => Value::Int(hi),
-                Type::Float(_) => Value::Float(1.0),
-                Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
+                Type::Bool => Value::Bool(great),
+                Type::Int { lo, hi } => Value::Int(if great { hi } else { lo }),
+                Type::Float(_) => Value::Float(if great { 1000.0 } else { 1.0 }),
+                Type::Enum(of) => {
+                    let values = of.values();
+                    let value = if great { values.last() } else { values.first() };
+                    value.map_or(Value::Bool(false), |v| Value::Symbol(*v))
+                }
             };
             Item::One(Expr::value(value, ty.kind(), span))
         };
         match layout {
             Layout::Scalar(ty) => one(*ty),
+            Layout::Unknown => Item::error(span),
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
-                Item::Record(*id, fields.iter().map(|(_, l)| self.some_value(l, span)).collect(), span)
+                let parts = fields.iter().map(|(_, l)| self.some_value(l, span, great)).collect();
+                Item::Record(*id, parts, span)
             }
-            Layout::Array(of, n) => Item::Array((0..*n).map(|_| self.some_value(of, span)).collect(), span),
+            Layout::Array(of, n) => {
+                Item::Array((0..*n).map(|_| self.some_value(of, span, great)).collect(), span)
+            }
         }
     }
 
@@ -290,37 +374,34 @@ impl<'a> Checker<'a> {
         let of_sort = |((s, _), t): (&(Sort, &'a str), &Template<'a>)| (*s == sort).then_some(*t);
         let templates: Vec<Template<'a>> = self.templates.iter().filter_map(of_sort).collect();
         for template in templates {
-            let given = self.placeholders(template.params);
-            let outer = self.given.replace(given);
-            self.alone = true;
-            check(self, template);
-            self.alone = false;
-            self.given = outer;
+            self.by_itself(template.params, |c| check(c, template));
         }
     }
 
-    /// Whether a made-up value stands in an expression, so that what it is in an instance is not known.
-    pub(super) fn is_made_up(&self, e: &ast::Expr) -> bool {
-        let known = |names: &[Name]| matches!(self.given(&names[0].text), Some(Given::Value(_)));
-        let any = |all: &[ast::Expr]| all.iter().any(|e| self.is_made_up(e));
-        self.alone
-            && match &e.kind {
-                Syntax::Path(path) => known(&path.names),
-                Syntax::Call { args, .. } => any(args),
-                Syntax::Index { of, .. } | Syntax::Field { of, .. } => self.is_made_up(of),
-                Syntax::Unary { operand, .. } => self.is_made_up(operand),
-                Syntax::Binary { left, right, .. } => self.is_made_up(left) || self.is_made_up(right),
-                Syntax::If { condition, then, otherwise } => {
-                    [condition, then, otherwise].into_iter().any(|e| self.is_made_up(e))
-                }
-                Syntax::Tuple(parts) => any(parts),
-                Syntax::Bool(_)
-                | Syntax::Int(_)
-                | Syntax::Float(_)
-                | Syntax::Quantity { .. }
-                | Syntax::Any
-                | Syntax::Error => false,
+    /// Checks something with parameters by itself. Wrong is what is wrong whatever the parameters stand for: with each
+    /// of several values. What is wrong with some values only is found in the instances that give them.
+    pub(super) fn by_itself(&mut self, params: &[ast::Param], check: impl Fn(&mut Self)) {
+        let before = self.issues.len();
+        let mut always: Option<Vec<Diagnostic>> = None;
+        for trial in Trial::ALL {
+            let given = self.placeholders(params, trial);
+            let outer = self.given.replace(given);
+            let alone = std::mem::replace(&mut self.by_itself, true);
+            check(self);
+            self.by_itself = alone;
+            self.given = outer;
+            let found = self.issues.split_off(before);
+            let again =
+                |known: &Diagnostic| found.iter().any(|f| f.code == known.code && f.span() == known.span());
+            always = Some(match always {
+                None => found,
+                Some(known) => known.into_iter().filter(again).collect(),
+            });
+            if always.as_ref().is_some_and(Vec::is_empty) {
+                break;
             }
+        }
+        self.issues.extend(always.unwrap_or_default());
     }
 
     /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with
@@ -336,6 +417,12 @@ impl<'a> Checker<'a> {
         let before = self.issues.len();
         let result = check(self);
         self.given = outer;
+        self.said_in(before, instance);
+        result
+    }
+
+    /// The diagnostics since then are of an instance: what is new in them is said with the instance.
+    pub(super) fn said_in(&mut self, before: usize, instance: Option<(&Name, Span)>) {
         let new = self.issues.split_off(before);
         for issue in new {
             let said = |known: &Diagnostic| known.code == issue.code && known.span() == issue.span();
@@ -347,6 +434,5 @@ impl<'a> Checker<'a> {
                 None => issue,
             });
         }
-        result
     }
 }

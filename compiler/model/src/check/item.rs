@@ -74,6 +74,21 @@ impl Item {
         }
     }
 
+    /// Whether it is an array of one where that is due.
+    fn is_one_of(&self, layout: &Layout) -> bool {
+        let one = matches!(self, Item::Array(parts, _) | Item::Tuple(parts, _) if parts.len() == 1);
+        one && matches!(layout, Layout::Array(..))
+    }
+
+    /// The names of its parts, if it is a vector: two or three numbers.
+    fn axes(&self) -> &'static [&'static str] {
+        let number = |part: &Item| matches!(part, Item::One(e) if e.ty.is_number());
+        match self {
+            Item::Array(parts, _) | Item::Tuple(parts, _) if parts.iter().all(number) => axes(parts.len()),
+            Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..) => &[],
+        }
+    }
+
     fn parts(&self) -> Option<&[Item]> {
         match self {
             Item::One(_) => None,
@@ -91,10 +106,14 @@ impl Item {
         }
     }
 
-    /// Whether something in it has a diagnostic already.
+    /// Whether nothing is known of it: it has a diagnostic, or is a goal's argument.
     fn is_unknown(&self) -> bool {
         matches!(self, Item::One(e) if e.ty == Kind::Unknown)
     }
+}
+
+fn axes(len: usize) -> &'static [&'static str] {
+    AXES.get(..len).filter(|_| len > 1).unwrap_or_default()
 }
 
 impl Checker<'_> {
@@ -112,6 +131,7 @@ impl Checker<'_> {
     pub(super) fn shown_layout(&self, layout: &Layout) -> String {
         match layout {
             Layout::Scalar(ty) => ty.kind().to_string(),
+            Layout::Unknown => Kind::Unknown.to_string(),
             Layout::Record(id) => format!("a `{}`", self.records[usize::from(*id)].name.text),
             Layout::Array(_, n) => format!("an array of {n}"),
         }
@@ -120,7 +140,7 @@ impl Checker<'_> {
     /// The layouts of the parts, with the names that they are reached by.
     fn parts_of(&self, layout: &Layout) -> Vec<(String, Layout)> {
         match layout {
-            Layout::Scalar(_) => Vec::new(),
+            Layout::Scalar(_) | Layout::Unknown => Vec::new(),
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
                 fields.iter().map(|(name, layout)| (format!(".{name}"), layout.clone())).collect()
@@ -140,6 +160,23 @@ impl Checker<'_> {
         }
     }
 
+    /// Says that nothing is known of something that must have parts, unless it has a diagnostic.
+    fn not_known(&mut self, item: &Item) {
+        if let Item::One(e) = item
+            && e.ty == Kind::Unknown
+            && e.kind != ExprKind::Error
+        {
+            self.report(types::not_known(e.span));
+        }
+    }
+
+    /// Whether all parts of a name have a value here.
+    pub(super) fn all_bound(&self, base: &str, layout: &Layout, env: &Env) -> bool {
+        let mut leaves = Vec::new();
+        self.leaves(base, layout, &mut leaves);
+        leaves.iter().all(|(name, _)| env.find(name).is_some_and(|l| l.bound))
+    }
+
     /// What a name of several parts stands for, put together from the locals that are its parts.
     pub(super) fn assembled(&self, base: &str, layout: &Layout, env: &Env, span: Span) -> Item {
         let parts = |c: &Self| {
@@ -156,6 +193,7 @@ impl Checker<'_> {
             },
             Layout::Record(id) => Item::Record(*id, parts(self), span),
             Layout::Array(..) => Item::Array(parts(self), span),
+            Layout::Unknown => Item::error(span),
         }
     }
 
@@ -163,8 +201,10 @@ impl Checker<'_> {
 
     /// An expression where something of this layout is due.
     pub(super) fn item_for(&mut self, e: &ast::Expr, layout: &Layout, env: &mut Env) -> Item {
-        if let Layout::Scalar(ty) = layout {
-            return Item::One(self.expr_for(e, *ty, env));
+        match layout {
+            Layout::Scalar(ty) => return Item::One(self.expr_for(e, *ty, env)),
+            Layout::Unknown => return Item::error(e.span),
+            Layout::Record(_) | Layout::Array(..) => {}
         }
         if let Syntax::Tuple(parts) = &e.kind {
             let due = self.parts_of(layout);
@@ -173,19 +213,41 @@ impl Checker<'_> {
                 return self.whole(layout, items, e.span);
             }
         }
+        if let Syntax::If { condition, then, otherwise } = &e.kind {
+            let condition = self.expr_of(condition, Kind::Bool, env);
+            let (then, otherwise) = (self.item_for(then, layout, env), self.item_for(otherwise, layout, env));
+            return self.either_item(&condition, then, otherwise, e.span, env);
+        }
+        if let Some(of) = self.only_part(layout)
+            && (matches!(e.kind, Syntax::Tuple(_)) || self.needs_due(e))
+        {
+            let only = self.item_for(e, &of, env);
+            return self.whole(layout, vec![only], e.span);
+        }
         let item = self.item(e, env);
         self.coerce(item, layout, env)
+    }
+
+    /// The layout of what has one part alone: its value needs no parentheses of a tuple, which would be no tuple.
+    fn only_part(&self, layout: &Layout) -> Option<Layout> {
+        match self.parts_of(layout).as_slice() {
+            [(_, of)] => Some(of.clone()),
+            [] | [_, ..] => None,
+        }
     }
 
     fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
         match layout {
             Layout::Record(id) => Item::Record(*id, parts, span),
-            Layout::Scalar(_) | Layout::Array(..) => Item::Array(parts, span),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Item::Array(parts, span),
         }
     }
 
     fn coerce(&mut self, item: Item, layout: &Layout, env: &mut Env) -> Item {
         let span = item.span();
+        if *layout == Layout::Unknown {
+            return Item::error(span);
+        }
         let due = self.parts_of(layout);
         let fits = match (&item, layout) {
             (Item::One(e), Layout::Scalar(ty)) => {
@@ -193,31 +255,25 @@ impl Checker<'_> {
                 self.in_range(&e, *ty);
                 return Item::One(e);
             }
-            // One part alone needs no parentheses of a tuple, which would be no tuple.
-            (Item::One(e), _) if due.len() == 1 && e.ty != Kind::Unknown => {
+            (Item::Record(id, ..), Layout::Record(want)) if id == want => true,
+            (_, Layout::Record(_) | Layout::Array(_, 1))
+                if due.len() == 1 && !item.is_unknown() && !item.is_one_of(layout) =>
+            {
                 let part = self.coerce(item, &due[0].1, env);
                 return self.whole(layout, vec![part], span);
             }
-            (Item::Record(id, ..), Layout::Record(want)) => id == want,
             (Item::Tuple(parts, _), Layout::Record(_) | Layout::Array(..))
             | (Item::Array(parts, _), Layout::Array(..)) => parts.len() == due.len(),
             (Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..), _) => false,
         };
         if !fits {
-            if !item.is_unknown() {
-                let (want, got) = (self.shown_layout(layout), self.shown(&item));
-                let issue = types::other_shape(&want, &got, span);
-                let form: Vec<String> =
-                    due.iter().map(|(n, _)| n.trim_matches(['.', '[', ']']).to_owned()).collect();
-                let record = matches!(layout, Layout::Record(_));
-                self.report(if record {
-                    issue.help(format!("write `({})`", form.join(", ")))
-                } else {
-                    issue
-                });
+            if item.is_unknown() {
+                self.not_known(&item);
+            } else {
+                let got = self.shown(&item);
+                self.other_shape(layout, &got, span);
             }
-            let parts = due.iter().map(|(_, l)| self.error_item(l, span)).collect();
-            return self.whole(layout, parts, span);
+            return self.error_item(layout, span);
         }
         let parts = match item {
             Item::One(_) => Vec::new(),
@@ -227,15 +283,55 @@ impl Checker<'_> {
         self.whole(layout, parts, span)
     }
 
+    /// Something of another shape is needed: says which.
+    fn other_shape(&mut self, layout: &Layout, got: &str, span: Span) {
+        let issue = types::other_shape(&self.shown_layout(layout), got, span);
+        let due = self.parts_of(layout);
+        let form: Vec<&str> = match layout {
+            Layout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Vec::new(),
+        };
+        self.report(match form.as_slice() {
+            [] => issue,
+            form => issue.help(format!("write `({})`", form.join(", "))),
+        });
+    }
+
     fn error_item(&self, layout: &Layout, span: Span) -> Item {
-        let mut leaves = Vec::new();
-        self.leaves("", layout, &mut leaves);
-        match layout {
-            Layout::Scalar(_) => Item::error(span),
-            Layout::Record(_) | Layout::Array(..) => {
-                let parts = leaves.iter().map(|_| Item::error(span)).collect();
-                self.whole(layout, parts, span)
+        if matches!(layout, Layout::Scalar(_) | Layout::Unknown) {
+            return Item::error(span);
+        }
+        let parts = self.parts_of(layout).iter().map(|(_, l)| self.error_item(l, span)).collect();
+        self.whole(layout, parts, span)
+    }
+
+    /// The bare name of some enumeration's value, or something that holds one: what is due says which it is.
+    pub(super) fn needs_due(&self, e: &ast::Expr) -> bool {
+        match &e.kind {
+            Syntax::Path(path) => {
+                path.names.len() == 1 && self.values.contains_key(path.names[0].text.as_str())
             }
+            Syntax::Tuple(parts) => parts.iter().any(|p| self.needs_due(p)),
+            Syntax::If { then, otherwise, .. } => self.needs_due(then) || self.needs_due(otherwise),
+            _ => false,
+        }
+    }
+
+    /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
+    pub(super) fn item_like(&mut self, e: &ast::Expr, like: &Item, env: &mut Env) -> Item {
+        match (&e.kind, like) {
+            (Syntax::Path(_) | Syntax::If { .. }, Item::One(Expr { ty: ty @ Kind::Enum(_), .. }))
+                if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) =>
+            {
+                self.item_due(e, *ty, env)
+            }
+            (Syntax::Tuple(parts), Item::Record(_, due, _) | Item::Array(due, _) | Item::Tuple(due, _))
+                if parts.len() == due.len() =>
+            {
+                let parts = parts.iter().zip(due).map(|(p, d)| self.item_like(p, d, env)).collect();
+                Item::Tuple(parts, e.span)
+            }
+            (_, _) => self.item(e, env),
         }
     }
 
@@ -252,21 +348,34 @@ impl Checker<'_> {
             out.push(if arg.kind == Syntax::Any { Part::Any } else { Part::Syntax(arg, *ty) });
             return;
         }
+        if *layout == Layout::Unknown {
+            return self.bind_names(arg, env, variable);
+        }
         let due = self.parts_of(layout);
         let given: Option<&[ast::Expr]> = match &arg.kind {
             Syntax::Tuple(parts) => Some(parts),
             Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
             _ => None,
         };
-        if let Some(parts) = given
-            && parts.len() == due.len()
+        if let (Some(of), Syntax::Tuple(_) | Syntax::Call { .. }) = (self.only_part(layout), &arg.kind)
+            && !matches!(&arg.kind, Syntax::Call { callee, .. } if self.is_record(callee, layout))
         {
-            for (part, (_, layout)) in parts.iter().zip(&due) {
-                self.spread(part, layout, env, variable, out);
-            }
-            return;
+            return self.spread(arg, &of, env, variable, out);
         }
         let mut leaves = Vec::new();
+        if let Some(parts) = given {
+            if parts.len() == due.len() {
+                for (part, (_, layout)) in parts.iter().zip(&due) {
+                    self.spread(part, layout, env, variable, out);
+                }
+                return;
+            }
+            self.other_shape(layout, &format!("a tuple of {}", parts.len()), arg.span);
+            parts.iter().for_each(|p| self.bind_names(p, env, variable));
+            self.leaves("", layout, &mut leaves);
+            out.extend(leaves.into_iter().map(|_| Part::Any));
+            return;
+        }
         if arg.kind == Syntax::Any {
             self.leaves("", layout, &mut leaves);
             out.extend(leaves.into_iter().map(|_| Part::Any));
@@ -276,6 +385,18 @@ impl Checker<'_> {
             && let [name] = path.names.as_slice()
             && variable(self, name)
         {
+            if env.broken.contains(&name.text) {
+                self.leaves("", layout, &mut leaves);
+                out.extend(leaves.into_iter().map(|_| Part::Any));
+                return;
+            }
+            if let Some(got) = self.stands_for_other(name, layout, env) {
+                let want = self.shown_layout(layout);
+                self.report(types::other_before(&name.text, &want, &got, name.span));
+                self.leaves("", layout, &mut leaves);
+                out.extend(leaves.into_iter().map(|_| Part::Any));
+                return;
+            }
             self.leaves(&name.text, layout, &mut leaves);
             env.declare_layout(&name.text, layout.clone());
             let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
@@ -284,9 +405,50 @@ impl Checker<'_> {
         }
         let item = self.item_for(arg, layout, env);
         self.leaves("", layout, &mut leaves);
+        if matches!(&arg.kind, Syntax::Call { .. })
+            && matches!(item.parts(), Some([first, ..]) if first.is_unknown())
+        {
+            // It may have been meant as a record, whose parts are bound.
+            self.bind_names(arg, env, variable);
+        }
         let mut values = Vec::new();
         item.flatten(&mut values);
         out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
+    }
+
+    /// What a variable stands for, if it is of another layout.
+    fn stands_for_other(&self, name: &Name, layout: &Layout, env: &Env) -> Option<String> {
+        match (env.find(&name.text), env.layout(&name.text)) {
+            (Some(local), _) => Some(local.ty.to_string()),
+            (None, Some(Layout::Unknown)) => None,
+            (None, Some(other)) => (other != layout).then(|| self.shown_layout(other)),
+            (None, None) => None,
+        }
+    }
+
+    /// What a pattern would bind is known, but not its types.
+    pub(super) fn bind_names(
+        &self,
+        e: &ast::Expr,
+        env: &mut Env,
+        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
+    ) {
+        match &e.kind {
+            Syntax::Path(path) => {
+                if let [name] = path.names.as_slice()
+                    && variable(self, name)
+                    && env.find(&name.text).is_none()
+                    && env.layout(&name.text).is_none()
+                {
+                    env.push_local(&name.text, Noun::Variable, Kind::Unknown);
+                    env.broken.push(name.text.clone());
+                }
+            }
+            Syntax::Tuple(parts) | Syntax::Call { args: parts, .. } => {
+                parts.iter().for_each(|p| self.bind_names(p, env, variable));
+            }
+            _ => {}
+        }
     }
 
     fn is_record(&self, callee: &ast::Path, layout: &Layout) -> bool {
@@ -302,40 +464,56 @@ impl Checker<'_> {
     pub(super) fn field(&mut self, item: Item, name: &Name) -> Item {
         let span = item.span().to(name.span);
         if item.is_unknown() {
+            self.not_known(&item);
             return Item::error(span);
         }
         let fields: Vec<String> = match &item {
             Item::Record(id, ..) => {
                 self.records[usize::from(*id)].fields.iter().map(|(n, _)| n.clone()).collect()
             }
-            Item::Array(parts, _) | Item::Tuple(parts, _) => {
-                AXES.iter().take(parts.len()).filter(|_| parts.len() <= 3).map(|a| (*a).to_owned()).collect()
-            }
+            Item::Array(..) | Item::Tuple(..) => item.axes().iter().map(|a| (*a).to_owned()).collect(),
             Item::One(_) => Vec::new(),
         };
-        match (fields.iter().position(|f| *f == name.text), item.parts()) {
-            (Some(at), Some(parts)) => parts[at].clone().at(span),
-            (_, _) => {
-                let names = fields.iter().map(String::as_str);
-                self.report(names::unknown(Noun::Field, &name.text, name.span, names));
+        let at = fields.iter().position(|f| *f == name.text);
+        match at.zip(item.parts()).and_then(|(at, parts)| parts.get(at)) {
+            Some(part) => part.clone().at(span),
+            None => {
+                let shown = self.shown(&item);
+                self.no_field(name, &fields, &shown, item.parts().is_some());
                 Item::error(span)
             }
         }
+    }
+
+    fn no_field(&mut self, name: &Name, fields: &[String], of: &str, parts: bool) {
+        let issue = names::unknown(Noun::Field, &name.text, name.span, fields.iter().map(String::as_str));
+        self.report(match (fields.is_empty(), parts) {
+            (false, _) => issue,
+            (true, true) => issue.help(format!("the parts of {of} are reached by their index: `[0]`")),
+            (true, false) => issue.help(format!("{of} has no fields")),
+        });
     }
 
     /// How a part of something is reached, and its layout.
     pub(super) fn field_of(&mut self, layout: &Layout, name: &Name) -> Option<(String, Layout)> {
         let parts = self.parts_of(layout);
         let names: Vec<String> = match layout {
-            Layout::Array(..) if parts.len() <= 3 => {
-                AXES.iter().take(parts.len()).map(|a| (*a).to_owned()).collect()
-            }
-            Layout::Array(..) | Layout::Scalar(_) => Vec::new(),
+            Layout::Array(of, n) => match **of {
+                Layout::Scalar(Type::Int { .. } | Type::Float(_)) => {
+                    axes(usize::from(*n)).iter().map(|a| (*a).to_owned()).collect()
+                }
+                Layout::Scalar(Type::Bool | Type::Enum(_))
+                | Layout::Record(_)
+                | Layout::Array(..)
+                | Layout::Unknown => Vec::new(),
+            },
+            Layout::Unknown => return None,
+            Layout::Scalar(_) => Vec::new(),
             Layout::Record(_) => parts.iter().map(|(n, _)| n.trim_start_matches('.').to_owned()).collect(),
         };
         let Some(at) = names.iter().position(|n| *n == name.text) else {
-            let near = names.iter().map(String::as_str);
-            self.report(names::unknown(Noun::Field, &name.text, name.span, near));
+            let shown = self.shown_layout(layout);
+            self.no_field(name, &names, &shown, !parts.is_empty());
             return None;
         };
         parts.into_iter().nth(at)
@@ -345,7 +523,8 @@ impl Checker<'_> {
     pub(super) fn index(&mut self, of: &ast::Expr, index: &ast::Expr, span: Span, env: &mut Env) -> Item {
         let item = self.item(of, env);
         let at = self.expr_of(index, Kind::Int, env);
-        if item.is_unknown() || at.ty == Kind::Unknown {
+        if item.is_unknown() {
+            self.not_known(&item);
             return Item::error(span);
         }
         let (Item::Array(parts, _) | Item::Tuple(parts, _)) = &item else {
@@ -371,7 +550,7 @@ impl Checker<'_> {
     pub(super) fn index_fits(&mut self, at: &Expr, len: usize, env: &Env) -> bool {
         let last = i64::try_from(len).unwrap_or(i64::MAX) - 1;
         let fits = super::range::of(at, env).is_some_and(|(lo, hi)| lo >= 0 && hi <= last);
-        if !fits && at.ty != Kind::Unknown {
+        if !fits && at.kind != ExprKind::Error {
             self.report(types::bad_index(at, last));
         }
         fits
@@ -390,6 +569,14 @@ impl Checker<'_> {
             (Item::One(a), Item::One(b)) => Item::One(self.conditional(condition.clone(), a, b, span, env)),
             (Item::Record(i, a, _), Item::Record(j, b, _)) if i == j => {
                 Item::Record(i, self.either_items(condition, a, b, span, env), span)
+            }
+            (Item::Record(i, a, _), Item::Tuple(b, _)) | (Item::Tuple(a, _), Item::Record(i, b, _))
+                if a.len() == b.len() =>
+            {
+                Item::Record(i, self.either_items(condition, a, b, span, env), span)
+            }
+            (Item::Tuple(a, _), Item::Tuple(b, _)) if a.len() == b.len() => {
+                Item::Tuple(self.either_items(condition, a, b, span, env), span)
             }
             (Item::Array(a, _) | Item::Tuple(a, _), Item::Array(b, _) | Item::Tuple(b, _))
                 if a.len() == b.len() =>
@@ -412,9 +599,11 @@ impl Checker<'_> {
     }
 
     fn clash(&mut self, op: &str, a: &Item, b: &Item, span: Span) -> Item {
+        self.not_known(a);
+        self.not_known(b);
         if !a.is_unknown() && !b.is_unknown() {
             let (left, right) = (self.shown(a), self.shown(b));
-            self.report(types::shapes(op, (&left, a.span()), (&right, b.span())));
+            self.report(types::shapes(op, span, (&left, a.span()), (&right, b.span())));
         }
         Item::error(span)
     }
@@ -463,28 +652,27 @@ impl Checker<'_> {
     fn equal(&mut self, op: BinaryOp, a: Item, b: Item, span: Span, env: &mut Env) -> Item {
         let same = match (&a, &b) {
             (Item::Record(i, ..), Item::Record(j, ..)) => i == j,
-            (Item::Record(_, p, _), Item::Tuple(q, _)) | (Item::Tuple(p, _), Item::Record(_, q, _)) => {
-                p.len() == q.len()
-            }
-            (Item::Array(p, _) | Item::Tuple(p, _), Item::Array(q, _) | Item::Tuple(q, _)) => {
-                p.len() == q.len()
-            }
-            (Item::One(_), Item::One(_)) => true,
-            (_, _) => false,
+            (Item::One(_), _) | (_, Item::One(_)) | (Item::Record(..), Item::Array(..)) => false,
+            (Item::Array(..), Item::Record(..)) => false,
+            (Item::Record(_, p, _) | Item::Array(p, _) | Item::Tuple(p, _), Item::Tuple(q, _))
+            | (Item::Tuple(p, _), Item::Record(_, q, _) | Item::Array(q, _))
+            | (Item::Array(p, _), Item::Array(q, _)) => p.len() == q.len(),
         };
-        if !same {
-            return self.clash(super::expr::symbol(op), &a, &b, span);
-        }
-        let (mut left, mut right) = (Vec::new(), Vec::new());
-        a.flatten(&mut left);
-        b.flatten(&mut right);
-        if left.len() != right.len() {
-            return Item::error(span);
-        }
+        let (left, right) = match (a, b) {
+            (Item::One(l), Item::One(r)) => return Item::One(self.operate(op, l, r, span, env)),
+            (
+                Item::Record(_, p, _) | Item::Array(p, _) | Item::Tuple(p, _),
+                Item::Record(_, q, _) | Item::Array(q, _) | Item::Tuple(q, _),
+            ) if same => (p, q),
+            (a, b) => return self.clash(super::expr::symbol(op), &a, &b, span),
+        };
         let join = if op == BinaryOp::Eq { BinaryOp::And } else { BinaryOp::Or };
         let mut all: Option<Expr> = None;
         for (l, r) in left.into_iter().zip(right) {
-            let one = self.operate(op, l, r, span, env);
+            let Item::One(one) = self.equal(op, l, r, span, env) else { return Item::error(span) };
+            if one.kind == ExprKind::Error {
+                return Item::error(span);
+            }
             all = Some(match all {
                 Some(before) => self.operate(join, before, one, span, env),
                 None => one,
@@ -500,19 +688,28 @@ impl Checker<'_> {
             return Expr::error(span);
         };
         let item = self.item(arg, env);
+        if item.is_unknown() {
+            self.not_known(&item);
+            return Expr::error(span);
+        }
+        let number = |part: &Item| matches!(part, Item::One(e) if e.ty.is_number());
+        let vector = matches!(item, Item::Array(..) | Item::Tuple(..));
+        if !vector || !item.parts().is_some_and(|parts| parts.iter().all(number)) {
+            let got = self.shown(&item);
+            self.report(types::not_a_vector(&got, arg.span));
+            return Expr::error(span);
+        }
         let mut parts = Vec::new();
         item.flatten(&mut parts);
-        let kind = parts.first().map_or(Kind::Unknown, |p| p.ty);
-        let mut floats = Vec::new();
-        for part in parts {
-            let want = if kind == Kind::Int { Kind::Float(Dim::NUMBER) } else { kind };
-            if !part.ty.is_number() {
-                self.report(types::mismatch(want, part.ty, None, part.span));
-                return Expr::error(span);
-            }
-            floats.push(self.fit(part, want, env));
+        if parts.iter().any(|p| p.kind == ExprKind::Error) {
+            return Expr::error(span);
         }
-        let ty = if kind == Kind::Int { Kind::Float(Dim::NUMBER) } else { kind };
+        let known = parts.iter().map(|p| p.ty).find(|ty| *ty != Kind::Unknown);
+        let ty = match known {
+            Some(Kind::Int) | None => Kind::Float(Dim::NUMBER),
+            Some(ty) => ty,
+        };
+        let floats = parts.into_iter().map(|part| self.fit(part, ty, env)).collect();
         self.applied(Function::Norm, floats, ty, span)
     }
 }

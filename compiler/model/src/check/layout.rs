@@ -40,6 +40,12 @@ impl<'a> Checker<'a> {
         if self.type_is_taken(name) {
             return;
         }
+        for value in values {
+            let constant = self.consts.get(value.text.as_str()).map(|c| c.name.span);
+            if constant.is_some() {
+                self.report(names::duplicate(Noun::Constant, &value.text, value.span, constant));
+            }
+        }
         if values.is_empty() {
             let help = format!("write `enum {} {{ first, second }}`", name.text);
             self.report(names::missing(name.span, "an enumeration has values", help));
@@ -96,18 +102,33 @@ impl<'a> Checker<'a> {
             let help = format!("write `record {} {{ x: length, y: length }}`", name.text);
             self.report(names::missing(name.span, "a record has fields", help));
         }
-        let fields = self.fields(syntax);
+        let fields = self.fields_as(Noun::Field, syntax);
         self.records[id].fields = fields.to_vec();
         self.records[id].state = RecordState::Done;
     }
 
-    /// Parameters or fields; names are distinct.
+    /// The fields of a record, which may be needed before its turn; `None` if they need themselves.
+    pub(super) fn record_fields(&mut self, id: u16, name: &Name) -> Option<Vec<(String, Layout)>> {
+        self.resolve_record(usize::from(id));
+        let entry = &self.records[usize::from(id)];
+        if entry.state == RecordState::Open {
+            self.report(types::record_cycle(&name.text, name.span));
+            return None;
+        }
+        Some(entry.fields.clone())
+    }
+
+    /// Parameters; names are distinct.
     pub(super) fn fields(&mut self, params: &[SyntaxParam]) -> Fields {
+        self.fields_as(Noun::Parameter, params)
+    }
+
+    fn fields_as(&mut self, noun: Noun, params: &[SyntaxParam]) -> Fields {
         let mut table = Table::default();
         let mut resolved = Vec::new();
         for param in params {
-            let layout = self.layout(&param.ty).unwrap_or(Layout::Scalar(Type::Bool));
-            Self::declare(&mut self.issues, &mut table, Noun::Parameter, &param.name);
+            let layout = self.layout(&param.ty).unwrap_or(Layout::Unknown);
+            Self::declare(&mut self.issues, &mut table, noun, &param.name);
             resolved.push((param.name.text.clone(), layout));
         }
         resolved.into()
@@ -126,9 +147,11 @@ impl<'a> Checker<'a> {
     pub(super) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
         match self.layout(ty)? {
             Layout::Scalar(ty) => Some(ty),
+            Layout::Unknown => None,
             layout @ (Layout::Record(_) | Layout::Array(..)) => {
-                let issue = types::no_value(&self.shown_layout(&layout), type_span(ty));
-                self.report(issue.help("the type of one value is needed here"));
+                let got = self.shown_layout(&layout);
+                let issue = types::other_shape("the type of one value", &got, type_span(ty));
+                self.report(issue.help("write a type such as `bool` or `length`, or a range `0..4`"));
                 None
             }
         }
@@ -140,32 +163,41 @@ impl<'a> Checker<'a> {
             TypeExpr::Error => return None,
             TypeExpr::Named(name) => self.named_type(name)?,
             TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
-            TypeExpr::Array(of, size) => {
-                let of = self.layout(of);
-                let n = self.count(size, "the size of an array", 1)?;
-                let n = u16::try_from(n).ok().filter(|n| usize::from(*n) <= MAX_PARTS);
-                if n.is_none() {
-                    self.report(types::must_be(
-                        "the size of an array",
-                        &format!("at most {MAX_PARTS}"),
-                        size.span,
-                    ));
-                }
-                Layout::Array(Box::new(of?), n?)
-            }
+            TypeExpr::Array(..) => self.array_type(ty)?,
         };
-        if self.size(&layout) > MAX_PARTS {
-            let rule = format!("at most {MAX_PARTS}");
-            self.report(types::must_be("the number of single values in it", &rule, type_span(ty)));
+        let size = self.size(&layout);
+        if size > MAX_PARTS {
+            self.report(types::too_many_parts(size, MAX_PARTS, type_span(ty)));
             return None;
         }
         Some(layout)
+    }
+
+    /// `T[2][3]`: two of three; the indices are written in the order of the sizes.
+    fn array_type(&mut self, ty: &TypeExpr) -> Option<Layout> {
+        let (mut of, mut sizes) = (ty, Vec::new());
+        while let TypeExpr::Array(inner, size) = of {
+            sizes.push(size);
+            of = inner;
+        }
+        let mut layout = self.layout(of);
+        for size in sizes {
+            let n = self.count(size, "the size of an array", 1);
+            let fits = n.and_then(|n| u16::try_from(n).ok()).filter(|n| usize::from(*n) <= MAX_PARTS);
+            if n.is_some() && fits.is_none() {
+                let rule = format!("at most {MAX_PARTS}");
+                self.report(types::must_be("the size of an array", &rule, size.span));
+            }
+            layout = layout.zip(fits).map(|(of, n)| Layout::Array(Box::new(of), n));
+        }
+        layout
     }
 
     /// How many single values there are.
     fn size(&self, layout: &Layout) -> usize {
         match layout {
             Layout::Scalar(_) => 1,
+            Layout::Unknown => 0,
             Layout::Record(id) => {
                 let fields = &self.records[usize::from(*id)].fields;
                 fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)))
@@ -192,7 +224,10 @@ impl<'a> Checker<'a> {
             }
             return Some(Layout::Record(id));
         }
-        let all = self.type_names();
+        let mut all = self.type_names();
+        if self.given.is_some() {
+            all.extend(super::given::KIND_WORDS.map(str::to_owned));
+        }
         let issue_before = self.issues.len();
         self.unknown(Noun::Type, name, &all, None);
         if super::given::is_kind_word(&name.text)

@@ -23,6 +23,9 @@ impl Checker<'_> {
 
     fn signal(&self, id: u16, span: Span) -> Expr {
         let ty = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id)));
+        if ty.is_some_and(|s| self.in_world.broken.contains(&s.name)) {
+            return Expr::error(span);
+        }
         let ty = ty.map_or(Kind::Unknown, |s| s.ty.kind());
         Expr { kind: ExprKind::Leaf(Leaf::Signal(SignalId(id))), ty, span }
     }
@@ -56,6 +59,13 @@ impl Checker<'_> {
             self.report(issue.help(format!("name a coordinate: `{}.x`", text(&path.names))));
             return Expr::error(path.span);
         }
+        if let Some(base) = self.full_name(body, &prefix).filter(|base| self.in_world.is_instance(base)) {
+            if !self.in_world.broken.contains(&base) {
+                let near = self.in_world.below(Noun::Signal, &format!("{base}."));
+                self.unknown(Noun::Signal, axis, &near, Some(Noun::Signal));
+            }
+            return Expr::error(path.span);
+        }
         let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
         match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
             Some(axis) => term(Term::Coordinate(body, axis as u8), Kind::Float(Dim::LENGTH), path.span),
@@ -75,7 +85,7 @@ impl Checker<'_> {
         let known = MEASURES.contains(&name.as_str());
         let Some(prefix) = env.world.clone().filter(|_| known) else {
             self.no_function(callee, env, known);
-            args.iter().for_each(|a| drop(self.expr_quietly(a, env)));
+            args.iter().for_each(|a| self.item_quietly(a, env));
             return Expr::error(span);
         };
         let want = match name.as_str() {
@@ -182,7 +192,10 @@ impl Checker<'_> {
             base = format!("{full}.");
         }
         let last = &names[names.len() - 1];
-        let near = self.in_world.below(noun, &base);
+        let mut near = self.in_world.below(noun, &base);
+        if names.len() == 1 {
+            near.extend(self.given_names(noun));
+        }
         let is = self.in_world.kind_of(&format!("{base}{}", last.text));
         // Within a part, what the name is elsewhere says nothing.
         let is = is.or(if base.is_empty() { None } else { Some(noun) });
@@ -204,20 +217,27 @@ impl Checker<'_> {
 
     /// What a parameter stands for has no such thing, or is of another kind.
     fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[Name], given: &str) -> Option<u16> {
+        if self
+            .in_world
+            .broken
+            .iter()
+            .any(|b| given.strip_prefix(b).is_some_and(|rest| rest.starts_with('.')))
+        {
+            return None;
+        }
         match names {
             [only] => {
                 let base = given.rsplit_once('.').map_or(String::new(), |(base, _)| format!("{base}."));
                 let near = self.in_world.below(noun, &base).into_iter().map(|n| format!("{base}{n}"));
                 let near: Vec<String> = near.collect();
                 let is = self.in_world.kind_of(given).or((is != noun).then_some(is));
-                let known = self.issues.len();
+                let before = self.issues.len();
                 self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
-                // The wrong name stands in the instance, so nothing here can be replaced.
-                if let Some(issue) = self.issues.get_mut(known) {
+                // What is to be mended is what the instance gives.
+                for issue in self.issues.iter_mut().skip(before) {
+                    let help = issue.help.take().map_or(String::new(), |help| format!(": {help}"));
+                    issue.help = Some(format!("`{}` stands for `{given}`{help}", only.text));
                     issue.fixes.clear();
-                    let near = issue.help.as_deref().and_then(|h| h.strip_prefix("did you mean "));
-                    issue.help =
-                        near.map(|n| format!("give it {}", n.trim_end_matches('?'))).or(issue.help.take());
                 }
             }
             [_, .., last] => {
@@ -241,15 +261,17 @@ impl Checker<'_> {
         if env.world.is_some() {
             all.extend(MEASURES.map(str::to_owned));
         }
+        all.extend(self.record_names.names().map(str::to_owned));
         let callee = Name { text: name, span: callee.span };
         self.unknown(Noun::Function, &callee, &all, None);
     }
 
     /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
-    fn expr_quietly(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Expr> {
-        match e.kind {
-            Syntax::Path(_) | Syntax::Any => None,
-            _ => Some(self.expr(e, env)),
+    fn item_quietly(&mut self, e: &ast::Expr, env: &mut Env) {
+        match &e.kind {
+            Syntax::Path(_) | Syntax::Any => {}
+            Syntax::Tuple(parts) => parts.iter().for_each(|p| self.item_quietly(p, env)),
+            _ => drop(self.item(e, env)),
         }
     }
 }

@@ -62,10 +62,23 @@ pub fn resolve(
     modules: &[&ast::File],
     tests: &[&ast::File],
 ) -> (Scenario, Vec<Diagnostic>) {
-    let mut items: Vec<&ast::Item> = modules.iter().flat_map(|m| &m.items).collect();
+    resolve_part(scenario, modules, tests, false)
+}
+
+/// The same, where some module may be `missing`: nothing is said about parts that it may have.
+#[must_use]
+pub fn resolve_part(
+    scenario: &ast::File,
+    modules: &[&ast::File],
+    tests: &[&ast::File],
+    missing: bool,
+) -> (Scenario, Vec<Diagnostic>) {
+    let mut items: Vec<&ast::Item> =
+        modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
     let from_modules = items.len();
     items.extend(&scenario.items);
     let mut checker = Checker::new(items, from_modules);
+    checker.missing_modules = missing;
     checker.unread_items = checker.items.iter().any(|i| unread::in_item(&i.kind));
     checker.s.name = scenario.scenario.as_ref().map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
@@ -82,6 +95,11 @@ pub fn resolve(
     checker.tests(tests);
     checker.places();
     (checker.s, distinct(checker.issues))
+}
+
+/// What a module shares. Anything else in it has a diagnostic, and is not the scenario's.
+fn shared(kind: &ItemKind) -> bool {
+    !matches!(kind, ItemKind::World(_) | ItemKind::System(_) | ItemKind::Suite(_) | ItemKind::Test(_))
 }
 
 /// A part that is used twice has its faults once.
@@ -139,10 +157,12 @@ pub(crate) struct Checker<'a> {
     used_templates: BTreeSet<(Sort, String)>,
     /// Enumerations and records.
     used_types: BTreeSet<String>,
+    /// Instances that could not be made: nothing is said about their names.
+    broken_instances: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
-    /// A template is being checked by itself: its parameters have made-up values.
-    alone: bool,
+    /// A template is being checked by itself, with some values.
+    by_itself: bool,
     events: Table,
     /// By [`EventId`]: the parameters as declared.
     event_fields: Vec<Fields>,
@@ -169,6 +189,8 @@ pub(crate) struct Checker<'a> {
     belief_fields: Vec<Vec<Fields>>,
     has_world: bool,
     in_world: world_parts::WorldNames,
+    /// A module is missing, which may have the parts that are used.
+    missing_modules: bool,
     /// A declaration of the scenario, or a member of its world, could not be read.
     unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
@@ -191,8 +213,9 @@ impl<'a> Checker<'a> {
             templates: IndexMap::new(),
             used_templates: BTreeSet::new(),
             used_types: BTreeSet::new(),
+            broken_instances: BTreeSet::new(),
             given: None,
-            alone: false,
+            by_itself: false,
             events: Table::default(),
             event_fields: Vec::new(),
             players: Table::default(),
@@ -212,6 +235,7 @@ impl<'a> Checker<'a> {
             beliefs: Vec::new(),
             belief_fields: Vec::new(),
             has_world,
+            missing_modules: false,
             unread_items: false,
             unread_members: false,
             in_world: world_parts::WorldNames::default(),
@@ -270,6 +294,9 @@ impl<'a> Checker<'a> {
         }
         let names: Vec<String> =
             self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n.to_owned()).collect();
+        let given = self.given_names(Noun::Event);
+        let names: Vec<String> =
+            if noun == Noun::EventOrStimulus { names.into_iter().chain(given).collect() } else { names };
         self.unknown(noun, name, &names, local);
         None
     }
@@ -283,7 +310,8 @@ impl<'a> Checker<'a> {
         }
         let found = self.points.get(&name.text).map(PointId);
         if found.is_none() {
-            let all: Vec<String> = self.points.names().map(str::to_owned).collect();
+            let own = self.points.names().map(str::to_owned);
+            let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, name, &all, None);
         }
         found
@@ -291,6 +319,9 @@ impl<'a> Checker<'a> {
 
     /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
     fn unknown(&mut self, noun: Noun, name: &Name, names: &[String], local: Option<Noun>) {
+        if self.broken_instances.contains(&name.text) {
+            return;
+        }
         let is = local.or_else(|| self.kind_of(&name.text));
         if is.is_none() && unread::may_declare(noun, self.unread_items, self.unread_members) {
             return;

@@ -121,14 +121,21 @@ impl Checker<'_> {
         binds: bool,
     ) -> Vec<Arg> {
         let args = call.args.as_deref().unwrap_or_default();
+        let variable =
+            |c: &Checker<'_>, name: &ast::Name| is_variable_name(&name.text) && !c.has_value(&name.text);
+        if fields.is_none() && noun != Noun::Goal {
+            // Its name has a diagnostic.
+            if binds {
+                args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
+            }
+            return args.iter().map(|_| Arg::Any).collect();
+        }
         let Some(fields) = fields else {
             return args.iter().map(|arg| self.matched_arg(arg, None, env, binds)).collect();
         };
         if args.len() != fields.len() {
             self.wrong_arity(noun, call, fields);
         }
-        let variable =
-            |c: &Checker<'_>, name: &ast::Name| is_variable_name(&name.text) && !c.has_value(&name.text);
         let parts = self.spread_args(args, fields, env, &variable);
         let mut matched: Vec<Arg> =
             parts.into_iter().map(|part| self.matched_part(part, env, binds)).collect();

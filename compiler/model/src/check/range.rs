@@ -54,7 +54,7 @@ fn binary(op: BinaryOp, a: (i64, i64), b: (i64, i64)) -> Option<(i64, i64)> {
         // The remainder has the sign of the dividend.
         BinaryOp::Rem if b.0 > 0 => {
             let most = b.1 - 1;
-            Some((if a.0 < 0 { -most } else { 0 }, if a.1 > 0 { most } else { 0 }))
+            Some((a.0.clamp(-most, 0), a.1.clamp(0, most)))
         }
         BinaryOp::Div if b.0 > 0 && b.0 == b.1 => Some((a.0 / b.0, a.1 / b.0)),
         BinaryOp::Rem

@@ -58,6 +58,7 @@ impl Checker<'_> {
         span: Span,
         names: &mut Table,
     ) {
+        self.not_a_template(Sort::Require, name);
         Self::declare(&mut self.issues, names, Noun::Requirement, name);
         if let Some((kind, title, pattern)) = resolved {
             let name = name.text.clone();
@@ -89,14 +90,14 @@ impl Checker<'_> {
 
     /// A boolean that depends on the world.
     fn condition(&mut self, e: &ast::Expr) -> Expr {
-        let made_up = self.is_made_up(e);
         let e = self.expr_of(e, Kind::Bool, &mut Env::measured(""));
-        let mut reads = made_up;
+        let mut reads = false;
         e.each(&mut |part| {
             reads |=
                 matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);
         });
-        if !reads {
+        // A parameter may stand for something measured.
+        if !reads && !self.by_itself {
             self.report(says_nothing(e.span));
         }
         e

@@ -158,6 +158,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_agent(&mut self, agent: Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Agent, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Agent(id));
@@ -185,6 +186,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_automaton(&mut self, automaton: Declared<'a, ast::Automaton>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Automaton, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.player_ids.push(Player::Automaton(id));
@@ -235,7 +237,7 @@ impl<'a> Checker<'a> {
     pub(super) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
         let span = var.name.span;
         let layout = self.layout(&var.ty).filter(|l| self.finite_layout(l, "a variable of automata", span));
-        let layout = layout.unwrap_or(Layout::Scalar(Type::Bool));
+        let layout = layout.unwrap_or(Layout::Unknown);
         let mut values = Vec::new();
         if let Some(e) = &var.init {
             self.item_for(e, &layout, &mut Env::constants()).flatten(&mut values);

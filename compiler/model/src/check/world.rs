@@ -5,7 +5,10 @@ use hrdsl_syntax::ast::{
     self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member,
 };
 
-use super::{Checker, Env, world_parts::Placed};
+use super::{
+    Checker, Env,
+    world_parts::{Placed, WorldNames},
+};
 use crate::{
     ActorId, BodyId, Dim, GripperId, JointId, Kind, Value,
     noun::Noun,
@@ -64,9 +67,7 @@ impl<'a> Checker<'a> {
                 pass(self, p);
                 self.given = outer;
                 if let Some((name, span)) = &p.instance {
-                    let new = self.issues.split_off(before);
-                    self.issues
-                        .extend(new.into_iter().map(|i| i.label(*span, format!("in the part `{name}`"))));
+                    self.said_in(before, Some((name, *span)));
                 }
             }
         }
@@ -85,14 +86,12 @@ impl<'a> Checker<'a> {
             let kept_names = std::mem::take(&mut self.in_world);
             let kept_world = self.s.world.take();
             let kept_flag = std::mem::replace(&mut self.has_world, true);
-            let params = part.params.as_deref();
-            let outer = params.map(|params| {
-                let given = self.placeholders(params);
-                self.given.replace(given)
-            });
-            self.build(&part.members, part.name.span);
-            if let Some(outer) = outer {
-                self.given = outer;
+            match &part.params {
+                Some(params) => self.by_itself(params, |c| {
+                    c.in_world = WorldNames::default();
+                    c.build(&part.members, part.name.span);
+                }),
+                None => self.build(&part.members, part.name.span),
             }
             self.in_world = kept_names;
             self.s.world = kept_world;
@@ -335,6 +334,9 @@ impl<'a> Checker<'a> {
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.in_world.signals);
         if Self::declare_as(issues, table, Noun::Signal, &full, name.span).is_some() {
+            if ty.is_none() {
+                self.in_world.broken.push(full.clone());
+            }
             let ty = ty.unwrap_or(crate::Type::Bool);
             self.world_mut().signals.push(Signal { name: full, ty, to, value, span: p.member.span });
         }

@@ -80,8 +80,8 @@ pub(crate) struct Placed<'a> {
     pub member: &'a WorldMember,
     /// What the parameters of its part stand for.
     pub given: Option<Rc<Givens>>,
-    /// Of a part with parameters: its name and where it is used.
-    pub instance: Option<(String, Span)>,
+    /// The part of the world that gives them.
+    pub instance: Option<(Name, Span)>,
 }
 
 impl<'a> Checker<'a> {
@@ -92,6 +92,17 @@ impl<'a> Checker<'a> {
         prefix: &str,
         frame: Frame,
         depth: usize,
+    ) -> Vec<Placed<'a>> {
+        self.flatten_in(members, prefix, frame, depth, None)
+    }
+
+    fn flatten_in(
+        &mut self,
+        members: &'a [WorldMember],
+        prefix: &str,
+        frame: Frame,
+        depth: usize,
+        instance: Option<(Name, Span)>,
     ) -> Vec<Placed<'a>> {
         let mut all = Vec::new();
         for member in members {
@@ -112,14 +123,17 @@ impl<'a> Checker<'a> {
                     };
                     if new {
                         let frame = compose(frame, inner);
+                        let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
+                        let here = Name { text: full.clone(), span: name.span };
+                        let instance = given.is_some().then(|| (here, name.span.to(end)));
                         let outer = std::mem::replace(&mut self.given, given);
-                        let mut inner = self.flatten(&part.members, &format!("{full}."), frame, depth + 1);
+                        let (before, prefix) = (self.issues.len(), format!("{full}."));
+                        let inner =
+                            self.flatten_in(&part.members, &prefix, frame, depth + 1, instance.clone());
                         self.given = outer;
-                        let place = part.params.as_ref().map(|_| (full, name.span));
-                        inner
-                            .iter_mut()
-                            .filter(|p| p.instance.is_none())
-                            .for_each(|p| p.instance = place.clone());
+                        if let Some((name, span)) = &instance {
+                            self.said_in(before, Some((name, *span)));
+                        }
                         all.extend(inner);
                     }
                 }
@@ -134,8 +148,8 @@ impl<'a> Checker<'a> {
                 | Member::Signal { .. }
                 | Member::Rule(_)
                 | Member::Error => {
-                    let given = self.given.clone();
-                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given, instance: None });
+                    let (given, instance) = (self.given.clone(), instance.clone());
+                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given, instance });
                 }
                 Member::Allow(_) => {}
             }
@@ -165,6 +179,9 @@ impl<'a> Checker<'a> {
     fn part(&mut self, of: &Name, depth: usize) -> Option<&'a ast::Part> {
         let Some((part, _)) = self.parts.get(of.text.as_str()) else {
             let names: Vec<String> = self.parts.keys().map(|k| (*k).to_owned()).collect();
+            if self.unread_items || self.missing_modules {
+                return None;
+            }
             // A part often has the name of an actor or of its instance, which would say nothing.
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
             return None;

@@ -78,7 +78,9 @@ impl<'a> Checker<'a> {
                     Update::Reset(_) => None,
                 };
                 let (Some(var), Some((leaf, e, range))) = (var, flow.set_by(update)) else { continue };
-                self.fits(&env, e, var.ty, &format!("`{}`", var.name));
+                // One assignment sets an element of which only the index tells which it is.
+                let name = var.name.split('[').next().unwrap_or(&var.name);
+                self.fits(&env, e, var.ty, &format!("`{name}`"));
                 match env.eval(e).meet(range) {
                     Some(value) => env.assign(leaf, value),
                     None => break,

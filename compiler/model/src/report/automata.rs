@@ -61,3 +61,16 @@ pub(crate) fn sampled_emit(stimulus: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::SAMPLED_EVENT, span, message)
         .help("let what it emits depend on a parameter of the stimulus")
 }
+
+/// HR0103: an assignment to what the edge binds.
+pub(crate) fn bound_by_edge(name: &str, span: Span) -> Diagnostic {
+    let message = format!("`{name}` is bound by the edge: it cannot be assigned");
+    Diagnostic::error(Code::WRONG_KIND, span, message).help("assign a variable declared by `var`")
+}
+
+/// HR0201: an assignment of several parts that needs the old value of a part that it has set.
+pub(crate) fn read_while_set(name: &str, span: Span) -> Diagnostic {
+    let message = format!("`{name}` is read while its parts are being set");
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+        .help("set the parts one by one, or keep the old value in a variable")
+}

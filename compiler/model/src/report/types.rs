@@ -15,9 +15,37 @@ pub(crate) fn other_shape(want: &str, got: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
 }
 
+/// HR0201: several values where one is needed.
+pub(crate) fn several_values(got: &str, span: Span) -> Diagnostic {
+    other_shape("one value", got, span).help("name one part of it, such as `p.x` or `a[0]`")
+}
+
+/// HR0201: a goal's argument, of which nothing is known, where something of several parts is needed.
+pub(crate) fn not_known(span: Span) -> Diagnostic {
+    let message = "the type of this is not known: the arguments of a goal are single values";
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+        .help("hand over the parts one by one, or keep the whole in a belief")
+}
+
+/// HR0201: a variable that stands for something of another shape already.
+pub(crate) fn other_before(name: &str, want: &str, got: &str, span: Span) -> Diagnostic {
+    let message = format!("{want} is needed here, but `{name}` stands for {got} already");
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("use another name")
+}
+
+/// HR0201: `norm` of what is no vector.
+pub(crate) fn not_a_vector(got: &str, span: Span) -> Diagnostic {
+    other_shape("a vector", got, span).help("write numbers of one dimension: `norm((3 m, 4 m))`")
+}
+
+/// HR0206
+pub(crate) fn too_many_parts(size: usize, most: usize, span: Span) -> Diagnostic {
+    let message = format!("this has {size} single values, and {most} are the most");
+    Diagnostic::error(Code::OUT_OF_RANGE, span, message).help("declare it in several pieces")
+}
+
 /// HR0201: operands that cannot be combined.
-pub(crate) fn shapes(op: &str, left: (&str, Span), right: (&str, Span)) -> Diagnostic {
-    let span = left.1.to(right.1);
+pub(crate) fn shapes(op: &str, span: Span, left: (&str, Span), right: (&str, Span)) -> Diagnostic {
     Diagnostic::error(Code::TYPE_MISMATCH, span, format!("`{op}` between {} and {}", left.0, right.0))
         .label(left.1, format!("this is {}", left.0))
         .label(right.1, format!("this is {}", right.0))
@@ -34,13 +62,20 @@ pub(crate) fn bad_index(at: &Expr, last: i64) -> Diagnostic {
         Some(n) => format!("the index {n} is outside of the array, whose last is {last}"),
         None => format!("the index may be outside of the array, whose last is {last}"),
     };
-    Diagnostic::error(Code::OUT_OF_RANGE, at.span, message)
-        .help(format!("the first element is 0; the index must be of a type within 0..{last}"))
+    Diagnostic::error(Code::OUT_OF_RANGE, at.span, message).help(if at.constant().is_some() {
+        format!("write an index of 0..{last}: the first element is 0")
+    } else {
+        format!("use a variable of the type `0..{last}`, or limit it: `max(0, min({last}, …))`")
+    })
 }
 
 /// HR0202
 pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
     let error = Diagnostic::error(Code::UNKNOWN_UNIT, span, format!("no unit is called `{text}`"));
+    let caret = text.replace("s2", "s^2").replace("cm2", "cm^2");
+    if caret != text && UNITS.iter().any(|u| u.symbol == caret) {
+        return replace(error.help(format!("did you mean `{caret}`?")), text, &caret);
+    }
     let error = with_nearest(error, Noun::Unit, text, UNITS.iter().map(|u| u.symbol));
     // `sec`, `meters`: a unit written out
     let start = UNITS.iter().map(|u| u.symbol).filter(|u| text.starts_with(u)).max_by_key(|u| u.len());
@@ -90,9 +125,16 @@ pub(crate) fn dimensions(op: &str, left: (Kind, Span), right: (Kind, Span)) -> D
 /// HR0201: the operands have different types.
 pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
     let (l, r) = (left.0, right.0);
-    Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
-        .label(left.1, format!("this is {l}"))
-        .label(right.1, format!("this is {r}"))
+    let issue =
+        Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
+            .label(left.1, format!("this is {l}"))
+            .label(right.1, format!("this is {r}"));
+    match (l, r) {
+        (Kind::Enum(a), Kind::Enum(b)) if a == b => {
+            issue.help("the values of an enumeration are compared by `==` and `!=` alone")
+        }
+        (_, _) => issue,
+    }
 }
 
 /// HR0201: something that has no value.
@@ -115,12 +157,20 @@ pub(crate) fn not_constant(span: Span) -> Diagnostic {
 /// HR0208
 pub(crate) fn record_cycle(name: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::CONSTANT_CYCLE, span, format!("the record `{name}` contains itself"))
+        .help("remove the field, or give it another type")
 }
 
 /// HR0103: a parameter that stands for several events, or for an event with certain arguments.
 pub(crate) fn several_events(name: &str, span: Span) -> Diagnostic {
     let message = format!("`{name}` stands for a pattern, and one event is needed here");
     Diagnostic::error(Code::WRONG_KIND, span, message).help("give the template the name of one event alone")
+}
+
+/// HR0201: an argument that must be a name.
+pub(crate) fn needs_name(noun: Noun, span: Span) -> Diagnostic {
+    let message = format!("{} is needed here", noun.with_article());
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+        .help(format!("write the name of {}", noun.with_article()))
 }
 
 /// HR0208
@@ -131,7 +181,12 @@ pub(crate) fn constant_cycle(name: &str, span: Span, declared: Span) -> Diagnost
 
 /// HR0206: arithmetic on constants that has no result.
 pub(crate) fn fold(error: FoldError, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_RANGE, span, error.to_string())
+    let issue = Diagnostic::error(Code::OUT_OF_RANGE, span, error.to_string());
+    match error {
+        FoldError::DivisionByZero => issue.help("divide by a number that is never zero"),
+        FoldError::Overflow => issue.help("use smaller numbers"),
+        FoldError::Type => issue,
+    }
 }
 
 /// HR0206
@@ -163,11 +218,12 @@ pub(crate) fn arity(noun: Noun, name: &str, names: &[&str], got: usize, span: Sp
 /// HR0205
 pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span) -> Diagnostic {
     let s = if want == 1 { "" } else { "s" };
+    let what = if noun == Noun::Record { "field" } else { "argument" };
     Diagnostic::error(
         Code::ARITY,
         span,
         format!(
-            "the {noun} `{name}` has {want} argument{s}, but {got} {} given",
+            "the {noun} `{name}` has {want} {what}{s}, but {got} {} given",
             if got == 1 { "is" } else { "are" }
         ),
     )
