@@ -18,7 +18,8 @@ const PLACE: &str = "
 
 /// A scenario of at least this many lines, without errors and warnings.
 pub fn scenario(lines: usize) -> String {
-    let mut text = String::from("/// Stations along a line, each with a person and a robot.\nscenario line\n\n");
+    let mut text =
+        String::from("/// Stations along a line, each with a person and a robot.\nscenario line\n\n");
     text.push_str("const REACH = 80 cm\nconst PATIENCE = 12 s\nenum Order { feed, clean, hold_still }\n\n");
     let mut world = String::from("world {\n  step 10 ms\n  sample 50 ms\n");
     let of_each = STATION.lines().count() + PLACE.lines().count();

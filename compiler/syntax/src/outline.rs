@@ -83,6 +83,8 @@ struct Bracket {
     child: u32,
     /// The highest expression before it.
     highest: u32,
+    /// What is being read belongs to an element: `.x` after `a[0]`.
+    element: bool,
 }
 
 struct Splitter<'t> {
@@ -346,7 +348,18 @@ impl Splitter<'_> {
     fn measure(&mut self, token: Lexeme, i: usize) {
         let after_operand = self.before(i).is_some_and(Kind::ends_operand);
         let Some(top) = self.brackets.last_mut() else { return };
-        if token.kind.is_operator() {
+        top.element = match token.kind {
+            Kind::RBracket => true,
+            Kind::Dot => top.element,
+            kind => top.element && kind.is_name(),
+        };
+        // `a[0][0].x` is as high as it has indices and names after them.
+        let part = match token.kind {
+            Kind::LBracket => after_operand,
+            Kind::Dot => top.element,
+            _ => false,
+        };
+        if token.kind.is_operator() || part {
             top.operators += 1;
             self.limit(token);
             return;

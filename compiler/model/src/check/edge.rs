@@ -100,9 +100,15 @@ impl Checker<'_> {
             self.wrong_arity(self.noun_of(event), call, &fields);
             return None;
         }
-        let known: Vec<String> = env.layouts.iter().map(|(n, _)| n.clone()).collect();
+        // The layouts, as they are before the edge binds anything.
+        let seen = Env {
+            layouts: env.layouts.clone(),
+            own: env.own.clone(),
+            shared: env.shared.clone(),
+            ..Env::default()
+        };
         let free = |c: &Checker<'_>, name: &Name| {
-            !known.contains(&name.text) && !c.has_value(&name.text) && !is_variable_name(&name.text)
+            seen.layout(&name.text).is_none() && !c.has_value(&name.text) && !is_variable_name(&name.text)
         };
         let parts = self.spread_args(args, &fields, env, &free);
         let received = parts.into_iter().map(|part| self.received_part(part, env, equal)).collect();
@@ -224,7 +230,7 @@ impl Checker<'_> {
             None => match env.layout(&target.text) {
                 Some(layout) => layout.clone(),
                 None => {
-                    let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
+                    let vars = env.all().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
                     let all: Vec<String> = vars.map(|l| l.name.clone()).collect();
                     self.unknown(Noun::Variable, target, &all, None);
                     self.item(value, env);

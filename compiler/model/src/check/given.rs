@@ -2,11 +2,10 @@
 
 use std::rc::Rc;
 
-use hrdsl_source::{Diagnostic, Span};
+use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
-use indexmap::IndexMap;
 
-use super::{Checker, Env, item::Item};
+use super::{Checker, Env, item::Item, table::Map};
 use crate::{
     ActorId, EventPattern, Expr, PointId, Type, Value,
     noun::Noun,
@@ -28,7 +27,7 @@ pub(crate) enum Given {
     Unknown,
 }
 
-pub(crate) type Givens = IndexMap<String, Given>;
+pub(crate) type Givens = Map<String, Given>;
 
 /// A declaration with parameters.
 #[derive(Clone, Copy)]
@@ -109,7 +108,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn is_template(&self, text: &str) -> bool {
-        self.templates.keys().any(|(_, name)| *name == text)
+        let sorts = [Sort::Agent, Sort::Automaton, Sort::Require, Sort::Cover, Sort::Cross];
+        sorts.into_iter().any(|sort| self.templates.contains_key(&(sort as u8, text)))
     }
 
     /// What a name stands for in the instance that is being checked.
@@ -312,15 +312,23 @@ impl<'a> Checker<'a> {
         let result = check(self);
         self.given = outer;
         let new = self.issues.split_off(before);
+        let found = !new.is_empty();
+        if found {
+            // Each issue is entered once, however many instances there are.
+            let unseen = self.issues.get(self.said_of..).unwrap_or_default();
+            self.said.extend(unseen.iter().map(|i| (i.code, i.span())));
+        }
         for issue in new {
-            let said = |known: &Diagnostic| known.code == issue.code && known.span() == issue.span();
-            if self.issues.iter().any(said) {
+            if !self.said.insert((issue.code, issue.span())) {
                 continue;
             }
             self.issues.push(match instance {
                 Some((name, span)) => issue.label(span, format!("in the instance `{}`", name.text)),
                 None => issue,
             });
+        }
+        if found {
+            self.said_of = self.issues.len();
         }
         result
     }

@@ -16,6 +16,9 @@ use crate::{
 /// The most single values that something of a record or array type has.
 pub(super) const MAX_PARTS: usize = 256;
 
+/// How deep records can be in records.
+const MAX_RECORDS: usize = 64;
+
 /// Parameters or fields as they were declared: names and layouts.
 pub(super) type Fields = Rc<[(String, Layout)]>;
 
@@ -31,8 +34,10 @@ pub(super) enum RecordState {
 pub(super) struct RecordEntry<'a> {
     pub name: &'a Name,
     pub syntax: &'a [SyntaxParam],
-    pub fields: Vec<(String, Layout)>,
+    pub fields: Fields,
     pub state: RecordState,
+    /// How many single values it has.
+    pub size: usize,
 }
 
 impl<'a> Checker<'a> {
@@ -64,7 +69,7 @@ impl<'a> Checker<'a> {
         }
         if Self::declare(&mut self.issues, &mut self.record_names, Noun::Record, name).is_some() {
             let state = RecordState::Unseen;
-            self.records.push(RecordEntry { name, syntax, fields: Vec::new(), state });
+            self.records.push(RecordEntry { name, syntax, fields: Fields::default(), state, size: 0 });
         }
     }
 
@@ -82,23 +87,32 @@ impl<'a> Checker<'a> {
 
     pub(super) fn all_records(&mut self) {
         for id in 0..self.records.len() {
-            self.resolve_record(id);
+            self.resolve_record(id, 0);
         }
     }
 
-    fn resolve_record(&mut self, id: usize) {
+    /// `outer`: how many records are being resolved that have this one in them.
+    fn resolve_record(&mut self, id: usize, outer: usize) {
         if self.records[id].state != RecordState::Unseen {
             return;
         }
-        self.records[id].state = RecordState::Open;
         let (name, syntax) = (self.records[id].name, self.records[id].syntax);
+        if outer >= MAX_RECORDS {
+            let message = format!("records are in records more than {MAX_RECORDS} levels deep");
+            self.records[id].state = RecordState::Done;
+            return self.report(super::too_many(message, name.span));
+        }
+        self.open_records = outer + 1;
+        self.records[id].state = RecordState::Open;
         if syntax.is_empty() {
             let help = format!("write `record {} {{ x: length, y: length }}`", name.text);
             self.report(names::missing(name.span, "a record has fields", help));
         }
         let fields = self.fields(syntax);
-        self.records[id].fields = fields.to_vec();
+        self.records[id].size = fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)));
+        self.records[id].fields = fields;
         self.records[id].state = RecordState::Done;
+        self.open_records = outer;
     }
 
     /// Parameters or fields; names are distinct.
@@ -166,10 +180,7 @@ impl<'a> Checker<'a> {
     fn size(&self, layout: &Layout) -> usize {
         match layout {
             Layout::Scalar(_) => 1,
-            Layout::Record(id) => {
-                let fields = &self.records[usize::from(*id)].fields;
-                fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)))
-            }
+            Layout::Record(id) => self.records[usize::from(*id)].size,
             Layout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
         }
     }
@@ -182,12 +193,13 @@ impl<'a> Checker<'a> {
             return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }
         if let Some(id) = self.record_names.get(&name.text) {
-            self.resolve_record(usize::from(id));
+            self.resolve_record(usize::from(id), self.open_records);
             if self.records[usize::from(id)].state == RecordState::Open {
                 self.report(types::record_cycle(&name.text, name.span));
                 return None;
             }
-            return Some(Layout::Record(id));
+            // One without fields has a diagnostic.
+            return (self.records[usize::from(id)].size > 0).then_some(Layout::Record(id));
         }
         let all = self.type_names();
         let issue_before = self.issues.len();

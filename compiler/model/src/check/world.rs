@@ -77,6 +77,8 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let kept_names = std::mem::take(&mut self.in_world);
+            // What is checked for itself counts, too.
+            self.in_world.members = kept_names.members;
             let kept_world = self.s.world.take();
             let kept_flag = std::mem::replace(&mut self.has_world, true);
             let params = part.params.as_deref();
@@ -88,7 +90,9 @@ impl<'a> Checker<'a> {
             if let Some(outer) = outer {
                 self.given = outer;
             }
+            let members = self.in_world.members;
             self.in_world = kept_names;
+            self.in_world.members = members;
             self.s.world = kept_world;
             self.has_world = kept_flag;
         }

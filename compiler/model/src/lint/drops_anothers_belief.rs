@@ -27,7 +27,9 @@ impl Handled<'_> {
         let arg = |arg: &Arg| match Term::of_arg(arg) {
             Term::Any => Some("_".to_owned()),
             Term::Var(var) => plan.vars.get(usize::from(var)).cloned(),
-            Term::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => Some(value.to_string()),
+            Term::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => {
+                Some(value.to_string())
+            }
             Term::Const(Value::Float(_)) | Term::Other(_) => None,
         };
         let args: Vec<String> = self.args.iter().map(arg).collect::<Option<_>>()?;

@@ -13,6 +13,9 @@ use crate::{Arg, GoalId, Plan, Scenario, Step, StepKind, TriggerOn, Value};
 /// Longer ways back are not looked for.
 const DEEP: usize = 8;
 
+/// Nor is after so many adoptions that one plan leads to.
+const MANY: usize = 20_000;
+
 pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario) {
         for start in &facts.agent.plans {
@@ -20,7 +23,7 @@ pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>
                 && !never_runs(&facts, start)
             {
                 let args: Vec<Passed> = start.args.iter().enumerate().map(Passed::at_start).collect();
-                let mut search = Search { facts, start, goal, args: &args, way: vec![], issues };
+                let mut search = Search { facts, start, goal, args: &args, way: vec![], left: MANY, issues };
                 search.from(start, &args);
             }
         }
@@ -61,6 +64,8 @@ struct Search<'a, 'i> {
     args: &'i [Passed],
     /// The plans and adoptions on the way.
     way: Vec<(&'a Plan, Span)>,
+    /// How many adoptions are still followed.
+    left: usize,
     issues: &'i mut Vec<Diagnostic>,
 }
 
@@ -88,9 +93,10 @@ impl<'a> Search<'a, '_> {
             }
             return;
         }
-        if self.way.len() > DEEP {
+        if self.way.len() > DEEP || self.left == 0 {
             return;
         }
+        self.left -= 1;
         let facts = self.facts;
         for plan in facts.plans(TriggerOn::Achieve(goal)) {
             let later = plan.span.start > self.start.span.start;
