@@ -314,6 +314,7 @@ impl Splitter<'_> {
         let height = inner.highest.max(inner.operators + inner.child) + 1;
         if let Some(outer) = self.brackets.last_mut() {
             outer.child = outer.child.max(height);
+            outer.element = token.kind == Kind::RBracket;
         }
         self.limit(token);
     }
@@ -349,7 +350,6 @@ impl Splitter<'_> {
         let after_operand = self.before(i).is_some_and(Kind::ends_operand);
         let Some(top) = self.brackets.last_mut() else { return };
         top.element = match token.kind {
-            Kind::RBracket => true,
             Kind::Dot => top.element,
             kind => top.element && kind.is_name(),
         };

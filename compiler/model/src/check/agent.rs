@@ -1,5 +1,6 @@
 //! Agents: beliefs, goals, and what holds at the start.
 
+use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, ItemKind, Sort, StepKind, TriggerKind};
 
 use indexmap::IndexSet;
@@ -203,13 +204,16 @@ impl Checker<'_> {
     pub(super) fn goal(&mut self, scope: &Scope, call: &Call) -> Option<GoalId> {
         let name = &call.name;
         let Some((index, _, arity)) = scope.goals.get_full(&name.text) else {
-            let goals: Vec<&str> = scope.goals.keys().map(String::as_str).collect();
+            let helpless = self.compared > super::MAX_COMPARED;
+            let goals: Vec<&str> = scope.goals.keys().map(String::as_str).filter(|_| !helpless).collect();
+            self.compared += goals.len();
             let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
             let issue = match is {
                 Some(is) => names::wrong_kind(Noun::Goal, is, &name.text, name.span, goals),
                 None if self.unread_members => return None,
                 None => no_plan(&name.text, name.span, goals),
             };
+            let issue = Diagnostic { help: issue.help.filter(|_| !helpless), ..issue };
             self.report(issue);
             return None;
         };

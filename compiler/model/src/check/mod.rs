@@ -165,8 +165,8 @@ pub(crate) struct Checker<'a> {
     unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
     unread_members: bool,
-    /// How many names nothing was called.
-    misspelt: usize,
+    /// How many names were looked at for those that were misspelt.
+    compared: usize,
     /// How many nodes of expressions may still be copied.
     copies: usize,
     /// The codes and places of the first issues; see [`Checker::as_instance`].
@@ -174,8 +174,8 @@ pub(crate) struct Checker<'a> {
     said_of: usize,
 }
 
-/// After so many unknown names no nearest ones are looked for.
-const MANY_MISSPELT: usize = 200;
+/// After so many comparisons no nearest names are looked for.
+const MAX_COMPARED: usize = 500_000;
 
 impl<'a> Checker<'a> {
     fn new(items: Vec<&'a ast::Item>, from_modules: usize) -> Self {
@@ -215,7 +215,7 @@ impl<'a> Checker<'a> {
             has_world,
             unread_items: false,
             unread_members: false,
-            misspelt: 0,
+            compared: 0,
             copies: item::MAX_COPIES,
             said: BTreeSet::new(),
             said_of: 0,
@@ -299,8 +299,8 @@ impl<'a> Checker<'a> {
         if is.is_none() && unread::may_declare(noun, self.unread_items, self.unread_members) {
             return;
         }
-        self.misspelt += 1;
-        let helpless = self.misspelt > MANY_MISSPELT;
+        let helpless = self.compared > MAX_COMPARED;
+        self.compared += names.len();
         let names = names.iter().map(String::as_str).filter(|_| !helpless);
         let mut issue = match is {
             Some(is) if is != noun => wrong_kind(noun, is, &name.text, name.span, names),
@@ -374,7 +374,7 @@ impl<'a> Checker<'a> {
     /// The names that a misspelt one may have been meant to be; none after many misspelt names, since looking for the
     /// nearest takes time that grows with both.
     fn near<'n>(&self, names: impl Iterator<Item = &'n str>) -> Vec<String> {
-        if self.misspelt > MANY_MISSPELT { Vec::new() } else { names.map(str::to_owned).collect() }
+        if self.compared > MAX_COMPARED { Vec::new() } else { names.map(str::to_owned).collect() }
     }
 
     /// A word that is one of a fixed list.
