@@ -8,7 +8,7 @@ a real robot the same calls would go to microphones, speakers and cameras.
 import hrdsl
 
 THINKING = 1.5  # seconds
-CLOSING_TIME = 60.0  # seconds without a question
+CLOSING_TIME = 60.0  # seconds without a question; a test lasts until the robot goes home
 
 
 class Greeter:
@@ -28,7 +28,7 @@ class Greeter:
         print("answered %d questions" % self.answered)
 
     def reply(self, question):
-        self.node.drop("left")
+        self.node.drop("left")  # steps heard before the question
         steps = self.node.wait_for("left", timeout=THINKING)
         if steps is not None or not self.node.read("near"):
             self.node.emit("gave_up")

@@ -17,7 +17,7 @@ pub mod pages;
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, Files};
-pub use hrdsl_syntax::{MAX_BYTES, ast, parse, token};
+pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
 
 pub use modules::{Loader, NoFiles, Source};
 
@@ -54,6 +54,13 @@ impl Compilation {
     #[must_use]
     pub fn is_module(&self) -> bool {
         modules::is_module(&self.ast[0])
+    }
+
+    /// How many declarations the first file has.
+    #[must_use]
+    pub fn declarations(&self) -> usize {
+        let declares = |i: &&ast::Item| !matches!(i.kind, ast::ItemKind::Use(_) | ast::ItemKind::Allow(_));
+        self.ast[0].items.iter().filter(declares).count()
     }
 }
 

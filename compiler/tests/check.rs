@@ -1,4 +1,4 @@
-//! The fixtures in `check/`: scenarios with the diagnostics they must give, each named at its place.
+//! The fixtures in `check/` and `lint/`: scenarios with the diagnostics they must give, each named at its place.
 //!
 //! `//~ HR0101 "leg_requst" help "leg_request"` on a line means: an error with this code, at exactly this text of the line,
 //! whose help contains that text (quotes in the text are written as backquotes); `help` may be absent. Several expectations follow each other, each after its own `//~`.
@@ -9,6 +9,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_source::Fix;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Expected {
@@ -62,43 +63,22 @@ fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
     faults
 }
 
-/// The fixtures in a folder and those below it, by path.
-fn fixtures(folder: &Path, all: &mut BTreeMap<String, String>) {
+/// The fixtures of a folder and its subfolders, by path.
+fn fixtures(folder: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            fixtures(&path, all);
+            found.extend(fixtures(&path));
         } else {
-            all.insert(path.to_string_lossy().into_owned(), fs::read_to_string(&path).unwrap());
+            found.insert(path.to_string_lossy().into_owned(), fs::read_to_string(path).unwrap());
         }
     }
+    found
 }
 
-/// In `lint/` are scenarios in which each lint's diagnostic must be expected just as an error is.
-#[test]
-fn every_lint_says_what_it_should_and_nothing_else() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
-    let mut all = BTreeMap::new();
-    fixtures(&folder, &mut all);
-    let mut wrong = Vec::new();
-    for (path, text) in &all {
-        let name = path.trim_start_matches(&*folder.to_string_lossy());
-        let c = compile(Input { name, text }, &[]);
-        wrong.extend(faults(&c, expectations(0, text)));
-    }
-    assert!(all.len() >= 8, "the fixtures are not found");
-    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
-}
-
-#[test]
-fn every_fixture_gives_what_it_says() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check");
-    let mut fixtures: BTreeMap<String, String> = BTreeMap::new();
-    for entry in fs::read_dir(&folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        fixtures.insert(name, fs::read_to_string(path).unwrap());
-    }
+fn every_fixture_of(folder: &str, at_least: usize) {
+    let fixtures = fixtures(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder));
     let mut all = Vec::new();
     for (name, text) in fixtures.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
         let tests_name = name.replace(".hri", ".tests.hri");
@@ -116,6 +96,49 @@ fn every_fixture_gives_what_it_says() {
         );
         assert!(c.diagnostics.is_sorted_by_key(|d| d.span()), "{name}: not in the order of the text");
     }
-    assert!(fixtures.len() >= 10, "the fixtures are not found");
+    assert!(fixtures.len() >= at_least, "the fixtures are not found");
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn every_fixture_gives_what_it_says() {
+    every_fixture_of("check", 10);
+}
+
+/// What is well formed and cannot be meant, and its look-alikes that can.
+#[test]
+fn every_lint_says_what_it_should() {
+    every_fixture_of("lint", 12);
+}
+
+/// The text with a change made.
+fn changed(text: &str, fix: &Fix) -> String {
+    let mut text = text.to_owned();
+    for edit in fix.edits.iter().rev() {
+        text.replace_range(edit.span.range(), &edit.text);
+    }
+    text
+}
+
+/// A change that may be made unasked leaves no trace of what it mends, and breaks nothing.
+#[test]
+fn certain_fixes_mend() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
+    let mut tried = 0;
+    for (name, text) in fixtures(&folder).iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
+        let compiled = |text: &str| compile(Input { name, text }, &[]);
+        let before = compiled(text);
+        let errors = |c: &Compilation| c.diagnostics.iter().filter(|d| d.is_error()).count();
+        for d in &before.diagnostics {
+            for fix in d.fixes.iter().filter(|f| f.certain) {
+                let after = compiled(&changed(text, fix));
+                let said = |c: &Compilation| c.diagnostics.iter().filter(|e| e.message == d.message).count();
+                let place = before.files.place(d.span());
+                assert!(errors(&after) <= errors(&before), "{place}: `{}` breaks the text", fix.title);
+                assert!(said(&after) < said(&before), "{place}: `{}` does not mend it", fix.title);
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried >= 8, "only {tried} fixes were found");
 }

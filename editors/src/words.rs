@@ -1,32 +1,7 @@
 //! The words of the language, as templates name them.
 
+use hrdsl_model::{Type, UNITS};
 use hrdsl_syntax::token::{Class, KEYWORDS, Keyword};
-
-/// The units of the language; a unit of a template may also be a quotient or a power of these.
-pub const UNITS: &[&str] = &[
-    "s", "ms", "us", "ns", "min", "h", "m", "cm", "mm", "um", "km", "rad", "deg", "kg", "g", "N", "mN", "kN",
-    "m/s", "cm/s", "mm/s", "km/h", "rad/s", "deg/s", "rpm", "m/s^2", "cm/s^2", "mm/s^2", "rad/s^2",
-    "deg/s^2", "Pa", "kPa", "N/cm^2", "Nm", "Hz", "kHz", "%",
-];
-
-/// The types that have a name from the start.
-pub const TYPES: &[&str] = &[
-    "bool",
-    "float",
-    "number",
-    "length",
-    "time",
-    "angle",
-    "mass",
-    "force",
-    "speed",
-    "angular_speed",
-    "acceleration",
-    "angular_acceleration",
-    "pressure",
-    "torque",
-    "frequency",
-];
 
 /// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `units` or `types`. `None`: there is no such list.
 #[must_use]
@@ -38,7 +13,7 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         "hard" => Some(words(&|k| k.class == Class::Hard)),
         "soft" => Some(words(&|k| k.class == Class::Soft)),
         "units" => Some(base_units()),
-        "types" => Some(TYPES.to_vec()),
+        "types" => Some(Type::names().collect()),
         other => {
             let place = other.strip_prefix("soft:")?;
             let found: Vec<_> = words(&|k| k.class == Class::Soft && places(k).any(|p| p == place));
@@ -54,7 +29,7 @@ fn places(keyword: &Keyword) -> impl Iterator<Item = &'static str> {
 
 /// What units are made of: the names in them, each once.
 fn base_units() -> Vec<&'static str> {
-    let mut names: Vec<_> = UNITS.iter().flat_map(|u| u.split(['/', '^'])).collect();
+    let mut names: Vec<_> = UNITS.iter().flat_map(|u| u.symbol.split(['/', '^'])).collect();
     names.retain(|n| n.starts_with(|c: char| c.is_ascii_alphabetic()));
     names.sort_unstable();
     names.dedup();

@@ -64,20 +64,3 @@ fn every_keyword_is_in_the_grammar() {
     let missing: Vec<_> = KEYWORDS.iter().map(|k| k.word).filter(|w| !has(w)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
-
-/// Until this crate may depend on the model: its tables are read as text.
-#[test]
-fn the_units_and_types_are_those_of_the_model() {
-    let table = fs::read_to_string(folder().join("../compiler/model/src/types.rs")).unwrap();
-    let column = |mark: &str, at: usize| -> Vec<String> {
-        let rows = table.lines().filter_map(|l| l.trim().strip_prefix(mark));
-        rows.filter_map(|row| row.split('"').nth(at).map(str::to_owned)).collect()
-    };
-    let units = column("unit(", 1);
-    let types = column("(Dim::", 1);
-    assert!(units.len() > 15 && types.len() > 5, "the tables are not where they were");
-    let missing: Vec<_> = units.iter().filter(|u| !words::UNITS.contains(&u.as_str())).collect();
-    assert!(missing.is_empty(), "units that are not in `words::UNITS`: {missing:?}");
-    let missing: Vec<_> = types.iter().filter(|t| !words::TYPES.contains(&t.as_str())).collect();
-    assert!(missing.is_empty(), "types that are not in `words::TYPES`: {missing:?}");
-}

@@ -3,7 +3,10 @@
 /// All modules: path and text, sorted by path.
 pub const MODULES: &[(&str, &str)] = &[
     ("std.person", include_str!("../person.hri")),
+    ("std.requirements", include_str!("../requirements.hri")),
     ("std.robots.bert2", include_str!("../robots/bert2.hri")),
+    ("std.robots.mobile", include_str!("../robots/mobile.hri")),
+    ("std.sensors", include_str!("../sensors.hri")),
 ];
 
 /// The text of a module.

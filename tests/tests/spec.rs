@@ -1,137 +1,45 @@
-//! The specification is executed: every block of code on its pages compiles, or fails as it says, and every link leads
-//! somewhere.
+//! The specification is executed: every block on its pages is what it says, what can be generated is generated, every link
+//! leads somewhere, and the book has every page once.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+#[path = "spec/agents.rs"]
+mod agents;
+#[path = "spec/blocks.rs"]
+mod blocks;
+#[path = "spec/draws.rs"]
+mod draws;
+#[path = "spec/ebnf.rs"]
+mod ebnf;
+#[path = "spec/hri.rs"]
+mod hri;
+#[path = "spec/monitors.rs"]
+mod monitors;
+#[path = "spec/network.rs"]
+mod network;
+#[path = "spec/page.rs"]
+mod page;
+#[path = "spec/tables.rs"]
+mod tables;
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use std::{collections::BTreeMap, fs, path::PathBuf};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
-}
-
-/// The Markdown files directly in a folder, by name.
-fn pages(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
-    let mut pages: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "md")).collect();
-    pages.sort();
-    pages
-}
-
-fn shown(path: &Path) -> String {
-    path.strip_prefix(root()).unwrap_or(path).display().to_string()
-}
-
-/// A fenced block of a page.
-struct Block {
-    /// What follows the opening fence: `hri`, `hri,fails=HR0101`, `text`.
-    info: String,
-    /// Of the opening fence, from 1.
-    line: usize,
-    text: String,
-}
-
-/// The blocks of a page, and the text outside of them with its line numbers.
-fn split(page: &str) -> (Vec<Block>, Vec<(usize, &str)>) {
-    let (mut blocks, mut prose) = (Vec::new(), Vec::new());
-    let mut open: Option<Block> = None;
-    for (number, line) in (1..).zip(page.lines()) {
-        match (line.strip_prefix("```"), &mut open) {
-            (Some(_), Some(_)) => blocks.extend(open.take()),
-            (Some(info), None) => {
-                open = Some(Block { info: info.trim().to_owned(), line: number, text: String::new() });
-            }
-            (None, Some(block)) => {
-                block.text.push_str(line);
-                block.text.push('\n');
-            }
-            (None, None) => prose.push((number, line)),
-        }
-    }
-    assert!(open.is_none(), "a block without an end, from line {}", open.map_or(0, |b| b.line));
-    (blocks, prose)
-}
-
-/// What is wrong with a block, if anything.
-fn fault(name: &str, block: &Block) -> Option<String> {
-    let (language, rule) = block.info.split_once(',').unwrap_or((&block.info, ""));
-    if language != "hri" {
-        return None;
-    }
-    let compilation = compile(Input { name, text: &block.text }, &[]);
-    let errors: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
-    match rule.split_once('=') {
-        Some(("fails", code)) => {
-            let gives = errors.iter().any(|d| d.code.to_string() == code);
-            (!gives).then(|| format!("does not fail with {code}{}", listed(&compilation)))
-        }
-        None if rule.is_empty() => {
-            let compiles = errors.is_empty() && compilation.program.is_some();
-            (!compiles).then(|| format!("does not compile{}", listed(&compilation)))
-        }
-        Some(_) | None => Some(format!("`{rule}` means nothing; a block is `hri` or `hri,fails=HRnnnn`")),
-    }
-}
-
-/// The errors, by place in the block.
-fn listed(compilation: &Compilation) -> String {
-    let mut lines = String::new();
-    for error in compilation.diagnostics.iter().filter(|d| d.is_error()) {
-        let place = compilation.files.place(error.span());
-        lines += &format!("\n    {place} {} {}", error.code, error.message);
-    }
-    if lines.is_empty() { ": it has no error".to_owned() } else { lines }
-}
+use page::{broken, links, pages, read, root, shown, split};
 
 #[test]
-fn every_block_compiles_or_fails_as_it_says() {
+fn every_block_is_what_it_says() {
     let (mut faults, mut executed) = (Vec::new(), 0);
     for path in pages(&root().join("spec")) {
         let page = fs::read_to_string(&path).unwrap();
-        for block in split(&page).0 {
-            let name = format!("{}:{}", shown(&path), block.line);
-            executed += usize::from(block.info.starts_with("hri"));
-            faults.extend(fault(&name, &block).map(|f| format!("{name}: {f}")));
+        let name = shown(&path);
+        let blocks = split(&page).0;
+        let (wrong, compiled) = hri::faults(&name, &blocks);
+        faults.extend(wrong);
+        executed += compiled;
+        for block in &blocks {
+            faults.extend(blocks::fault(block).map(|f| format!("{name}:{}: {f}", block.line)));
         }
     }
-    assert!(executed >= 20, "only {executed} blocks were found: does the test still see the pages?");
-    assert!(faults.is_empty(), "{} of {executed} blocks:\n{}", faults.len(), faults.join("\n"));
-}
-
-/// The targets of inline links, `[text](target)`, code spans left out.
-fn links(line: &str) -> Vec<String> {
-    let without_code: String = line.split('`').step_by(2).collect::<Vec<_>>().join("x");
-    let parts = without_code.split("](").skip(1);
-    parts.filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())).collect()
-}
-
-/// The anchors that a page's headings have, as GitHub makes them.
-fn anchors(page: &str) -> Vec<String> {
-    let anchor = |heading: &str| -> String {
-        let lower = heading.to_lowercase();
-        let kept = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
-        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
-    };
-    let lines = split(page).1.into_iter().map(|(_, line)| line);
-    lines.filter(|l| l.starts_with('#')).map(|l| anchor(l.trim_start_matches('#').trim())).collect()
-}
-
-/// What is wrong with a link from a page, if anything.
-fn broken(from: &Path, target: &str) -> Option<String> {
-    if target.contains("://") || target.starts_with("mailto:") {
-        return None;
-    }
-    let (file, anchor) = target.split_once('#').map_or((target, None), |(f, a)| (f, Some(a)));
-    let to = if file.is_empty() { from.to_owned() } else { from.parent().unwrap().join(file) };
-    if !to.exists() {
-        return Some("leads nowhere".to_owned());
-    }
-    let anchor = anchor.filter(|_| to.extension().is_some_and(|e| e == "md"))?;
-    let known = anchors(&fs::read_to_string(&to).unwrap());
-    let missing = !known.iter().any(|a| a == anchor);
-    missing.then(|| format!("leads to no heading; the page has: {}", known.join(", ")))
+    assert!(executed >= 60, "only {executed} blocks were found: does the test still see the pages?");
+    assert!(faults.is_empty(), "{} faults in {executed} blocks:\n{}", faults.len(), faults.join("\n"));
 }
 
 #[test]
@@ -159,30 +67,38 @@ fn every_link_leads_somewhere() {
 #[test]
 fn the_index_names_every_page() {
     let spec = root().join("spec");
-    let index = fs::read_to_string(spec.join("README.md")).unwrap();
+    let index = read("spec/README.md");
     for page in pages(&spec) {
         let name = page.file_name().unwrap().to_string_lossy().into_owned();
         assert!(
-            name == "README.md" || index.contains(&format!("]({name})")),
+            ["README.md", "SUMMARY.md"].contains(&name.as_str()) || index.contains(&format!("]({name})")),
             "spec/README.md does not name {name}"
         );
     }
 }
 
+/// `SUMMARY.md` is the contents of the book.
 #[test]
-fn the_test_sees_blocks_and_links() {
-    let page =
-        "# A page: *of* `code`\ntext [a](b.md#c) and `[no](link)`\n```hri,fails=HR0101\nx\n```\nend [d](e)\n";
-    let (blocks, prose) = split(page);
-    assert_eq!(
-        (blocks[0].info.as_str(), blocks[0].line, blocks[0].text.as_str()),
-        ("hri,fails=HR0101", 3, "x\n")
-    );
-    let found: Vec<String> = prose.iter().flat_map(|(_, l)| links(l)).collect();
-    assert_eq!(found, ["b.md#c", "e"]);
-    assert_eq!(anchors(page), ["a-page-of-code"]);
-    let wrong = "scenario x\nevent e from nobody\n";
-    let block = |info: &str| Block { info: info.to_owned(), line: 1, text: wrong.to_owned() };
-    assert!(fault("a", &block("hri")).is_some() && fault("b", &block("hri,fails=HR0503")).is_some());
-    assert!(fault("c", &block("hri,fails=HR0101")).is_none() && fault("d", &block("text")).is_none());
+fn the_book_has_every_page_once() {
+    let summary = read("spec/SUMMARY.md");
+    let mut times: BTreeMap<String, usize> = BTreeMap::new();
+    for target in summary.lines().flat_map(links) {
+        *times.entry(target).or_default() += 1;
+    }
+    for (folder, before) in [("spec", ""), ("spec/codes", "codes/")] {
+        for page in pages(&root().join(folder)) {
+            let name = format!("{before}{}", page.file_name().unwrap().to_string_lossy());
+            if name != "SUMMARY.md" {
+                let n = times.remove(&name).unwrap_or(0);
+                assert_eq!(n, 1, "spec/SUMMARY.md names {name} {n} times (HRDSL_RENEW=1 adds it)");
+            }
+        }
+    }
+    assert!(times.is_empty(), "spec/SUMMARY.md names what is no page: {times:?}");
+}
+
+#[test]
+fn the_book_is_made_of_the_specification() {
+    let book = read("book.toml");
+    assert!(book.lines().any(|l| l == "src = \"spec\""), "{book}");
 }

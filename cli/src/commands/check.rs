@@ -188,19 +188,29 @@ fn summary(project: &Project, checked: &[Checked]) -> String {
     let line = |c: &Checked| {
         let program = c.program()?;
         let name = &project.sources[c.unit.head].name;
-        Some(format!(
-            "{name}: scenario `{}` is well formed: {} events and stimuli, {} agents ({} plans), {} automata ({} edges), {} requirements, {} bins, {} suites, {} tests\n",
-            program.name,
-            program.events.len(),
-            program.agents.len(),
-            program.agents.iter().map(|a| a.plans.len()).sum::<usize>(),
-            program.automata.len(),
-            program.automata.iter().map(|a| a.edges.len()).sum::<usize>(),
-            program.monitors.len(),
-            program.coverage.crosses.iter().map(|c| c.bins.len()).sum::<usize>(),
-            program.suites.len(),
-            program.tests.len(),
-        ))
+        if c.compilation.is_module() {
+            let shared = c.compilation.declarations();
+            let plural = if shared == 1 { "" } else { "s" };
+            return Some(format!("{name}: module is well formed: {shared} declaration{plural}\n"));
+        }
+        let counts = [
+            (program.events.len(), "event or stimulus", "events and stimuli"),
+            (program.agents.len(), "agent", "agents"),
+            (program.agents.iter().map(|a| a.plans.len()).sum(), "plan", "plans"),
+            (program.automata.len(), "automaton", "automata"),
+            (program.automata.iter().map(|a| a.edges.len()).sum(), "edge", "edges"),
+            (program.monitors.len(), "requirement", "requirements"),
+            (program.coverage.crosses.iter().map(|c| c.bins.len()).sum(), "bin", "bins"),
+            (program.suites.len(), "suite", "suites"),
+            (program.tests.len(), "test", "tests"),
+        ];
+        let counts: Vec<String> = counts
+            .into_iter()
+            .filter(|(n, _, _)| *n > 0)
+            .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }))
+            .collect();
+        let scenario = &program.name;
+        Some(format!("{name}: scenario `{scenario}` is well formed: {}\n", counts.join(", ")))
     };
     checked.iter().filter_map(line).collect()
 }

@@ -76,6 +76,60 @@ pub struct Scenario {
     pub tests: Vec<Test>,
     pub world: Option<World>,
     pub system: Option<System>,
+    pub declared: Vec<Named>,
+    #[serde(skip)]
+    pub places: Places,
+}
+
+/// A declaration of which nothing is left where it is used: a constant, a type, a template, a part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Named {
+    /// `the constant`
+    pub noun: &'static str,
+    pub name: String,
+    /// The name's.
+    pub place: Span,
+    pub span: Span,
+    /// Something reads it.
+    pub used: bool,
+}
+
+/// Where names stand that a diagnostic points at; each list is by the id of its elements.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Places {
+    pub events: Vec<Span>,
+    pub agents: Vec<AgentPlaces>,
+    pub shared: Vec<VarPlace>,
+    pub automata: Vec<AutomatonPlaces>,
+    pub networks: Vec<Span>,
+    /// By suite: what it awaits.
+    pub awaits: Vec<Vec<Span>>,
+    pub signals: Vec<Span>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AgentPlaces {
+    pub name: Span,
+    pub beliefs: Vec<Span>,
+    /// By plan: the trigger without its operator.
+    pub triggers: Vec<Span>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AutomatonPlaces {
+    pub name: Span,
+    pub clocks: Vec<Span>,
+    pub vars: Vec<VarPlace>,
+    pub locations: Vec<Span>,
+    /// By edge: the event after `on`, or without it the edge.
+    pub waits: Vec<Span>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VarPlace {
+    pub name: Span,
+    /// The whole declaration.
+    pub whole: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

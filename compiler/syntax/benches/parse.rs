@@ -1,4 +1,4 @@
-//! How many lines a second are lexed and parsed: the reference scenario, repeated to 100,000 lines.
+//! How many lines a second are lexed and parsed, and formatted: the reference scenario, repeated to 100,000 lines.
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -31,4 +31,12 @@ fn broken(bencher: Bencher<'_, '_>) {
     bencher
         .counter(ItemsCount::new(text.lines().count()))
         .bench(|| hrdsl_syntax::parse(FileId(0), divan::black_box(&text)));
+}
+
+#[divan::bench(sample_count = 10)]
+fn format(bencher: Bencher<'_, '_>) {
+    let text = text();
+    bencher
+        .counter(ItemsCount::new(text.lines().count()))
+        .bench(|| hrdsl_syntax::format(divan::black_box(&text)));
 }

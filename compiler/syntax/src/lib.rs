@@ -8,12 +8,15 @@
 //! 4. `grammar`: one run to one AST node (LALRPOP).
 //! 5. [`parse()`]: drives the above; a run that does not fit is read again member by member (`recover`), and what does
 //!    not fit then costs that member alone (`report` says why).
+//!
+//! [`format()`] writes a text anew in the one style of the language (`print`).
 
 pub mod ast;
 mod context;
 mod lex;
 mod outline;
 mod parse;
+mod print;
 mod recover;
 mod report;
 pub mod token;
@@ -26,6 +29,7 @@ mod grammar {
 
 pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
+pub use print::format;
 
 /// The spans of the tokens of a text, in order: for fuzzing the lexer by itself.
 #[doc(hidden)]

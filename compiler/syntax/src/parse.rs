@@ -21,21 +21,27 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// order of the text.
 #[must_use]
 pub fn parse(file: FileId, text: &str) -> (File, Vec<Diagnostic>) {
+    let (tree, _, diagnostics) = read(file, text);
+    (tree, diagnostics)
+}
+
+/// The tree, the tokens as they were written, the diagnostics.
+pub(crate) fn read(file: FileId, text: &str) -> (File, Vec<Lexeme>, Vec<Diagnostic>) {
     if text.len() > MAX_BYTES {
         let message = format!("the file is larger than {} MiB", MAX_BYTES >> 20);
         let diagnostic = Diagnostic::error(Code::TOO_DEEP, Span::new(file, 0, 0), message)
             .help("divide it into several files");
-        return (File::default(), vec![diagnostic]);
+        return (File::default(), Vec::new(), vec![diagnostic]);
     }
-    let Lexed { tokens, docs, mut diagnostics } = lex(file, text);
-    let Outline { tokens, chunks } = outline(file, text, &tokens, &mut diagnostics);
+    let Lexed { tokens: written, docs, mut diagnostics } = lex(file, text);
+    let Outline { tokens, chunks } = outline(file, text, &written, &mut diagnostics);
     let mut cx = Context { file, text, docs: &docs, diagnostics };
     let mut result = File { scenario: None, items: Vec::with_capacity(chunks.len()) };
     for chunk in chunks {
         declaration(&mut cx, &tokens, chunk, &mut result);
     }
     cx.diagnostics.sort_by_key(|d| (d.span().start, d.span().end));
-    (result, cx.diagnostics)
+    (result, written, cx.diagnostics)
 }
 
 fn declaration(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {

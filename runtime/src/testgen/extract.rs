@@ -127,9 +127,16 @@ pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos)
     out
 }
 
-/// How long a stimulus holds: the sum of its holds, so far as they do not depend on samples.
+/// How long a stimulus holds at most: the sum of its holds, with its samples at the upper ends of their ranges, so that a
+/// model's time that a sampled hold takes up is not waited a second time.
 fn duration(program: &Program, event: EventId, args: &[Value]) -> Nanos {
-    let eval = |e: &Expr| e.eval(&|i| args.get(i as usize).copied()).ok();
+    let mut vars = args.to_vec();
+    for sample in program.event(event).stimulus.iter().flat_map(|s| &s.samples) {
+        // A range without a value is found where it is drawn from.
+        let Ok(highest) = sample.hi.eval(&|i| vars.get(i as usize).copied()) else { return 0 };
+        vars.push(highest);
+    }
+    let eval = |e: &Expr| e.eval(&|i| vars.get(i as usize).copied()).ok();
     let hold = |step: &StimulusStep| match step {
         StimulusStep::Hold { seconds } => {
             nanos(eval(seconds).and_then(Value::as_f64).unwrap_or(0.0).max(0.0))

@@ -239,7 +239,7 @@ impl Checker<'_> {
             },
         };
         let place = Place { name: target.text.clone(), layout, only_if: None };
-        let places = self.places(place, access, target, env);
+        let places = self.targets(place, access, target, env);
         let several = places.len() > 1 || places.iter().any(|p| !matches!(p.layout, Layout::Scalar(_)));
         for place in places {
             if several {
@@ -282,7 +282,7 @@ impl Checker<'_> {
     }
 
     /// What `a[i].x` may be: each element that the index can name, under the condition that it does.
-    fn places(&mut self, place: Place, access: &[Access], target: &Name, env: &mut Env) -> Vec<Place> {
+    fn targets(&mut self, place: Place, access: &[Access], target: &Name, env: &mut Env) -> Vec<Place> {
         let mut places = vec![place];
         for step in access {
             let mut inner = Vec::new();

@@ -176,6 +176,7 @@ impl<'a> Checker<'a> {
         let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
         if let ([value], Some(of)) = (fields, self.enums.get(&first.text)) {
             let of = self.s.enums[usize::from(of)].of;
+            self.used_types.insert(of.name().to_owned());
             return Item::One(self.symbol_named(of, value, path.span));
         }
         let Some(mut item) = self.named(first, env) else {
@@ -213,11 +214,13 @@ impl<'a> Checker<'a> {
             Some(Given::Unknown) => return Some(Item::error(name.span)),
             Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
-        if self.consts.contains_key(name.text.as_str()) {
+        if let Some(constant) = self.consts.get_mut(name.text.as_str()) {
+            constant.used = true;
             return Some(self.const_value(name));
         }
         match self.values.get(name.text.as_str()).map(Vec::as_slice) {
             Some([of]) => {
+                self.used_types.insert(of.name().to_owned());
                 let symbol = Symbol::intern(&name.text);
                 return Some(Item::One(symbol_value(*of, symbol, name.span)));
             }
@@ -343,6 +346,7 @@ impl<'a> Checker<'a> {
     fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
         let name = &callee.names[0];
         if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {
+            self.used_types.insert(name.text.clone());
             return self.record(id, name, args, span, env);
         }
         let plain = FUNCTIONS.iter().find(|(n, _)| *n == name.text && callee.names.len() == 1);

@@ -97,7 +97,7 @@ impl<'a> Checker<'a> {
         for (item, _) in self.each_item() {
             let Some((sort, template)) = template(item) else { continue };
             let name = template.name;
-            let key = (sort as u8, name.text.as_str());
+            let key = (sort, name.text.as_str());
             if let Some(first) = self.templates.get(&key) {
                 let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
                 self.report(issue);
@@ -109,7 +109,7 @@ impl<'a> Checker<'a> {
 
     pub(super) fn is_template(&self, text: &str) -> bool {
         let sorts = [Sort::Agent, Sort::Automaton, Sort::Require, Sort::Cover, Sort::Cross];
-        sorts.into_iter().any(|sort| self.templates.contains_key(&(sort as u8, text)))
+        sorts.into_iter().any(|sort| self.templates.contains_key(&(sort, text)))
     }
 
     /// What a name stands for in the instance that is being checked.
@@ -128,16 +128,15 @@ impl<'a> Checker<'a> {
         instance: &'a ast::Instance,
         env: &Env,
     ) -> Option<(Template<'a>, Rc<Givens>)> {
-        let Some(template) = self.templates.get(&(instance.sort as u8, instance.of.text.as_str())).copied()
-        else {
-            let sort = instance.sort as u8;
+        let Some(template) = self.templates.get(&(instance.sort, instance.of.text.as_str())).copied() else {
+            let sort = instance.sort;
             let all: Vec<String> =
                 self.templates.keys().filter(|(s, _)| *s == sort).map(|(_, n)| (*n).to_owned()).collect();
             // That the name is one of a plain declaration says that it has no parameters.
             self.unknown(Noun::Template, &instance.of, &all, None);
             return None;
         };
-        self.used_templates.insert((instance.sort as u8, template.name.text.clone()));
+        self.used_templates.insert((instance.sort, template.name.text.clone()));
         let given = self.bind(template.name, template.params, &instance.args, instance.span, env, true)?;
         Some((template, given))
     }
@@ -288,14 +287,40 @@ impl<'a> Checker<'a> {
 
     /// Checks each template of a sort by itself.
     pub(super) fn templates_of(&mut self, sort: Sort, check: impl Fn(&mut Self, Template<'a>)) {
-        let of_sort = |((s, _), t): (&(u8, &'a str), &Template<'a>)| (*s == sort as u8).then_some(*t);
+        let of_sort = |((s, _), t): (&(Sort, &'a str), &Template<'a>)| (*s == sort).then_some(*t);
         let templates: Vec<Template<'a>> = self.templates.iter().filter_map(of_sort).collect();
         for template in templates {
             let given = self.placeholders(template.params);
             let outer = self.given.replace(given);
+            self.alone = true;
             check(self, template);
+            self.alone = false;
             self.given = outer;
         }
+    }
+
+    /// Whether a made-up value stands in an expression, so that what it is in an instance is not known.
+    pub(super) fn is_made_up(&self, e: &ast::Expr) -> bool {
+        let known = |names: &[Name]| matches!(self.given(&names[0].text), Some(Given::Value(_)));
+        let any = |all: &[ast::Expr]| all.iter().any(|e| self.is_made_up(e));
+        self.alone
+            && match &e.kind {
+                Syntax::Path(path) => known(&path.names),
+                Syntax::Call { args, .. } => any(args),
+                Syntax::Index { of, .. } | Syntax::Field { of, .. } => self.is_made_up(of),
+                Syntax::Unary { operand, .. } => self.is_made_up(operand),
+                Syntax::Binary { left, right, .. } => self.is_made_up(left) || self.is_made_up(right),
+                Syntax::If { condition, then, otherwise } => {
+                    [condition, then, otherwise].into_iter().any(|e| self.is_made_up(e))
+                }
+                Syntax::Tuple(parts) => any(parts),
+                Syntax::Bool(_)
+                | Syntax::Int(_)
+                | Syntax::Float(_)
+                | Syntax::Quantity { .. }
+                | Syntax::Any
+                | Syntax::Error => false,
+            }
     }
 
     /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with

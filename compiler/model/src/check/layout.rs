@@ -189,6 +189,9 @@ impl<'a> Checker<'a> {
         if let Some(ty) = Type::named(&name.text) {
             return Some(Layout::Scalar(ty));
         }
+        if self.enums.get(&name.text).is_some() || self.record_names.get(&name.text).is_some() {
+            self.used_types.insert(name.text.clone());
+        }
         if let Some(id) = self.enums.get(&name.text) {
             return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }

@@ -206,9 +206,19 @@ impl Checker<'_> {
     fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[Name], given: &str) -> Option<u16> {
         match names {
             [only] => {
-                let near = self.in_world.below(noun, "");
+                let base = given.rsplit_once('.').map_or(String::new(), |(base, _)| format!("{base}."));
+                let near = self.in_world.below(noun, &base).into_iter().map(|n| format!("{base}{n}"));
+                let near: Vec<String> = near.collect();
                 let is = self.in_world.kind_of(given).or((is != noun).then_some(is));
+                let known = self.issues.len();
                 self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
+                // The wrong name stands in the instance, so nothing here can be replaced.
+                if let Some(issue) = self.issues.get_mut(known) {
+                    issue.fixes.clear();
+                    let near = issue.help.as_deref().and_then(|h| h.strip_prefix("did you mean "));
+                    issue.help =
+                        near.map(|n| format!("give it {}", n.trim_end_matches('?'))).or(issue.help.take());
+                }
             }
             [_, .., last] => {
                 let near = self.in_world.below(noun, &format!("{given}."));

@@ -11,6 +11,7 @@ mod given;
 mod item;
 mod layout;
 mod measure;
+mod places;
 mod plan;
 mod range;
 mod requirement;
@@ -27,7 +28,7 @@ mod world_parts;
 use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
-use hrdsl_syntax::ast::{self, Instance, ItemKind, Name};
+use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
 use crate::{
     ActorId, EventId, Player, PointId, Role, Scenario,
@@ -77,6 +78,7 @@ pub fn resolve(
     checker.unread_members = false;
     checker.systems();
     checker.tests(tests);
+    checker.places();
     (checker.s, distinct(checker.issues))
 }
 
@@ -98,6 +100,8 @@ struct ConstEntry<'a> {
     name: &'a Name,
     value: &'a ast::Expr,
     state: ConstState,
+    /// Something reads it.
+    used: bool,
 }
 
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
@@ -131,10 +135,14 @@ pub(crate) struct Checker<'a> {
     /// How many records are being resolved, each in the one before.
     open_records: usize,
     /// By sort and name.
-    templates: Map<(u8, &'a str), Template<'a>>,
-    used_templates: BTreeSet<(u8, String)>,
+    templates: Map<(Sort, &'a str), Template<'a>>,
+    used_templates: BTreeSet<(Sort, String)>,
+    /// Enumerations and records.
+    used_types: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
     given: Option<Rc<Givens>>,
+    /// A template is being checked by itself: its parameters have made-up values.
+    alone: bool,
     events: Table,
     /// By [`EventId`]: the parameters as declared.
     event_fields: Vec<Fields>,
@@ -193,7 +201,9 @@ impl<'a> Checker<'a> {
             open_records: 0,
             templates: Map::default(),
             used_templates: BTreeSet::new(),
+            used_types: BTreeSet::new(),
             given: None,
+            alone: false,
             events: Table::default(),
             event_fields: Vec::new(),
             players: Table::default(),

@@ -89,8 +89,9 @@ impl Checker<'_> {
 
     /// A boolean that depends on the world.
     fn condition(&mut self, e: &ast::Expr) -> Expr {
+        let made_up = self.is_made_up(e);
         let e = self.expr_of(e, Kind::Bool, &mut Env::measured(""));
-        let mut reads = false;
+        let mut reads = made_up;
         e.each(&mut |part| {
             reads |=
                 matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);

@@ -95,7 +95,7 @@ impl<'a> Checker<'a> {
             let issue = names::duplicate(Noun::Constant, &name.text, name.span, Some(first.name.span));
             return self.report(issue);
         }
-        self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen });
+        self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen, used: false });
     }
 
     fn declare_part(&mut self, part: &'a ast::Part) {

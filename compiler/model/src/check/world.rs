@@ -60,8 +60,14 @@ impl<'a> Checker<'a> {
         for pass in passes {
             for p in &placed {
                 let outer = std::mem::replace(&mut self.given, p.given.clone());
+                let before = self.issues.len();
                 pass(self, p);
                 self.given = outer;
+                if let Some((name, span)) = &p.instance {
+                    let new = self.issues.split_off(before);
+                    self.issues
+                        .extend(new.into_iter().map(|i| i.label(*span, format!("in the part `{name}`"))));
+                }
             }
         }
     }

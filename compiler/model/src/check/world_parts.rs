@@ -85,6 +85,8 @@ pub(crate) struct Placed<'a> {
     pub member: &'a WorldMember,
     /// What the parameters of its part stand for.
     pub given: Option<Rc<Givens>>,
+    /// Of a part with parameters: its name and where it is used.
+    pub instance: Option<(String, Span)>,
 }
 
 impl<'a> Checker<'a> {
@@ -125,8 +127,13 @@ impl<'a> Checker<'a> {
                     if new {
                         let frame = compose(frame, inner);
                         let outer = std::mem::replace(&mut self.given, given);
-                        let inner = self.flatten(&part.members, &format!("{full}."), frame, depth + 1);
+                        let mut inner = self.flatten(&part.members, &format!("{full}."), frame, depth + 1);
                         self.given = outer;
+                        let place = part.params.as_ref().map(|_| (full, name.span));
+                        inner
+                            .iter_mut()
+                            .filter(|p| p.instance.is_none())
+                            .for_each(|p| p.instance = place.clone());
                         all.extend(inner);
                     }
                 }
@@ -142,7 +149,7 @@ impl<'a> Checker<'a> {
                 | Member::Rule(_)
                 | Member::Error => {
                     let given = self.given.clone();
-                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given });
+                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given, instance: None });
                 }
                 Member::Allow(_) => {}
             }

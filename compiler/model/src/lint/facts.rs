@@ -1,12 +1,308 @@
 //! What several rules ask about a scenario: who makes an event, and who takes it.
 
-use crate::Scenario;
+use std::collections::BTreeSet;
+
+use hrdsl_source::Span;
+
+use super::flow::{Flow, flows};
+use crate::{
+    Arg, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind, StimulusStep,
+    Sync, TestStep, TriggerOn, Value, world::RuleOn,
+};
+
+/// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
+const MAKERS: usize = 64;
+
+/// A constant argument in a form that has an order; `None` may be anything.
+type Key = Option<(u8, u64)>;
+
+fn key(value: Value) -> (u8, u64) {
+    match value {
+        Value::Bool(b) => (0, u64::from(b)),
+        Value::Int(n) => (1, n.cast_unsigned()),
+        Value::Float(x) => (2, x.to_bits()),
+        Value::Symbol(symbol) => (3, symbol.number()),
+    }
+}
+
+/// An event with arguments that are constant or may be anything.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    pub event: EventId,
+    args: Vec<Key>,
+}
+
+impl Wanted {
+    fn new(event: EventId, args: impl Iterator<Item = Option<Value>>) -> Self {
+        Self { event, args: args.map(|v| v.map(key)).collect() }
+    }
+
+    fn of(pattern: &EventPattern) -> Self {
+        Self::new(pattern.event, pattern.args.iter().copied())
+    }
+}
+
+/// A place that goes on only when one of its events happens.
+pub(crate) struct Wait {
+    pub span: Span,
+    pub any_of: Vec<Wanted>,
+}
+
+/// What is known about one event.
+#[derive(Clone, Debug, Default)]
+struct EventFacts {
+    /// By arguments.
+    makers: BTreeSet<Vec<Key>>,
+    /// With any arguments.
+    freely: bool,
+    /// Something in the text reads it.
+    read: bool,
+    /// The code of a system actor perceives it.
+    perceived: bool,
+    /// A wait or a trigger of its own is said to be in vain.
+    told: bool,
+}
 
 /// Answers that are worked out once for all rules.
-pub(crate) struct Facts {}
+pub(crate) struct Facts {
+    events: Vec<EventFacts>,
+    pub waits: Vec<Wait>,
+    /// The triggers of requirements, by requirement; empty for those without.
+    pub triggers: Vec<Vec<Wanted>>,
+    /// There are suites or tests: what they do not use is not used.
+    pub has_tests: bool,
+    /// By automaton: the values of its variables.
+    pub flows: Vec<Flow>,
+}
 
 impl Facts {
-    pub fn of(_scenario: &Scenario) -> Self {
-        Self {}
+    pub fn of(scenario: &Scenario) -> Self {
+        let has_tests = !scenario.suites.is_empty() || !scenario.tests.is_empty();
+        let events = vec![EventFacts::default(); scenario.events.len()];
+        let mut facts =
+            Self { events, waits: Vec::new(), triggers: Vec::new(), has_tests, flows: flows(scenario) };
+        facts.declared(scenario);
+        facts.agents(scenario);
+        facts.automata(scenario);
+        facts.judgement(scenario);
+        facts.world(scenario);
+        facts.suites(scenario);
+        facts.tell();
+        facts
     }
+
+    /// Whether something makes the event, with whatever arguments.
+    pub fn made(&self, event: EventId) -> bool {
+        self.events.get(at(event)).is_none_or(|e| e.freely || !e.makers.is_empty())
+    }
+
+    /// Whether something in the text reads the event.
+    pub fn read(&self, event: EventId) -> bool {
+        self.events.get(at(event)).is_none_or(|e| e.read)
+    }
+
+    /// Whether the code of a system actor perceives the event.
+    pub fn perceived(&self, event: EventId) -> bool {
+        self.events.get(at(event)).is_some_and(|e| e.perceived)
+    }
+
+    /// Whether a rule about waits or triggers has said already that nobody makes it.
+    pub fn told(&self, event: EventId) -> bool {
+        self.events.get(at(event)).is_some_and(|e| e.told)
+    }
+
+    /// Whether nothing can ever make any of these.
+    pub fn in_vain(&self, any_of: &[Wanted]) -> bool {
+        !any_of.is_empty() && !any_of.iter().any(|w| self.can_happen(w))
+    }
+
+    fn can_happen(&self, wanted: &Wanted) -> bool {
+        let Some(e) = self.events.get(at(wanted.event)) else { return true };
+        let fits = |makes: &Vec<Key>| {
+            makes.iter().zip(&wanted.args).all(|(a, b)| a.is_none() || b.is_none() || a == b)
+        };
+        e.freely || e.makers.iter().any(fits)
+    }
+
+    // ── gathering ──
+
+    fn makes(&mut self, event: EventId, args: impl Iterator<Item = Option<Value>>) {
+        let Some(e) = self.events.get_mut(at(event)).filter(|e| !e.freely) else { return };
+        let args: Vec<Key> = args.map(|v| v.map(key)).collect();
+        if args.iter().all(Option::is_none) || e.makers.len() == MAKERS {
+            e.freely = true;
+        } else {
+            e.makers.insert(args);
+        }
+    }
+
+    fn makes_exprs(&mut self, event: EventId, args: &[Expr]) {
+        self.makes(event, args.iter().map(Expr::constant));
+    }
+
+    fn reads(&mut self, event: EventId) {
+        if let Some(e) = self.events.get_mut(at(event)) {
+            e.read = true;
+        }
+    }
+
+    fn waits_for(&mut self, span: Span, any_of: Vec<Wanted>) {
+        any_of.iter().for_each(|w| self.reads(w.event));
+        self.waits.push(Wait { span, any_of });
+    }
+
+    fn declared(&mut self, scenario: &Scenario) {
+        let mut modelled = vec![false; scenario.actors.len()];
+        let players = scenario.agents.iter().map(|a| a.actor);
+        for actor in players.chain(scenario.automata.iter().map(|a| a.actor)) {
+            if let Some(m) = modelled.get_mut(usize::from(actor.0)) {
+                *m = true;
+            }
+        }
+        let is_system = |i: usize| scenario.actors.get(i).is_some_and(|a| a.role == Role::System);
+        let systems: Vec<usize> = (0..scenario.actors.len()).filter(|i| is_system(*i)).collect();
+        for (i, event) in scenario.events.iter().enumerate() {
+            let from = usize::from(event.from.0);
+            if let Some(stimulus) = &event.stimulus {
+                self.steps(&stimulus.steps);
+                // Without suites and tests it waits to be used.
+                self.events[i].freely = !self.has_tests;
+                continue;
+            }
+            self.events[i].freely = is_system(from) && !modelled[from];
+            self.events[i].perceived = systems.iter().any(|s| {
+                *s != from && (event.to.is_empty() || event.to.iter().any(|a| usize::from(a.0) == *s))
+            });
+        }
+    }
+
+    fn steps(&mut self, steps: &[StimulusStep]) {
+        for step in steps {
+            match step {
+                StimulusStep::Emit { event, args } => self.makes_exprs(*event, args),
+                StimulusStep::If { then, otherwise, .. } => {
+                    self.steps(then);
+                    self.steps(otherwise);
+                }
+                StimulusStep::Hold(_) | StimulusStep::Act(_) => {}
+            }
+        }
+    }
+
+    fn agents(&mut self, scenario: &Scenario) {
+        for (index, agent) in scenario.agents.iter().enumerate() {
+            let places = scenario.places.agents.get(index);
+            for (i, plan) in agent.plans.iter().enumerate() {
+                if let TriggerOn::Perceived(event) = plan.trigger {
+                    let span = places.and_then(|p| p.triggers.get(i)).copied().unwrap_or(plan.span);
+                    let args = plan.args.iter().map(|a| match a {
+                        Arg::Expr(e) => e.constant(),
+                        Arg::Any | Arg::Var(_) => None,
+                    });
+                    self.waits_for(span, vec![Wanted::new(event, args)]);
+                }
+                for step in &plan.body {
+                    match &step.kind {
+                        StepKind::Do(event, args) => self.makes_exprs(*event, args),
+                        StepKind::Await { events, .. } => {
+                            self.waits_for(step.span, events.iter().map(Wanted::of).collect());
+                        }
+                        StepKind::Achieve(..)
+                        | StepKind::Spawn(..)
+                        | StepKind::Query(..)
+                        | StepKind::Add(..)
+                        | StepKind::Remove(..)
+                        | StepKind::Replace(..)
+                        | StepKind::Wait(_) => {}
+                    }
+                }
+            }
+        }
+    }
+
+    fn automata(&mut self, scenario: &Scenario) {
+        for (index, automaton) in scenario.automata.iter().enumerate() {
+            let places = scenario.places.automata.get(index);
+            for (i, edge) in automaton.edges.iter().enumerate() {
+                match &edge.sync {
+                    Sync::Internal => {}
+                    Sync::Send { event, args } => self.makes_exprs(*event, args),
+                    Sync::Receive { event, args } => {
+                        let span = places.and_then(|p| p.waits.get(i)).copied().unwrap_or(edge.span);
+                        let args = args.iter().map(|a| match a {
+                            ReceiveArg::Is(value) => Some(*value),
+                            ReceiveArg::Any | ReceiveArg::Bind => None,
+                        });
+                        self.waits_for(span, vec![Wanted::new(*event, args)]);
+                    }
+                }
+            }
+        }
+    }
+
+    fn judgement(&mut self, scenario: &Scenario) {
+        for requirement in &scenario.requirements {
+            let (trigger, others): (&[EventPattern], Vec<&EventPattern>) = match &requirement.pattern {
+                Pattern::Causes { trigger, response, .. } => (trigger, response.iter().collect()),
+                Pattern::Forbids { trigger, forbidden, until } => {
+                    (trigger, forbidden.iter().chain(until).collect())
+                }
+                Pattern::NeverWhile { events, .. } => (events, Vec::new()),
+                Pattern::Globally(_) => (&[], Vec::new()),
+            };
+            trigger.iter().chain(others).for_each(|p| self.reads(p.event));
+            self.triggers.push(trigger.iter().map(Wanted::of).collect());
+        }
+        let counted = scenario.points.iter().flat_map(|p| &p.count);
+        for pattern in scenario.assumptions.iter().flat_map(|a| &a.events).chain(counted) {
+            self.reads(pattern.event);
+        }
+    }
+
+    fn world(&mut self, scenario: &Scenario) {
+        for rule in scenario.world.iter().flat_map(|w| &w.rules) {
+            self.makes_exprs(rule.event, &rule.args);
+            match &rule.on {
+                RuleOn::Event(pattern) => self.waits_for(rule.span, vec![Wanted::of(pattern)]),
+                RuleOn::Closes(_) | RuleOn::Opens(_) => {}
+            }
+        }
+    }
+
+    fn suites(&mut self, scenario: &Scenario) {
+        for (index, suite) in scenario.suites.iter().enumerate() {
+            let Method::Random { stimuli, awaits, .. } = &suite.method else { continue };
+            for stimulus in stimuli {
+                self.makes(*stimulus, std::iter::empty());
+            }
+            let places = scenario.places.awaits.get(index);
+            for (i, pattern) in awaits.iter().enumerate() {
+                let span = places.and_then(|p| p.get(i)).copied().unwrap_or(suite.span);
+                self.waits_for(span, vec![Wanted::of(pattern)]);
+            }
+        }
+        for step in scenario.tests.iter().flat_map(|t| &t.steps) {
+            match step {
+                TestStep::Do { event, args, .. } => self.makes(*event, args.iter().copied().map(Some)),
+                TestStep::Await { events, .. } => events.iter().for_each(|p| self.reads(p.event)),
+                TestStep::Wait(_) => {}
+            }
+        }
+    }
+
+    /// Marks the events whose absence is said at a wait or a requirement; that of a stimulus is said at itself.
+    fn tell(&mut self) {
+        let all = self.waits.iter().map(|w| &w.any_of).chain(&self.triggers);
+        let told: Vec<EventId> =
+            all.filter(|any_of| self.in_vain(any_of)).flatten().map(|w| w.event).collect();
+        for event in told {
+            if let Some(e) = self.events.get_mut(at(event)) {
+                e.told = true;
+            }
+        }
+    }
+}
+
+fn at(event: EventId) -> usize {
+    usize::from(event.0)
 }

@@ -5,14 +5,26 @@
 mod agent_facts;
 mod applicable;
 mod belief_never_added;
+mod committed_cycle;
 mod contradiction;
+mod cross_bins;
 mod dead_plan;
 mod drops_anothers_belief;
+mod events;
 mod facts;
+mod flow;
+mod interval;
+mod never_triggered;
 mod no_failure_plan;
-mod no_time_passes;
+mod overflow;
 mod plan_terms;
+mod recursion_without_time;
 mod shadowed_plan;
+mod time_stops;
+mod unreachable_location;
+mod unused;
+
+use std::collections::BTreeSet;
 
 use hrdsl_source::Diagnostic;
 
@@ -24,12 +36,23 @@ type Rule = fn(&Scenario, &Facts, &mut Vec<Diagnostic>);
 
 /// All rules, by code.
 const RULES: &[Rule] = &[
+    unused::check,
+    overflow::check,
+    events::not_made,
+    events::not_taken,
     belief_never_added::check,
+    events::awaits_nothing,
     drops_anothers_belief::check,
     shadowed_plan::check,
     dead_plan::check,
     no_failure_plan::check,
-    no_time_passes::check,
+    recursion_without_time::check,
+    unreachable_location::check,
+    time_stops::check,
+    committed_cycle::check,
+    never_triggered::check,
+    cross_bins::empty,
+    cross_bins::equal,
 ];
 
 /// Looks for what cannot be meant in a scenario that has no errors.
@@ -40,5 +63,8 @@ pub fn lint(scenario: &Scenario) -> Vec<Diagnostic> {
     for rule in RULES {
         rule(scenario, &facts, &mut issues);
     }
+    // What is wrong in a template is found in each of its instances.
+    let mut seen = BTreeSet::new();
+    issues.retain(|i| seen.insert((i.span(), i.code, i.message.clone())));
     issues
 }

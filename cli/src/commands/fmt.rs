@@ -1,0 +1,226 @@
+//! `hrdsl fmt`: files in the one style of the language.
+
+use std::{
+    fs,
+    io::{Read, Write},
+    path::{Path, PathBuf},
+};
+
+use hrdsl_compiler::format;
+use hrdsl_source::{Diagnostic, Files};
+use similar::TextDiff;
+
+use crate::{
+    exit::Exit,
+    input::{self, Fault},
+    render,
+};
+
+/// Folders that hold no scenarios of their own.
+const SKIPPED: &[&str] = &["target", "node_modules", "hrdsl-out"];
+
+/// The text on stdin, among the paths.
+const STDIN: &str = "-";
+
+/// Write scenarios in the one style of the language.
+///
+/// Comments stay where they are. A file with faults in its syntax is not changed.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  hrdsl fmt\n  hrdsl fmt scenario.hri tests/\n  hrdsl fmt --check .\n  hrdsl fmt --diff scenario.hri\n  hrdsl fmt - < scenario.hri"
+)]
+pub struct Args {
+    /// Files, folders (all `.hri` files in them), or `-` for stdin to stdout.
+    #[arg(value_name = "PATH", default_value = ".")]
+    paths: Vec<PathBuf>,
+    /// Change nothing; list the files that would change, and exit with 1 if there are any.
+    #[arg(long)]
+    check: bool,
+    /// Change nothing; show what would change.
+    #[arg(long)]
+    diff: bool,
+}
+
+/// How many files came out how.
+#[derive(Default)]
+struct Tally {
+    changed: usize,
+    unchanged: usize,
+    /// With faults in their syntax.
+    faulty: usize,
+    /// Not to be read or written.
+    failed: usize,
+}
+
+/// # Errors
+/// A path that is not there, a folder that cannot be read.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let mut tally = Tally::default();
+    let mut paths = Vec::new();
+    for path in &args.paths {
+        if path.as_os_str() == STDIN {
+            stdin(args, &mut tally)?;
+        } else {
+            expand(path, &mut paths)?;
+        }
+    }
+    paths.sort();
+    paths.dedup();
+    for path in &paths {
+        if let Err(fault) = file(args, path, &mut tally) {
+            eprintln!("error: {fault}");
+            tally.failed += 1;
+        }
+    }
+    if !paths.is_empty() {
+        eprintln!("{}", summary(&tally, args.check || args.diff));
+    }
+    Ok(exit(args, &tally))
+}
+
+fn exit(args: &Args, tally: &Tally) -> Exit {
+    if tally.failed > 0 {
+        Exit::Usage
+    } else if tally.faulty > 0 || (args.check && tally.changed > 0) {
+        Exit::Errors
+    } else {
+        Exit::Ok
+    }
+}
+
+/// `3 files reformatted, 4 left unchanged`
+fn summary(tally: &Tally, dry: bool) -> String {
+    let files = |n: usize| format!("{n} file{}", if n == 1 { "" } else { "s" });
+    let done = if dry { "would be reformatted" } else { "reformatted" };
+    let mut text = format!("{} {done}, {} left unchanged", files(tally.changed), tally.unchanged);
+    if tally.faulty > 0 {
+        text += &format!(", {} with errors", tally.faulty);
+    }
+    if tally.failed > 0 {
+        text += &format!(", {} failed", tally.failed);
+    }
+    text
+}
+
+// ── Texts ──
+
+fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text).map_err(|e| format!("cannot read stdin: {e}"))?;
+    let Some(formatted) = formatted("<stdin>", &text, tally) else { return Ok(()) };
+    if args.check || args.diff { show(args, "<stdin>", &text, &formatted) } else { put(&formatted) }
+}
+
+fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
+    let text = input::read(path)?;
+    let name = path.display().to_string();
+    let Some(formatted) = formatted(&name, &text, tally) else { return Ok(()) };
+    if formatted == text {
+        return Ok(());
+    }
+    if args.check || args.diff {
+        return show(args, &name, &text, &formatted);
+    }
+    replace(path, &formatted).inspect_err(|_| tally.changed -= 1)
+}
+
+/// The text in style, counted; of one with faults, its diagnostics are shown.
+fn formatted(name: &str, text: &str, tally: &mut Tally) -> Option<String> {
+    match format(text) {
+        Ok(formatted) => {
+            if formatted == text {
+                tally.unchanged += 1;
+            } else {
+                tally.changed += 1;
+            }
+            Some(formatted)
+        }
+        Err(diagnostics) => {
+            report(name, text, &diagnostics);
+            tally.faulty += 1;
+            None
+        }
+    }
+}
+
+fn report(name: &str, text: &str, diagnostics: &[Diagnostic]) {
+    let mut files = Files::default();
+    files.add(name, text);
+    for diagnostic in diagnostics {
+        eprint!("{}", render::diagnostic(&files, diagnostic));
+    }
+}
+
+/// What would change: the name, or the difference.
+fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Fault> {
+    if text == formatted {
+        return Ok(());
+    }
+    if args.diff {
+        let diff = TextDiff::from_lines(text, formatted);
+        return put(&diff.unified_diff().header(name, name).to_string());
+    }
+    put(&format!("{name}\n"))
+}
+
+/// To stdout. A reader that has seen enough is no fault.
+fn put(text: &str) -> Result<(), Fault> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("cannot write to stdout: {e}")),
+        _ => Ok(()),
+    }
+}
+
+// ── Files ──
+
+/// The `.hri` files of a folder and the folders in it; any other path is a file by itself.
+fn expand(path: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
+    if !path.is_dir() {
+        found.push(path.to_owned());
+        return Ok(());
+    }
+    let fault = |e: std::io::Error| format!("cannot read {}: {e}", path.display());
+    for entry in fs::read_dir(path).map_err(fault)? {
+        let entry = entry.map_err(fault)?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with('.') {
+            continue;
+        }
+        // What a link points to is elsewhere, and is formatted there.
+        let sort = entry.file_type().map_err(fault)?;
+        if sort.is_dir() && !SKIPPED.contains(&name.as_ref()) {
+            expand(&entry.path(), found)?;
+        } else if sort.is_file() && name.ends_with(".hri") {
+            let path = entry.path();
+            found.push(path.strip_prefix(".").map_or(path.clone(), Path::to_owned));
+        }
+    }
+    Ok(())
+}
+
+/// Replaces a file in one step: whoever reads it sees the old text or the new one.
+fn replace(path: &Path, text: &str) -> Result<(), Fault> {
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    // The file itself, not a link to it.
+    let path = fs::canonicalize(path).map_err(fault)?;
+    let permissions = fs::metadata(&path).map_err(fault)?.permissions();
+    if permissions.readonly() {
+        return Err(format!("cannot write {}: it is read-only", path.display()));
+    }
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+    let written = fs::File::create_new(&temporary)
+        .and_then(|mut file| {
+            file.write_all(text.as_bytes())?;
+            file.set_permissions(permissions)?;
+            file.sync_all()
+        })
+        .and_then(|()| fs::rename(&temporary, &path));
+    written.map_err(|e| {
+        // Nothing more can be done about a file that cannot be removed either.
+        let _ = fs::remove_file(&temporary);
+        fault(e)
+    })
+}

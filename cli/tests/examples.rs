@@ -1,0 +1,162 @@
+//! The examples besides the hand-over, with the real binary: they check, generate by all three methods, and run.
+
+mod support;
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use serde_json::Value;
+use support::{expect_code, hrdsl, hrdsl_in, root, stderr, stdout, tree};
+
+/// The generated files of an example, and what was said of them; checked, and made twice.
+fn generated(example: &str, folder: &Path) -> (BTreeMap<String, String>, String) {
+    let scenario = root().join("examples").join(example).join("scenario.hri");
+    let scenario = scenario.to_str().unwrap();
+    expect_code(&hrdsl(["check", scenario, "--deny", "warnings"]), 0);
+    let made = ["a", "b"].map(|d| folder.join(d)).map(|dir| {
+        let out = hrdsl(["gen", scenario, "-o", dir.to_str().unwrap()]);
+        expect_code(&out, 0);
+        (tree(&dir), stdout(&out).replace(dir.to_str().unwrap(), "OUT"))
+    });
+    assert_eq!(made[0], made[1], "two runs give the same");
+    expect_code(&hrdsl(["check", scenario, folder.join("a").to_str().unwrap(), "--deny", "warnings"]), 0);
+    let [(files, said), _] = made;
+    let text = |(name, bytes)| (name, String::from_utf8(bytes).unwrap());
+    (files.into_iter().map(text).collect(), said)
+}
+
+fn tests(text: &str) -> usize {
+    text.lines().filter(|l| l.starts_with("test ")).count()
+}
+
+/// All bins that tests of this text are to fall into.
+fn predicted(text: &str) -> Vec<&str> {
+    let lines = text.lines().filter_map(|l| l.trim().strip_prefix("predicts \""));
+    let mut bins: Vec<&str> = lines.map(|l| l.trim_end_matches('"')).collect();
+    bins.sort_unstable();
+    bins.dedup();
+    bins
+}
+
+fn lines(example: &str) -> usize {
+    let path = root().join("examples").join(example).join("scenario.hri");
+    fs::read_to_string(path).unwrap().lines().count()
+}
+
+#[test]
+fn home_care_generates_by_all_methods() {
+    let folder = tempfile::tempdir().unwrap();
+    let (files, said) = generated("homecare", folder.path());
+    assert_eq!(files.len(), 3);
+    for (name, text) in &files {
+        assert_eq!(tests(text), 50, "{name}");
+    }
+    let bins = [
+        "human_robot.clean, and cleaned",
+        "human_robot.feed, and fed",
+        "human_robot.fridge, and checked",
+        "human_robot.other commands, and idle",
+        "human_robot.sink, and checked",
+        "human_robot.two chores, and both done",
+    ];
+    assert_eq!(predicted(&files["bdi_tests.hri"]), bins);
+    assert_eq!(predicted(&files["ta_tests.hri"]), bins);
+    assert!(said.contains("goals: 68 reached, 0 unreachable, 0 open"), "{said}");
+}
+
+/// What the person's `rest` holds is drawn for each test, and the model's time for it is not waited once more.
+#[test]
+fn a_sampled_hold_is_not_waited_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let (files, _) = generated("homecare", folder.path());
+    let steps: Vec<&str> = files["bdi_tests.hri"].lines().map(str::trim).collect();
+    let after_rest: Vec<&str> =
+        steps.windows(2).filter(|w| w[0].starts_with("rest(")).map(|w| w[1]).collect();
+    assert!(after_rest.iter().any(|s| s.starts_with("order(")), "{after_rest:?}");
+    assert!(after_rest.iter().all(|s| !s.starts_with("wait ")), "{after_rest:?}");
+}
+
+#[test]
+fn home_care_has_nothing_to_run_yet() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = root().join("examples/homecare/scenario.hri");
+    let out = hrdsl(["sim", scenario.to_str().unwrap(), "-o", folder.path().to_str().unwrap()]);
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("no `system` block"), "{}", stderr(&out));
+}
+
+/// The published models alone, without world, requirements and suites, have 348 and 131 lines of agents, and 725 and 722
+/// lines of automata.
+#[test]
+fn scenarios_are_short() {
+    assert!(lines("handover") < 348, "{}", lines("handover"));
+    assert!(lines("homecare") < 250, "{}", lines("homecare"));
+    assert!(lines("corridor") < 150, "{}", lines("corridor"));
+}
+
+#[test]
+fn the_corridor_generates_by_all_methods() {
+    let folder = tempfile::tempdir().unwrap();
+    let (files, said) = generated("corridor", folder.path());
+    assert_eq!(files.len(), 3);
+    for (name, text) in &files {
+        assert_eq!(tests(text), 16, "{name}");
+    }
+    assert_eq!(predicted(&files["by_agents.hri"]).len(), 5);
+    assert_eq!(predicted(&files["by_search.hri"]).len(), 5);
+    assert!(said.contains("30 reached, 0 unreachable, 0 open"), "{said}");
+}
+
+/// A copy of the corridor, with this change to its robot.
+fn corridor(folder: &Path, from: &str, to: &str) {
+    let here = root().join("examples/corridor");
+    fs::copy(here.join("scenario.hri"), folder.join("scenario.hri")).unwrap();
+    let program = fs::read_to_string(here.join("robot.py")).unwrap();
+    assert!(program.contains(from), "{from}");
+    fs::write(folder.join("robot.py"), program.replacen(from, to, 1)).unwrap();
+}
+
+/// Of each requirement, the outcomes of all tests.
+fn outcomes(folder: &Path) -> BTreeMap<String, Vec<String>> {
+    let results = fs::read(folder.join("out/results.json")).unwrap();
+    let results: Value = serde_json::from_slice(&results).unwrap();
+    let mut outcomes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for test in results["tests"].as_array().unwrap() {
+        assert!(test["error"].is_null(), "{test}");
+        for verdict in test["verdicts"].as_array().unwrap() {
+            let name = verdict["requirement"].as_str().unwrap().to_owned();
+            outcomes.entry(name).or_default().push(verdict["outcome"].as_str().unwrap().to_owned());
+        }
+    }
+    outcomes
+}
+
+#[test]
+fn the_corridor_runs_against_its_code() {
+    let folder = tempfile::tempdir().unwrap();
+    corridor(folder.path(), "ASKS = 2", "ASKS = 2");
+    expect_code(&hrdsl_in(folder.path(), "sim scenario.hri -n 5 -o out"), 0);
+    let outcomes = outcomes(folder.path());
+    assert_eq!(outcomes.len(), 4);
+    for (name, outcomes) in &outcomes {
+        assert_eq!(outcomes.len(), 15);
+        assert!(outcomes.iter().any(|o| o == "pass"), "{name} is put to the test: {outcomes:?}");
+        assert!(outcomes.iter().all(|o| o != "fail"), "{name}: {outcomes:?}");
+    }
+}
+
+/// The faults that its README tells how to make are found.
+#[test]
+fn faults_in_the_corridor_are_found() {
+    let wait = "        self.node.wait_for(\"cleared\", timeout=PATIENCE)\n        return self.looking";
+    let faults = [
+        ("R1", wait.to_owned(), wait.replace("self.looking", "self.driving")),
+        ("R2", "ASKS = 2".to_owned(), "ASKS = 8".to_owned()),
+    ];
+    for (requirement, from, to) in faults {
+        let folder = tempfile::tempdir().unwrap();
+        corridor(folder.path(), &from, &to);
+        expect_code(&hrdsl_in(folder.path(), "sim scenario.hri --suite by_agents -o out"), 3);
+        let outcomes = outcomes(folder.path());
+        assert!(outcomes[requirement].iter().any(|o| o == "fail"), "{outcomes:?}");
+    }
+}

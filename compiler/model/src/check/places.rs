@@ -1,0 +1,126 @@
+//! Where the names of a scenario stand, and which declarations it uses: read off the AST once all is resolved. Without
+//! errors the elements of the scenario are those of the AST, in the same order, those of an instance the template's.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{
+    self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
+};
+
+use super::{Checker, Declared, given::template};
+use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, Var, VarPlace};
+
+impl Checker<'_> {
+    pub(super) fn places(&mut self) {
+        for (item, span) in self.each_item() {
+            match item {
+                ItemKind::Event(event) => {
+                    self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
+                }
+                ItemKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
+                ItemKind::Var(var) => {
+                    let whole = |v: &&Var| v.span == var.name.span;
+                    let parts = self.s.shared.iter().filter(whole).count();
+                    let place = VarPlace { name: var.name.span, whole: span };
+                    self.s.places.shared.extend(std::iter::repeat_n(place, parts));
+                }
+                ItemKind::Network { name, .. } => self.s.places.networks.push(name.span),
+                ItemKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
+                ItemKind::Const { name, .. } => {
+                    let used = self.consts.get(name.text.as_str()).is_none_or(|c| c.used);
+                    self.declared("the constant", name, span, used);
+                }
+                ItemKind::Enum { name, .. } => {
+                    let used = self.used_types.contains(name.text.as_str());
+                    self.declared("the enumeration", name, span, used);
+                }
+                ItemKind::Record { name, .. } => {
+                    let used = self.used_types.contains(name.text.as_str());
+                    self.declared("the record", name, span, used);
+                }
+                ItemKind::Part(part) => {
+                    let used = self.in_world.used.contains(&part.name.text);
+                    self.declared("the part", &part.name, span, used);
+                }
+                ItemKind::Agent(_)
+                | ItemKind::Automaton(_)
+                | ItemKind::Require(_)
+                | ItemKind::Cover(_)
+                | ItemKind::Cross(_) => {
+                    if let Some((sort, template)) = template(item) {
+                        let used = self.used_templates.contains(&(sort, template.name.text.clone()));
+                        self.declared("the template", template.name, span, used);
+                    }
+                }
+                ItemKind::Use(_)
+                | ItemKind::Allow(_)
+                | ItemKind::Instance(_)
+                | ItemKind::Actor { .. }
+                | ItemKind::Assume(_)
+                | ItemKind::World(_)
+                | ItemKind::System(_)
+                | ItemKind::Test(_)
+                | ItemKind::Error => {}
+            }
+        }
+        let agents = self.agent_decls.iter();
+        self.s.places.agents =
+            agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();
+        let automata = self.automaton_decls.iter().zip(&self.s.automata);
+        self.s.places.automata =
+            automata.map(|(a, of)| automaton_places(a.syntax, of, a.name_span(a.syntax.name.span))).collect();
+        let signals = &self.in_world.signals;
+        self.s.places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
+    }
+
+    fn declared(&mut self, noun: &'static str, name: &ast::Name, span: Span, used: bool) {
+        let (text, place) = (name.text.clone(), name.span);
+        self.s.declared.push(Named { noun, name: text, place, span, used });
+    }
+}
+
+impl<T> Declared<'_, T> {
+    /// Where the agent or automaton gets its name.
+    fn name_span(&self, plain: Span) -> Span {
+        self.instance.map_or(plain, |i| i.name.span)
+    }
+}
+
+fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
+    let mut places = AgentPlaces { name, ..AgentPlaces::default() };
+    for member in &agent.members {
+        match &member.kind {
+            AgentMember::Belief { name, .. } => places.beliefs.push(name.span),
+            AgentMember::Plan(plan) => places.triggers.push(plan.trigger.call.span),
+            AgentMember::Goal(_) | AgentMember::Allow(_) | AgentMember::Error => {}
+        }
+    }
+    places
+}
+
+fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> AutomatonPlaces {
+    let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
+    for member in &automaton.members {
+        match &member.kind {
+            Member::Clock(clocks) => places.clocks.extend(clocks.iter().map(|c| c.span)),
+            Member::Var(var) => {
+                let parts = of.vars.iter().filter(|v| v.span == var.name.span).count();
+                let place = VarPlace { name: var.name.span, whole: member.span };
+                places.vars.extend(std::iter::repeat_n(place, parts));
+            }
+            Member::Location { name, .. } => places.locations.push(name.span),
+            Member::Edge(edge) => places.waits.push(edge.on.as_ref().map_or(member.span, |on| on.span)),
+            Member::Allow(_) | Member::Error => {}
+        }
+    }
+    places
+}
+
+fn awaits(suite: &ast::Suite) -> Vec<Span> {
+    let mut spans = Vec::new();
+    for member in &suite.members {
+        if let SuiteMemberKind::Await(events) = &member.kind {
+            spans.extend(events.iter().map(|call| call.span));
+        }
+    }
+    spans
+}

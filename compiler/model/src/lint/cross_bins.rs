@@ -1,0 +1,151 @@
+//! HR0703: a bin of a cross that no combination of its points' bins meets. HR0704: two bins with the same combinations.
+
+use std::collections::BTreeMap;
+
+use hrdsl_source::{Code, Diagnostic};
+
+use super::facts::Facts;
+use crate::{Condition, Cross, PointId, Scenario};
+
+/// Beyond so many combinations of points' bins nothing is said.
+const COMBINATIONS: usize = 1 << 14;
+/// And beyond so many evaluations of one cross.
+const WORK: usize = 1 << 21;
+
+/// HR0703
+pub(crate) fn empty(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for cross in &scenario.crosses {
+        let Some(table) = Table::of(scenario, cross) else { continue };
+        for ((name, _, span), set) in cross.bins.iter().zip(&table.bins) {
+            let contradicts = !set.contains(&true);
+            if contradicts {
+                let message = format!("no test can fall into the bin `{name}`: its condition is never true");
+                issues.push(
+                    Diagnostic::warning(Code::EMPTY_BIN, *span, message)
+                        .help("a point's number is in one of its bins only: join alternatives by `||`")
+                        .fix(format!("delete the bin `{name}`"), *span, "", false),
+                );
+            } else if !table.counted(set).any(|c| c) {
+                let message = format!("no test can fall into the bin `{name}`: all of it is ignored");
+                issues.push(
+                    Diagnostic::warning(Code::EMPTY_BIN, *span, message)
+                        .help("delete the bin, or ignore less")
+                        .fix(format!("delete the bin `{name}`"), *span, "", false),
+                );
+            }
+        }
+    }
+}
+
+/// HR0704
+pub(crate) fn equal(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    for cross in &scenario.crosses {
+        let Some(table) = Table::of(scenario, cross) else { continue };
+        let mut first: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
+        for (i, set) in table.bins.iter().enumerate() {
+            let counted: Vec<bool> = table.counted(set).collect();
+            if !counted.contains(&true) {
+                continue;
+            }
+            let same = *first.entry(counted).or_insert(i);
+            if same != i {
+                let ((name, _, span), (other, _, before)) = (&cross.bins[i], &cross.bins[same]);
+                let message = format!("the bins `{name}` and `{other}` hold the same tests");
+                issues.push(
+                    Diagnostic::warning(Code::EQUAL_BINS, *span, message)
+                        .label(*before, "the same combinations")
+                        .help("change one of the conditions, or delete one of the bins"),
+                );
+            }
+        }
+    }
+}
+
+/// The truth of each bin's condition in each combination of the points' bins.
+struct Table {
+    bins: Vec<Vec<bool>>,
+    ignored: Vec<bool>,
+}
+
+impl Table {
+    /// `None`: there are too many combinations to look at.
+    fn of(scenario: &Scenario, cross: &Cross) -> Option<Self> {
+        let conditions = || cross.bins.iter().map(|(_, c, _)| c).chain(&cross.ignore);
+        let mut points: Vec<PointId> = Vec::new();
+        conditions().for_each(|c| mentioned(c, &mut points));
+        points.sort_unstable();
+        points.dedup();
+        let sizes: Vec<usize> = points.iter().map(|p| choices(scenario, *p)).collect();
+        let all = sizes.iter().try_fold(1usize, |n, size| n.checked_mul(*size))?;
+        let work = conditions().map(size).sum::<usize>().checked_mul(all)?;
+        if all > COMBINATIONS || work > WORK {
+            return None;
+        }
+        let mut table = Self { bins: vec![Vec::with_capacity(all); cross.bins.len()], ignored: Vec::new() };
+        for n in 0..all {
+            let chosen = combination(n, &points, &sizes);
+            for (set, (_, condition, _)) in table.bins.iter_mut().zip(&cross.bins) {
+                set.push(holds(condition, &chosen));
+            }
+            table.ignored.push(cross.ignore.iter().any(|c| holds(c, &chosen)));
+        }
+        Some(table)
+    }
+
+    /// What is not ignored.
+    fn counted<'a>(&'a self, set: &'a [bool]) -> impl Iterator<Item = bool> + 'a {
+        set.iter().zip(&self.ignored).map(|(s, i)| *s && !*i)
+    }
+}
+
+/// How many bins a point has, and one more if a number can fall into none of them.
+fn choices(scenario: &Scenario, point: PointId) -> usize {
+    let Some(point) = scenario.points.get(usize::from(point.0)) else { return 1 };
+    let mut bins: Vec<(i64, Option<i64>)> = point.bins.iter().map(|b| (b.lo, b.hi)).collect();
+    bins.sort_unstable();
+    let mut next = Some(0);
+    for (lo, hi) in bins {
+        if next == Some(lo) {
+            next = hi.map(|hi| hi.saturating_add(1));
+        }
+    }
+    point.bins.len() + usize::from(next.is_some())
+}
+
+/// The n-th combination: for each point the bin, which is beyond the last for a number in none.
+fn combination(mut n: usize, points: &[PointId], sizes: &[usize]) -> Vec<(PointId, usize)> {
+    let mut chosen = Vec::with_capacity(points.len());
+    for (point, size) in points.iter().zip(sizes) {
+        chosen.push((*point, n % size));
+        n /= size;
+    }
+    chosen
+}
+
+fn mentioned(c: &Condition, points: &mut Vec<PointId>) {
+    match c {
+        Condition::In(point, _) => points.push(*point),
+        Condition::Not(c) => mentioned(c, points),
+        Condition::And(cs) | Condition::Or(cs) => cs.iter().for_each(|c| mentioned(c, points)),
+    }
+}
+
+fn size(c: &Condition) -> usize {
+    match c {
+        Condition::In(..) => 1,
+        Condition::Not(c) => 1 + size(c),
+        Condition::And(cs) | Condition::Or(cs) => 1 + cs.iter().map(size).sum::<usize>(),
+    }
+}
+
+fn holds(c: &Condition, chosen: &[(PointId, usize)]) -> bool {
+    match c {
+        Condition::In(point, bin) => {
+            let at = chosen.binary_search_by_key(point, |(p, _)| *p);
+            at.is_ok_and(|at| chosen[at].1 == usize::from(*bin))
+        }
+        Condition::Not(c) => !holds(c, chosen),
+        Condition::And(cs) => cs.iter().all(|c| holds(c, chosen)),
+        Condition::Or(cs) => cs.iter().any(|c| holds(c, chosen)),
+    }
+}

@@ -1,0 +1,219 @@
+//! The values that an automaton's own variables can have in each location: a fixpoint of intervals over its edges.
+
+use std::{collections::VecDeque, rc::Rc};
+
+use crate::{
+    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, Leaf, LocationId, ReceiveArg, Scenario,
+    Sync, Update,
+    lint::interval::{Env, Interval},
+};
+
+/// After so many visits of a location what still grows is taken to reach the end of its range.
+const PATIENCE: u32 = 6;
+/// And after so many, all variables are.
+const END: u32 = 24;
+
+/// The declared ranges that all automata see.
+struct Ranges {
+    /// Any automaton may set a shared variable at any time.
+    shared: Vec<Interval>,
+    /// By event.
+    params: Vec<Vec<Interval>>,
+}
+
+/// What is known about one automaton.
+pub(crate) struct Flow {
+    ranges: Rc<Ranges>,
+    own: Vec<Interval>,
+    /// By location; `None`: no edge reaches it.
+    states: Vec<Option<Vec<Interval>>>,
+    /// The edges out of each location.
+    pub out: Vec<Vec<usize>>,
+}
+
+/// The flows of all automata.
+pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
+    let params = |e: &Event| e.params.iter().map(|p| Interval::of(p.ty)).collect();
+    let ranges = Rc::new(Ranges {
+        shared: scenario.shared.iter().map(|v| Interval::of(v.ty)).collect(),
+        params: scenario.events.iter().map(params).collect(),
+    });
+    scenario.automata.iter().map(|a| Flow::of(a, Rc::clone(&ranges))).collect()
+}
+
+impl Flow {
+    fn of(automaton: &Automaton, ranges: Rc<Ranges>) -> Self {
+        let own = automaton.vars.iter().map(|v| Interval::of(v.ty)).collect();
+        let mut out = vec![Vec::new(); automaton.locations.len()];
+        for (i, edge) in automaton.edges.iter().enumerate() {
+            if let Some(edges) = out.get_mut(at(edge.from)) {
+                edges.push(i);
+            }
+        }
+        let states = vec![None; automaton.locations.len()];
+        let mut flow = Self { ranges, own, states, out };
+        flow.grow(automaton);
+        flow.shrink(automaton);
+        flow.shrink(automaton);
+        flow
+    }
+
+    /// From the initial values up, until nothing changes.
+    fn grow(&mut self, automaton: &Automaton) {
+        let first = at(automaton.initial);
+        let Some(state) = self.states.get_mut(first) else { return };
+        *state = Some(initial(automaton));
+        let mut visits = vec![0u32; self.states.len()];
+        let mut waiting = vec![false; self.states.len()];
+        let mut queue = VecDeque::from([first]);
+        while let Some(from) = queue.pop_front() {
+            waiting[from] = false;
+            for i in self.out[from].clone() {
+                let edge = &automaton.edges[i];
+                let Some(after) = self.after(edge) else { continue };
+                let to = at(edge.to);
+                if self.widen(to, after, &mut visits) && !std::mem::replace(&mut waiting[to], true) {
+                    queue.push_back(to);
+                }
+            }
+        }
+    }
+
+    /// Joins a state into a location's; whether that changed it.
+    fn widen(&mut self, to: usize, after: Vec<Interval>, visits: &mut [u32]) -> bool {
+        let Some(known) = &mut self.states[to] else {
+            self.states[to] = Some(after);
+            return true;
+        };
+        let mut changed = false;
+        let count = visits[to];
+        for ((old, new), range) in known.iter_mut().zip(after).zip(&self.own) {
+            if new.within(*old) && count < END {
+                continue;
+            }
+            let joined = old.join(new);
+            let wider = Interval {
+                lo: if joined.lo < old.lo { range.lo } else { old.lo },
+                hi: if joined.hi > old.hi { range.hi } else { old.hi },
+            };
+            let next = if count >= END {
+                *range
+            } else if count >= PATIENCE {
+                wider
+            } else {
+                joined
+            };
+            changed |= next != *old;
+            *old = next;
+        }
+        visits[to] += u32::from(changed);
+        changed
+    }
+
+    /// One step down: what the edges bring, where they were taken to bring more.
+    fn shrink(&mut self, automaton: &Automaton) {
+        let mut next: Vec<Option<Vec<Interval>>> = vec![None; self.states.len()];
+        if let Some(state) = next.get_mut(at(automaton.initial)) {
+            *state = Some(initial(automaton));
+        }
+        for edge in &automaton.edges {
+            let Some(after) = self.after(edge) else { continue };
+            let Some(state) = next.get_mut(at(edge.to)) else { continue };
+            match state {
+                None => *state = Some(after),
+                Some(known) => known.iter_mut().zip(after).for_each(|(old, new)| *old = old.join(new)),
+            }
+        }
+        self.states = next;
+    }
+
+    pub fn reached(&self, location: LocationId) -> bool {
+        self.states.get(at(location)).is_some_and(Option::is_some)
+    }
+
+    /// What is known when an edge is taken; `None`: its source is not reached, or its guard is never true there.
+    pub fn taken(&self, edge: &Edge) -> Option<Env<'_>> {
+        let own = self.states.get(at(edge.from))?.as_ref()?;
+        if contradictory(&edge.clock_guard) {
+            return None;
+        }
+        let mut env = Env::new(own, &self.ranges.shared, self.locals(edge));
+        let possible = edge.guard.as_ref().is_none_or(|g| env.assume(g, true));
+        possible.then_some(env)
+    }
+
+    /// The selects, then what the event binds.
+    fn locals(&self, edge: &Edge) -> Vec<Interval> {
+        let mut locals: Vec<Interval> = edge.selects.iter().map(|p| Interval::of(p.ty)).collect();
+        if let Sync::Receive { event, args } = &edge.sync {
+            let params = self.params(*event);
+            let bound = args.iter().zip(params).filter(|(a, _)| **a == ReceiveArg::Bind);
+            locals.extend(bound.map(|(_, range)| *range));
+        }
+        locals
+    }
+
+    /// The ranges of an event's parameters.
+    pub fn params(&self, event: EventId) -> &[Interval] {
+        self.ranges.params.get(usize::from(event.0)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The variable that an update sets, its new value, and its range.
+    pub fn set_by<'e>(&self, update: &'e Update) -> Option<(Leaf, &'e Expr, Interval)> {
+        let (leaf, e, range) = match update {
+            Update::Own(i, e) => (Leaf::Own(*i), e, self.own.get(usize::from(*i))),
+            Update::Shared(i, e) => (Leaf::Shared(*i), e, self.ranges.shared.get(usize::from(*i))),
+            Update::Reset(_) => return None,
+        };
+        Some((leaf, e, range.copied().unwrap_or(Interval::ALL)))
+    }
+
+    /// The variables after an edge; a value outside of its range does not get there.
+    fn after(&self, edge: &Edge) -> Option<Vec<Interval>> {
+        let mut env = self.taken(edge)?;
+        for (leaf, e, range) in edge.updates.iter().filter_map(|u| self.set_by(u)) {
+            env.assign(leaf, env.eval(e).meet(range)?);
+        }
+        let mut after = env.own.to_vec();
+        for (leaf, known) in &env.less {
+            if let Leaf::Own(i) = leaf
+                && let Some(slot) = after.get_mut(usize::from(*i))
+            {
+                *slot = *known;
+            }
+        }
+        Some(after)
+    }
+}
+
+fn initial(automaton: &Automaton) -> Vec<Interval> {
+    automaton.vars.iter().map(|v| Interval::value(v.init)).collect()
+}
+
+fn at(location: LocationId) -> usize {
+    usize::from(location.0)
+}
+
+/// Whether a clock would have to be above and below something at once.
+fn contradictory(guard: &[ClockConstraint]) -> bool {
+    guard.iter().any(|low| guard.iter().any(|high| clash(low, high)))
+}
+
+/// Whether the first demands more than the second allows, of the same clock or difference of clocks.
+pub(crate) fn clash(low: &ClockConstraint, high: &ClockConstraint) -> bool {
+    let (lower, open_below) = match low.op {
+        ClockOp::Ge | ClockOp::Eq => (low.bound, false),
+        ClockOp::Gt => (low.bound, true),
+        ClockOp::Lt | ClockOp::Le => return false,
+    };
+    let (upper, open_above) = match high.op {
+        ClockOp::Le | ClockOp::Eq => (high.bound, false),
+        ClockOp::Lt => (high.bound, true),
+        ClockOp::Gt | ClockOp::Ge => return false,
+    };
+    let same = (low.clock, low.minus) == (high.clock, high.minus);
+    same && (lower > upper || lower >= upper && (open_below || open_above))
+}
+
+#[cfg(test)]
+mod tests;

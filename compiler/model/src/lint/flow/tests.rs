@@ -1,0 +1,125 @@
+//! Soundness against exploration: each state that a random automaton comes to lies in what the fixpoint says of its
+//! location, and each update that leaves its range there is told.
+
+use std::collections::BTreeSet;
+
+use hrdsl_source::{FileId, Span};
+use hrdsl_syntax::ast::LocationKind;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    ActorId, Location, Type, Value, Var,
+    lint::{
+        facts::Facts,
+        interval::tests::{VARS, condition, holds, number, run},
+        overflow,
+    },
+};
+
+const LOCATIONS: u16 = 3;
+const RANGE: std::ops::RangeInclusive<i64> = -2..=6;
+
+fn edge() -> impl Strategy<Value = Edge> {
+    let updates = prop::collection::vec((0..VARS as u16, number()), 0..3);
+    (0..LOCATIONS, 0..LOCATIONS, prop::option::of(condition()), updates).prop_map(
+        |(from, to, guard, updates)| Edge {
+            from: LocationId(from),
+            to: LocationId(to),
+            selects: Vec::new(),
+            clock_guard: Vec::new(),
+            guard,
+            sync: Sync::Internal,
+            updates: updates.into_iter().map(|(i, e)| Update::Own(i, e)).collect(),
+            span: Span::default(),
+        },
+    )
+}
+
+fn automaton(mut edges: Vec<Edge>) -> Automaton {
+    let updates = edges.iter_mut().flat_map(|e| &mut e.updates);
+    for (at, update) in updates.enumerate() {
+        if let Update::Own(_, e) = update {
+            e.span = Span::new(FileId(0), at, at);
+        }
+    }
+    let location = |i: u16| Location {
+        name: format!("l{i}"),
+        kind: LocationKind::Normal,
+        invariant: Vec::new(),
+        span: Span::default(),
+    };
+    let ty = Type::Int { lo: *RANGE.start(), hi: *RANGE.end() };
+    Automaton {
+        name: "A".to_owned(),
+        actor: ActorId(0),
+        clocks: Vec::new(),
+        vars: (0..VARS)
+            .map(|i| Var { name: format!("v{i}"), ty, init: Value::Int(0), span: Span::default() })
+            .collect(),
+        locations: (0..LOCATIONS).map(location).collect(),
+        initial: LocationId(0),
+        edges,
+        span: Span::default(),
+    }
+}
+
+type State = (u16, Vec<i64>);
+
+/// All states, and the updates that leave their range.
+fn explore(a: &Automaton) -> (BTreeSet<State>, BTreeSet<Span>) {
+    let first = (0, vec![0; VARS]);
+    let (mut seen, mut out) = (BTreeSet::from([first.clone()]), BTreeSet::new());
+    let mut queue = vec![first];
+    while let Some((at, values)) = queue.pop() {
+        for edge in a.edges.iter().filter(|e| e.from.0 == at) {
+            let open = |g: &Expr| run(g, &values) == Some(Value::Bool(true));
+            if !edge.guard.as_ref().is_none_or(open) {
+                continue;
+            }
+            if let Some(after) = updated(edge, values.clone(), &mut out) {
+                let state = (edge.to.0, after);
+                if seen.insert(state.clone()) {
+                    queue.push(state);
+                }
+            }
+        }
+    }
+    (seen, out)
+}
+
+/// The variables after an edge; `None`: one has no value, or one outside of its range.
+fn updated(edge: &Edge, mut values: Vec<i64>, out: &mut BTreeSet<Span>) -> Option<Vec<i64>> {
+    for update in &edge.updates {
+        let Update::Own(i, e) = update else { continue };
+        let Some(Value::Int(n)) = run(e, &values) else { return None };
+        if !RANGE.contains(&n) {
+            // A constant outside of the range is told by the checker.
+            out.extend(e.constant().is_none().then_some(e.span));
+            return None;
+        }
+        values[usize::from(*i)] = n;
+    }
+    Some(values)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn what_an_automaton_does_is_foreseen(edges in prop::collection::vec(edge(), 1..8)) {
+        let automaton = automaton(edges);
+        let (states, out) = explore(&automaton);
+        let scenario = Scenario { automata: vec![automaton], ..Scenario::default() };
+        let facts = Facts::of(&scenario);
+        for (at, values) in &states {
+            let known = facts.flows[0].states[usize::from(*at)].as_ref();
+            let foreseen = known.is_some_and(|k| k.iter().zip(values).all(|(k, n)| holds(*k, Value::Int(*n))));
+            prop_assert!(foreseen, "{values:?} in {at}, where only {known:?} is foreseen");
+        }
+        let mut issues = Vec::new();
+        overflow::check(&scenario, &facts, &mut issues);
+        let told: BTreeSet<Span> = issues.iter().map(|d| d.span()).collect();
+        prop_assert!(out.is_subset(&told), "{out:?} leave their range, and {told:?} are told");
+    }
+}

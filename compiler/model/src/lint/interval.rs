@@ -1,0 +1,431 @@
+//! Intervals of whole numbers: what an expression can be, and what a condition leaves of its variables. `bool` is 0 or 1.
+//!
+//! INVARIANT: an interval holds every value that the expression can have; an expression without a value (a division by
+//! zero, a number beyond 64 bits) is a fault of its own and not in it.
+
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+
+use crate::{Expr, ExprKind, Function, Kind, Leaf, Type, Value};
+
+/// `lo..=hi`, not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Interval {
+    pub lo: i128,
+    pub hi: i128,
+}
+
+const MIN: i128 = i64::MIN as i128;
+const MAX: i128 = i64::MAX as i128;
+
+impl Interval {
+    /// Any whole number.
+    pub const ALL: Self = Self { lo: MIN, hi: MAX };
+    const NO: Self = Self { lo: 0, hi: 0 };
+    const YES: Self = Self { lo: 1, hi: 1 };
+    const MAYBE: Self = Self { lo: 0, hi: 1 };
+
+    pub fn of(ty: Type) -> Self {
+        match ty {
+            Type::Bool => Self::MAYBE,
+            Type::Int { lo, hi } => Self { lo: lo.into(), hi: hi.into() },
+            Type::Float(_) | Type::Enum(_) => Self::ALL,
+        }
+    }
+
+    pub fn value(value: Value) -> Self {
+        match value {
+            Value::Bool(b) => Self::bool(Some(b)),
+            Value::Int(n) => Self { lo: n.into(), hi: n.into() },
+            Value::Float(_) | Value::Symbol(_) => Self::ALL,
+        }
+    }
+
+    fn bool(b: Option<bool>) -> Self {
+        match b {
+            Some(true) => Self::YES,
+            Some(false) => Self::NO,
+            None => Self::MAYBE,
+        }
+    }
+
+    /// The truth of a condition, if it is always the same.
+    fn truth(self) -> Option<bool> {
+        if self == Self::YES { Some(true) } else { (self == Self::NO).then_some(false) }
+    }
+
+    /// The smallest interval with these, cut to what 64 bits hold.
+    fn around(corners: &[i128]) -> Self {
+        let lo = corners.iter().copied().min().unwrap_or(MIN);
+        let hi = corners.iter().copied().max().unwrap_or(MAX);
+        Self { lo: lo.clamp(MIN, MAX), hi: hi.clamp(MIN, MAX) }
+    }
+
+    pub fn join(self, other: Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// What is in both; `None`: nothing.
+    pub fn meet(self, other: Self) -> Option<Self> {
+        let both = Self { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) };
+        (both.lo <= both.hi).then_some(both)
+    }
+
+    pub fn within(self, other: Self) -> bool {
+        other.lo <= self.lo && self.hi <= other.hi
+    }
+
+    /// Nothing is known about one of its ends.
+    pub fn is_open(self) -> bool {
+        self.lo == MIN || self.hi == MAX
+    }
+
+    fn add(self, o: Self) -> Self {
+        Self::around(&[self.lo + o.lo, self.hi + o.hi])
+    }
+
+    fn neg(self) -> Self {
+        Self::around(&[-self.lo, -self.hi])
+    }
+
+    fn sub(self, o: Self) -> Self {
+        self.add(Self { lo: -o.hi, hi: -o.lo })
+    }
+
+    fn mul(self, o: Self) -> Self {
+        Self::around(&[self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi])
+    }
+
+    /// Towards zero; a divisor is at most -1 or at least 1.
+    fn div(self, o: Self) -> Self {
+        let mut corners = Vec::new();
+        for divisors in [Self { lo: MIN, hi: -1 }, Self { lo: 1, hi: MAX }] {
+            if let Some(d) = o.meet(divisors) {
+                corners.extend([self.lo / d.lo, self.lo / d.hi, self.hi / d.lo, self.hi / d.hi]);
+            }
+        }
+        Self::around(&corners)
+    }
+
+    /// The remainder has the sign of the dividend and is nearer to zero than the divisor.
+    fn rem(self, o: Self) -> Self {
+        let most = o.lo.abs().max(o.hi.abs()) - 1;
+        if o.lo > 0 && self.lo >= 0 && self.hi < o.lo {
+            return self;
+        }
+        if most < 0 {
+            return Self::ALL;
+        }
+        let lo = if self.lo < 0 { self.lo.max(-most) } else { 0 };
+        let hi = if self.hi > 0 { self.hi.min(most) } else { 0 };
+        Self { lo, hi }
+    }
+
+    fn abs(self) -> Self {
+        let far = Self::around(&[self.lo.abs(), self.hi.abs()]);
+        if self.lo <= 0 && self.hi >= 0 { Self { lo: 0, hi: far.hi } } else { far }
+    }
+
+    fn compare(self, op: BinaryOp, o: Self) -> Self {
+        let single = self.lo == self.hi && self == o;
+        Self::bool(match op {
+            BinaryOp::Lt if self.hi < o.lo => Some(true),
+            BinaryOp::Lt if self.lo >= o.hi => Some(false),
+            BinaryOp::Le if self.hi <= o.lo => Some(true),
+            BinaryOp::Le if self.lo > o.hi => Some(false),
+            BinaryOp::Eq if single => Some(true),
+            BinaryOp::Eq if self.meet(o).is_none() => Some(false),
+            BinaryOp::Ne if single => Some(false),
+            BinaryOp::Ne if self.meet(o).is_none() => Some(true),
+            BinaryOp::Gt => return o.compare(BinaryOp::Lt, self),
+            BinaryOp::Ge => return o.compare(BinaryOp::Le, self),
+            BinaryOp::Lt | BinaryOp::Le | BinaryOp::Eq | BinaryOp::Ne => None,
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {
+                return Self::ALL;
+            }
+            BinaryOp::And | BinaryOp::Or => None,
+        })
+    }
+}
+
+/// The intervals of names: those given, as far as conditions have not left less of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Env<'a> {
+    pub own: &'a [Interval],
+    pub shared: &'a [Interval],
+    pub signals: &'a [Interval],
+    pub locals: Vec<Interval>,
+    /// What is known to be less; few.
+    pub less: Vec<(Leaf, Interval)>,
+    /// Compound expressions that a condition speaks of, with what it leaves of them.
+    terms: Vec<(Expr, Interval)>,
+}
+
+impl<'a> Env<'a> {
+    pub fn new(own: &'a [Interval], shared: &'a [Interval], locals: Vec<Interval>) -> Self {
+        Self { own, shared, signals: &[], locals, less: Vec::new(), terms: Vec::new() }
+    }
+
+    pub fn get(&self, leaf: Leaf) -> Interval {
+        if let Some((_, known)) = self.less.iter().find(|(l, _)| *l == leaf) {
+            return *known;
+        }
+        let (list, i): (&[Interval], u16) = match leaf {
+            Leaf::Local(i) => (&self.locals, i),
+            Leaf::Own(i) => (self.own, i),
+            Leaf::Shared(i) => (self.shared, i),
+            Leaf::Signal(s) => (self.signals, s.0),
+        };
+        list.get(usize::from(i)).copied().unwrap_or(Interval::ALL)
+    }
+
+    /// A variable has a new value.
+    pub fn assign(&mut self, leaf: Leaf, to: Interval) {
+        self.terms.clear();
+        self.set(leaf, to);
+    }
+
+    /// Less is known to be possible of a name.
+    pub fn set(&mut self, leaf: Leaf, to: Interval) {
+        match self.less.iter_mut().find(|(l, _)| *l == leaf) {
+            Some(known) => known.1 = to,
+            None => self.less.push((leaf, to)),
+        }
+    }
+
+    /// What is known if one of two holds.
+    pub fn or(&self, other: &Self) -> Self {
+        let known = self.less.iter().filter(|(leaf, _)| other.less.iter().any(|(l, _)| l == leaf));
+        let less = known.map(|(leaf, i)| (*leaf, i.join(other.get(*leaf)))).collect();
+        Self { less, ..self.clone() }
+    }
+
+    /// What an expression can be.
+    pub fn eval(&self, e: &Expr) -> Interval {
+        if !matches!(e.ty, Kind::Bool | Kind::Int | Kind::Unknown) {
+            return Interval::ALL;
+        }
+        match &e.kind {
+            ExprKind::Const(value) => Interval::value(*value),
+            ExprKind::Leaf(leaf) => self.get(*leaf),
+            ExprKind::Term(_) | ExprKind::Error if e.ty == Kind::Bool => Interval::MAYBE,
+            ExprKind::Term(_) | ExprKind::Error => Interval::ALL,
+            ExprKind::Unary(UnaryOp::Neg, a) => self.eval(a).neg(),
+            ExprKind::Unary(UnaryOp::Not, a) => Interval::bool(self.truth(a).map(|b| !b)),
+            ExprKind::Binary(op, a, b) => {
+                let value = self.binary(*op, a, b);
+                let known = self.terms.iter().rev().find(|(t, _)| same(t, e));
+                known.and_then(|(_, k)| k.meet(value)).unwrap_or(value)
+            }
+            ExprKind::If(c, a, b) => {
+                let side = |want: bool, e: &Expr| {
+                    let mut env = self.clone();
+                    env.narrow(c, want).then(|| env.eval(e))
+                };
+                match (side(true, a), side(false, b)) {
+                    (Some(a), Some(b)) => a.join(b),
+                    (Some(one), None) | (None, Some(one)) => one,
+                    (None, None) => Interval::ALL,
+                }
+            }
+            ExprKind::Call(f, args) => {
+                let args: Vec<Interval> = args.iter().map(|a| self.eval(a)).collect();
+                match (f, args.as_slice()) {
+                    (Function::Abs, [a]) => a.abs(),
+                    (Function::Min, [a, b]) => Interval { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi) },
+                    (Function::Max, [a, b]) => Interval { lo: a.lo.max(b.lo), hi: a.hi.max(b.hi) },
+                    (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => Interval::ALL,
+                }
+            }
+        }
+    }
+
+    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Interval {
+        match op {
+            BinaryOp::And => match (self.truth(a), self.truth(b)) {
+                (Some(false), _) | (_, Some(false)) => Interval::NO,
+                (Some(true), Some(true)) => Interval::YES,
+                (Some(true) | None, _) => Interval::MAYBE,
+            },
+            BinaryOp::Or => match (self.truth(a), self.truth(b)) {
+                (Some(true), _) | (_, Some(true)) => Interval::YES,
+                (Some(false), Some(false)) => Interval::NO,
+                (Some(false) | None, _) => Interval::MAYBE,
+            },
+            BinaryOp::Add => self.eval(a).add(self.eval(b)),
+            BinaryOp::Sub => self.eval(a).sub(self.eval(b)),
+            BinaryOp::Mul => self.eval(a).mul(self.eval(b)),
+            BinaryOp::Div => self.eval(a).div(self.eval(b)),
+            BinaryOp::Rem => self.eval(a).rem(self.eval(b)),
+            BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
+                if matches!(a.ty, Kind::Float(_)) || matches!(b.ty, Kind::Float(_)) {
+                    return Interval::MAYBE;
+                }
+                self.eval(a).compare(op, self.eval(b))
+            }
+        }
+    }
+
+    /// The truth of a condition, if it is always the same.
+    pub fn truth(&self, e: &Expr) -> Option<bool> {
+        self.eval(e).truth()
+    }
+
+    /// Leaves only what agrees with the condition's being `want`; `false`: nothing does.
+    pub fn assume(&mut self, e: &Expr, want: bool) -> bool {
+        // The second time the first part of a conjunction knows what the others left.
+        self.narrow(e, want) && self.narrow(e, want)
+    }
+
+    fn narrow(&mut self, e: &Expr, want: bool) -> bool {
+        match (&e.kind, want) {
+            (ExprKind::Unary(UnaryOp::Not, a), _) => self.narrow(a, !want),
+            (ExprKind::Binary(BinaryOp::And, a, b), true) | (ExprKind::Binary(BinaryOp::Or, a, b), false) => {
+                self.narrow(a, want) && self.narrow(b, want)
+            }
+            (ExprKind::Binary(BinaryOp::Or, a, b), true) | (ExprKind::Binary(BinaryOp::And, a, b), false) => {
+                let (mut left, mut right) = (self.clone(), self.clone());
+                match (left.narrow(a, want), right.narrow(b, want)) {
+                    (true, true) => self.less = left.or(&right).less,
+                    (true, false) => self.less = left.less,
+                    (false, true) => self.less = right.less,
+                    (false, false) => return false,
+                }
+                true
+            }
+            (ExprKind::Binary(op, a, b), _) => self.narrow_comparison(*op, a, b, want),
+            (
+                ExprKind::Const(_)
+                | ExprKind::Leaf(_)
+                | ExprKind::Term(_)
+                | ExprKind::Unary(UnaryOp::Neg, _)
+                | ExprKind::If(..)
+                | ExprKind::Call(..)
+                | ExprKind::Error,
+                _,
+            ) => self.leave(e, Interval::bool(Some(want))),
+        }
+    }
+
+    fn narrow_comparison(&mut self, op: BinaryOp, a: &Expr, b: &Expr, want: bool) -> bool {
+        if matches!(a.ty, Kind::Float(_)) || matches!(b.ty, Kind::Float(_)) {
+            return true;
+        }
+        let op = if want { op } else { negated(op) };
+        let (x, y) = (self.eval(a), self.eval(b));
+        let (left, right) = match op {
+            BinaryOp::Lt => (below(y.hi - 1), above(x.lo + 1)),
+            BinaryOp::Le => (below(y.hi), above(x.lo)),
+            BinaryOp::Gt => (above(y.lo + 1), below(x.hi - 1)),
+            BinaryOp::Ge => (above(y.lo), below(x.hi)),
+            BinaryOp::Eq => (y, x),
+            BinaryOp::Ne => (without(x, y), without(y, x)),
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div => return true,
+            BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => return true,
+        };
+        self.leave(a, left) && self.leave(b, right)
+    }
+
+    /// Leaves of an expression's variables what makes it lie in an interval, where that is easy to tell.
+    fn leave(&mut self, e: &Expr, into: Interval) -> bool {
+        let Some(into) = self.eval(e).meet(into) else { return false };
+        match &e.kind {
+            ExprKind::Leaf(leaf) => {
+                self.set(*leaf, into);
+                true
+            }
+            ExprKind::Unary(UnaryOp::Neg, a) => self.leave(a, Interval { lo: -into.hi, hi: -into.lo }),
+            ExprKind::Binary(op, a, b) => {
+                self.terms.push((e.clone(), into));
+                let (x, y) = (self.eval(a), self.eval(b));
+                match op {
+                    BinaryOp::Add => self.leave(a, wide_sub(into, y)) && self.leave(b, wide_sub(into, x)),
+                    BinaryOp::Sub => {
+                        let sum = Interval { lo: into.lo + y.lo, hi: into.hi + y.hi };
+                        self.leave(a, sum) && self.leave(b, wide_sub(x, into))
+                    }
+                    BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => true,
+                    BinaryOp::Eq
+                    | BinaryOp::Ne
+                    | BinaryOp::Lt
+                    | BinaryOp::Le
+                    | BinaryOp::Gt
+                    | BinaryOp::Ge => true,
+                }
+            }
+            ExprKind::Const(_)
+            | ExprKind::Term(_)
+            | ExprKind::Unary(UnaryOp::Not, _)
+            | ExprKind::If(..)
+            | ExprKind::Call(..)
+            | ExprKind::Error => true,
+        }
+    }
+}
+
+/// Whether two expressions are written alike, wherever they stand.
+fn same(a: &Expr, b: &Expr) -> bool {
+    match (&a.kind, &b.kind) {
+        (ExprKind::Const(a), ExprKind::Const(b)) => a == b,
+        (ExprKind::Leaf(a), ExprKind::Leaf(b)) => a == b,
+        (ExprKind::Term(a), ExprKind::Term(b)) => a == b,
+        (ExprKind::Unary(f, a), ExprKind::Unary(g, b)) => f == g && same(a, b),
+        (ExprKind::Binary(f, a, b), ExprKind::Binary(g, c, d)) => f == g && same(a, c) && same(b, d),
+        (ExprKind::If(a, b, c), ExprKind::If(d, e, f)) => same(a, d) && same(b, e) && same(c, f),
+        (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
+            f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+        }
+        (
+            ExprKind::Const(_)
+            | ExprKind::Leaf(_)
+            | ExprKind::Term(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Call(..)
+            | ExprKind::Error,
+            _,
+        ) => false,
+    }
+}
+
+/// A difference that is not cut to 64 bits: it is only met with what is.
+fn wide_sub(a: Interval, b: Interval) -> Interval {
+    Interval { lo: a.lo - b.hi, hi: a.hi - b.lo }
+}
+
+fn below(hi: i128) -> Interval {
+    Interval { lo: MIN - 1, hi }
+}
+
+fn above(lo: i128) -> Interval {
+    Interval { lo, hi: MAX + 1 }
+}
+
+/// `x` without the one value that `y` is, if it is an end of `x`.
+fn without(x: Interval, y: Interval) -> Interval {
+    if y.lo != y.hi {
+        return x;
+    }
+    Interval { lo: x.lo + i128::from(x.lo == y.lo), hi: x.hi - i128::from(x.hi == y.lo) }
+}
+
+fn negated(op: BinaryOp) -> BinaryOp {
+    match op {
+        BinaryOp::Eq => BinaryOp::Ne,
+        BinaryOp::Ne => BinaryOp::Eq,
+        BinaryOp::Lt => BinaryOp::Ge,
+        BinaryOp::Le => BinaryOp::Gt,
+        BinaryOp::Gt => BinaryOp::Le,
+        BinaryOp::Ge => BinaryOp::Lt,
+        BinaryOp::Add
+        | BinaryOp::Sub
+        | BinaryOp::Mul
+        | BinaryOp::Div
+        | BinaryOp::Rem
+        | BinaryOp::And
+        | BinaryOp::Or => op,
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

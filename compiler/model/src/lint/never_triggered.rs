@@ -1,0 +1,150 @@
+//! HR0602: a requirement that nothing can ever put to the test.
+
+use hrdsl_source::{Code, Diagnostic};
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+
+use super::facts::Facts;
+use crate::{Expr, ExprKind, Function, Leaf, Pattern, Scenario, Term, Value};
+
+pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+    for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
+        let why = if facts.in_vain(trigger) {
+            let event = trigger.first().and_then(|w| scenario.events.get(usize::from(w.event.0)));
+            let name = event.map_or("?", |e| e.name.as_str());
+            let made = trigger.iter().any(|w| facts.made(w.event));
+            let how = if made { "with these arguments nobody makes" } else { "nobody makes" };
+            Some((format!("{how} `{name}`"), "name an event that somebody makes"))
+        } else {
+            constant(scenario, &requirement.pattern)
+        };
+        if let Some((why, help)) = why {
+            let message = format!("the requirement `{}` can never be triggered", requirement.name);
+            let issue = Diagnostic::warning(Code::NEVER_TRIGGERED, requirement.text, message);
+            issues.push(issue.here(why).help(help));
+        }
+    }
+}
+
+/// Why a condition on the world never says anything, if so.
+fn constant(scenario: &Scenario, pattern: &Pattern) -> Option<(String, &'static str)> {
+    match pattern {
+        Pattern::NeverWhile { condition: Some(c), .. } if truth(scenario, c, 0) == Some(false) => {
+            Some(("the condition is never true".to_owned(), "change the condition"))
+        }
+        Pattern::Globally(c) if truth(scenario, c, 0) == Some(true) => {
+            Some(("the condition is always true".to_owned(), "change the condition"))
+        }
+        Pattern::NeverWhile { .. }
+        | Pattern::Globally(_)
+        | Pattern::Causes { .. }
+        | Pattern::Forbids { .. } => None,
+    }
+}
+
+/// Signals within signals are followed so far.
+const DEPTH: u32 = 8;
+
+/// The signal's own expression.
+fn signal<'a>(scenario: &'a Scenario, leaf: &Leaf, depth: u32) -> Option<&'a Expr> {
+    match leaf {
+        Leaf::Signal(id) if depth < DEPTH => {
+            scenario.world.as_ref()?.signals.get(usize::from(id.0)).map(|s| &s.value)
+        }
+        Leaf::Signal(_) | Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_) => None,
+    }
+}
+
+/// The truth of a condition on the world, if it is the same in every world.
+fn truth(scenario: &Scenario, e: &Expr, depth: u32) -> Option<bool> {
+    let of = |e: &Expr| truth(scenario, e, depth);
+    match &e.kind {
+        ExprKind::Const(Value::Bool(b)) => Some(*b),
+        ExprKind::Leaf(leaf) => truth(scenario, signal(scenario, leaf, depth)?, depth + 1),
+        ExprKind::Unary(UnaryOp::Not, a) => of(a).map(|b| !b),
+        ExprKind::Binary(BinaryOp::And, a, b) => match (of(a), of(b)) {
+            (Some(false), _) | (_, Some(false)) => Some(false),
+            (Some(true), Some(true)) => Some(true),
+            (Some(true) | None, _) => None,
+        },
+        ExprKind::Binary(BinaryOp::Or, a, b) => match (of(a), of(b)) {
+            (Some(true), _) | (_, Some(true)) => Some(true),
+            (Some(false), Some(false)) => Some(false),
+            (Some(false) | None, _) => None,
+        },
+        ExprKind::Binary(op, a, b) => {
+            let ((a_lo, a_hi), (b_lo, b_hi)) = (range(scenario, a, depth)?, range(scenario, b, depth)?);
+            match op {
+                BinaryOp::Lt => decided(a_hi < b_lo, a_lo >= b_hi),
+                BinaryOp::Le => decided(a_hi <= b_lo, a_lo > b_hi),
+                BinaryOp::Gt => decided(a_lo > b_hi, a_hi <= b_lo),
+                BinaryOp::Ge => decided(a_lo >= b_hi, a_hi < b_lo),
+                BinaryOp::Eq => decided(false, a_hi < b_lo || a_lo > b_hi),
+                BinaryOp::Ne => decided(a_hi < b_lo || a_lo > b_hi, false),
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => None,
+                BinaryOp::And | BinaryOp::Or => None,
+            }
+        }
+        ExprKind::If(c, a, b) => match of(c) {
+            Some(c) => of(if c { a } else { b }),
+            None => of(a).filter(|t| of(b) == Some(*t)),
+        },
+        ExprKind::Const(_)
+        | ExprKind::Term(_)
+        | ExprKind::Unary(UnaryOp::Neg, _)
+        | ExprKind::Call(..)
+        | ExprKind::Error => None,
+    }
+}
+
+fn decided(yes: bool, no: bool) -> Option<bool> {
+    (yes || no).then_some(yes)
+}
+
+/// The numbers that an expression lies between, in every world; infinite ends are ends.
+fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
+    let of = |e: &Expr| range(scenario, e, depth);
+    let infinite = f64::INFINITY;
+    let (lo, hi) = match &e.kind {
+        ExprKind::Const(value) => value.number().map(|x| (x, x))?,
+        ExprKind::Leaf(leaf) => range(scenario, signal(scenario, leaf, depth)?, depth + 1)?,
+        ExprKind::Term(term) => match term {
+            Term::Distance(..) | Term::Range(..) | Term::Speed(_) | Term::JointSpeed(_) => (0.0, infinite),
+            Term::Angle(..) => (0.0, std::f64::consts::PI),
+            Term::Coordinate(..) => (-infinite, infinite),
+            Term::Visible(..) | Term::Holds(..) | Term::HoldsAny(_) => return None,
+        },
+        ExprKind::Unary(UnaryOp::Neg, a) => of(a).map(|(lo, hi)| (-hi, -lo))?,
+        ExprKind::Binary(BinaryOp::Add, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            (a.0 + b.0, a.1 + b.1)
+        }
+        ExprKind::Binary(BinaryOp::Sub, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            (a.0 - b.1, a.1 - b.0)
+        }
+        ExprKind::Binary(BinaryOp::Mul, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let all = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
+            if all.iter().any(|x| x.is_nan()) {
+                return None;
+            }
+            (all.into_iter().fold(infinite, f64::min), all.into_iter().fold(-infinite, f64::max))
+        }
+        ExprKind::If(_, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            (a.0.min(b.0), a.1.max(b.1))
+        }
+        ExprKind::Call(f, args) => {
+            let args: Option<Vec<(f64, f64)>> = args.iter().map(of).collect();
+            match (f, args?.as_slice()) {
+                (Function::Abs, [(lo, hi)]) if *lo >= 0.0 => (*lo, *hi),
+                (Function::Abs, [(lo, hi)]) => ((-hi).max(0.0), hi.max(-lo)),
+                (Function::Min, [a, b]) => (a.0.min(b.0), a.1.min(b.1)),
+                (Function::Max, [a, b]) => (a.0.max(b.0), a.1.max(b.1)),
+                (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => return None,
+            }
+        }
+        ExprKind::Unary(UnaryOp::Not, _) | ExprKind::Binary(..) | ExprKind::Error => return None,
+    };
+    (!lo.is_nan() && !hi.is_nan()).then_some((lo, hi))
+}

@@ -1,0 +1,225 @@
+//! HR0209: a value that leaves its range whenever it is worked out. HR0210: one that may.
+
+use hrdsl_source::{Code, Diagnostic};
+
+use super::{
+    facts::Facts,
+    flow::Flow,
+    interval::{Env, Interval},
+};
+use crate::{
+    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, StepKind,
+    StimulusStep, Sync, TriggerOn, Type, Update,
+};
+
+pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+    let mut checker = Checker { scenario, issues };
+    scenario.events.iter().for_each(|e| checker.stimulus(e));
+    scenario.agents.iter().for_each(|a| checker.agent(a));
+    for (automaton, flow) in scenario.automata.iter().zip(&facts.flows) {
+        checker.automaton(automaton, flow);
+    }
+    checker.rules();
+}
+
+struct Checker<'a> {
+    scenario: &'a Scenario,
+    issues: &'a mut Vec<Diagnostic>,
+}
+
+impl<'a> Checker<'a> {
+    /// Compares a value with the range of what it is for.
+    fn fits(&mut self, env: &Env<'_>, e: &Expr, ty: Type, what: &str) {
+        let Type::Int { .. } = ty else { return };
+        // A constant has been looked at where it was resolved.
+        if e.constant().is_some() {
+            return;
+        }
+        let (value, range) = (env.eval(e), Interval::of(ty));
+        if value.within(range) {
+            return;
+        }
+        let (shown, of) = (shown(value), shown(range));
+        let issue = if value.meet(range).is_none() {
+            let message = format!("this leaves the range of {what}: it is {shown}, and the range {of}");
+            Diagnostic::error(Code::OVERFLOW, e.span, message)
+        } else if reads_open(env, e) {
+            return;
+        } else {
+            let message =
+                format!("this may leave the range of {what}: it can be {shown}, and the range is {of}");
+            Diagnostic::warning(Code::MAY_OVERFLOW, e.span, message)
+        };
+        self.issues.push(issue.help("compare it first, in a condition with `when`, or widen the range"));
+    }
+
+    fn args(&mut self, env: &Env<'_>, args: &[Expr], params: &[Param]) {
+        for (arg, param) in args.iter().zip(params) {
+            self.fits(env, arg, param.ty, &format!("the parameter `{}`", param.name));
+        }
+    }
+
+    fn params(&self, event: EventId) -> &'a [Param] {
+        self.scenario.events.get(usize::from(event.0)).map_or(&[], |e| &e.params)
+    }
+
+    // ── automata ──
+
+    fn automaton(&mut self, automaton: &Automaton, flow: &Flow) {
+        for edge in &automaton.edges {
+            let Some(mut env) = flow.taken(edge) else { continue };
+            if let Sync::Send { event, args } = &edge.sync {
+                self.args(&env, args, self.params(*event));
+            }
+            for update in &edge.updates {
+                let var = match update {
+                    Update::Own(i, _) => automaton.vars.get(usize::from(*i)),
+                    Update::Shared(i, _) => self.scenario.shared.get(usize::from(*i)),
+                    Update::Reset(_) => None,
+                };
+                let (Some(var), Some((leaf, e, range))) = (var, flow.set_by(update)) else { continue };
+                self.fits(&env, e, var.ty, &format!("`{}`", var.name));
+                match env.eval(e).meet(range) {
+                    Some(value) => env.assign(leaf, value),
+                    None => break,
+                }
+            }
+        }
+    }
+
+    // ── stimuli and the world ──
+
+    fn stimulus(&mut self, event: &Event) {
+        let Some(stimulus) = &event.stimulus else { return };
+        let types = event.params.iter().map(|p| p.ty).chain(stimulus.samples.iter().map(|s| s.ty));
+        let env = Env::new(&[], &[], types.map(Interval::of).collect());
+        self.steps(&stimulus.steps, &env);
+    }
+
+    fn steps(&mut self, steps: &[StimulusStep], env: &Env<'_>) {
+        for step in steps {
+            match step {
+                StimulusStep::Emit { event, args } => self.args(env, args, self.params(*event)),
+                StimulusStep::If { condition, then, otherwise } => {
+                    for (steps, want) in [(then, true), (otherwise, false)] {
+                        let mut env = env.clone();
+                        if env.assume(condition, want) {
+                            self.steps(steps, &env);
+                        }
+                    }
+                }
+                StimulusStep::Hold(_) | StimulusStep::Act(_) => {}
+            }
+        }
+    }
+
+    fn rules(&mut self) {
+        let Some(world) = &self.scenario.world else { return };
+        let signals: Vec<Interval> = world.signals.iter().map(|s| Interval::of(s.ty)).collect();
+        for rule in &world.rules {
+            let mut env = Env::new(&[], &[], Vec::new());
+            env.signals = &signals;
+            if rule.guard.as_ref().is_none_or(|g| env.assume(g, true)) {
+                self.args(&env, &rule.args, self.params(rule.event));
+            }
+        }
+    }
+
+    // ── agents ──
+
+    fn agent(&mut self, agent: &Agent) {
+        let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
+        for plan in &agent.plans {
+            let mut env = Env::new(&[], &[], vec![Interval::ALL; plan.vars.len()]);
+            let matched: &[Param] = match plan.trigger {
+                TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => params(b),
+                TriggerOn::Perceived(event) => self.params(event),
+                // What a goal is adopted with has no range.
+                TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+            };
+            if !bind(&mut env, &plan.args, matched) || !context(&mut env, &plan.context, agent) {
+                continue;
+            }
+            for step in &plan.body {
+                match &step.kind {
+                    StepKind::Do(event, args) => self.args(&env, args, self.params(*event)),
+                    StepKind::Add(b, args) | StepKind::Replace(b, args) => self.args(&env, args, params(*b)),
+                    StepKind::Query(b, args) => {
+                        if !bind(&mut env, args, params(*b)) {
+                            break;
+                        }
+                    }
+                    StepKind::Achieve(..)
+                    | StepKind::Spawn(..)
+                    | StepKind::Remove(..)
+                    | StepKind::Await { .. }
+                    | StepKind::Wait(_) => {}
+                }
+            }
+        }
+    }
+}
+
+/// Variables that are matched lie in the ranges of what they are matched with; `false`: that cannot be.
+fn bind(env: &mut Env<'_>, args: &[Arg], params: &[Param]) -> bool {
+    args.iter().zip(params).all(|(arg, param)| match arg {
+        Arg::Var(i) => {
+            let both = env.get(Leaf::Local(*i)).meet(Interval::of(param.ty));
+            both.is_some_and(|both| {
+                env.set(Leaf::Local(*i), both);
+                true
+            })
+        }
+        Arg::Any | Arg::Expr(_) => true,
+    })
+}
+
+/// What a context leaves of the variables; `false`: it is never met.
+fn context(env: &mut Env<'_>, c: &Context, agent: &Agent) -> bool {
+    match c {
+        Context::True => true,
+        Context::Belief(b, args, _) => {
+            let params = agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
+            bind(env, args, params)
+        }
+        Context::Test(e) => env.assume(e, true),
+        Context::Not(inner) => match inner.as_ref() {
+            Context::Test(e) => env.assume(e, false),
+            // A negation binds nothing.
+            Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => true,
+        },
+        Context::And(cs) => cs.iter().all(|c| context(env, c, agent)),
+        Context::Or(cs) => {
+            let mut joined: Option<Env<'_>> = None;
+            for c in cs {
+                let mut side = env.clone();
+                if context(&mut side, c, agent) {
+                    joined = Some(match joined {
+                        Some(before) => before.or(&side),
+                        None => side,
+                    });
+                }
+            }
+            let possible = joined.is_some();
+            if let Some(joined) = joined {
+                env.less = joined.less;
+            }
+            possible
+        }
+    }
+}
+
+/// Whether an expression reads something without a range.
+fn reads_open(env: &Env<'_>, e: &Expr) -> bool {
+    let mut open = false;
+    e.each(&mut |part| {
+        if let ExprKind::Leaf(leaf) = part.kind {
+            open |= env.get(leaf).is_open();
+        }
+    });
+    open
+}
+
+fn shown(i: Interval) -> String {
+    if i.lo == i.hi { i.lo.to_string() } else { format!("{}..{}", i.lo, i.hi) }
+}

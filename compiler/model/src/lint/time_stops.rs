@@ -1,0 +1,91 @@
+//! HR0506: a location whose invariant ends without a way out, so that no run of the model can go on.
+
+use hrdsl_source::{Code, Diagnostic};
+use hrdsl_syntax::ast::LocationKind;
+
+use super::{
+    facts::Facts,
+    flow::{Flow, clash},
+};
+use crate::{Automaton, ClockConstraint, ClockId, Edge, Location, LocationId, Scenario, Sync, Update};
+
+pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+    for (index, flow) in facts.flows.iter().enumerate() {
+        let automaton = &scenario.automata[index];
+        let (barred, stopping) = (barred(automaton, flow), stopping(automaton, flow));
+        for (i, location) in automaton.locations.iter().enumerate() {
+            let id = LocationId(u16::try_from(i).unwrap_or(u16::MAX));
+            if location.invariant.is_empty() || !flow.reached(id) {
+                continue;
+            }
+            let places = scenario.places.automata.get(index);
+            let span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.span);
+            let name = &location.name;
+            let warning = |message: String| Diagnostic::warning(Code::TIME_STOPS, span, message);
+            if barred[i] {
+                issues.push(
+                    warning(format!("the invariant of `{name}` is violated on every way in"))
+                        .here("the clock is past its bound before it comes here")
+                        .help("reset the clock on the edges that lead here"),
+                );
+            } else if stopping[i] {
+                let listens = flow.out[i].iter().any(|e| is_receive(&automaton.edges[*e]));
+                let help = if listens {
+                    "add an edge without `on` that is taken by then: the event may not come"
+                } else {
+                    "add an edge that can be taken by then, or drop the invariant"
+                };
+                issues.push(
+                    warning(format!("time stops in `{name}`: nothing leads out by the end of its invariant"))
+                        .help(help),
+                );
+            }
+        }
+    }
+}
+
+fn is_receive(edge: &Edge) -> bool {
+    matches!(edge.sync, Sync::Receive { .. })
+}
+
+/// By location: it has an invariant and no edge that the automaton can take by itself by then.
+pub(super) fn stopping(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
+    let stops = |(i, location): (usize, &Location)| {
+        let leaves = |e: &Edge| {
+            let late = e.clock_guard.iter().any(|g| location.invariant.iter().any(|i| clash(g, i)));
+            let stays = usize::from(e.to.0) == i && !location.invariant.iter().any(|i| resets(e, i.clock));
+            !is_receive(e) && !late && !stays && flow.taken(e).is_some()
+        };
+        let ends = location.kind == LocationKind::Normal && !location.invariant.is_empty();
+        ends && !flow.out[i].iter().any(|e| leaves(&automaton.edges[*e]))
+    };
+    automaton.locations.iter().enumerate().map(stops).collect()
+}
+
+/// Whether an edge would enter its target past the end of the target's invariant.
+pub(super) fn violates(automaton: &Automaton, edge: &Edge) -> bool {
+    let invariant: &[ClockConstraint] =
+        automaton.locations.get(usize::from(edge.to.0)).map_or(&[], |l| &l.invariant);
+    invariant.iter().any(|i| !resets(edge, i.clock) && edge.clock_guard.iter().any(|g| clash(g, i)))
+}
+
+/// By location: it is not the initial one, and every edge that leads there violates its invariant.
+pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
+    let mut ways = vec![(false, false); automaton.locations.len()];
+    for edge in automaton.edges.iter().filter(|e| e.from != e.to && flow.taken(e).is_some()) {
+        if let Some((good, bad)) = ways.get_mut(usize::from(edge.to.0)) {
+            let violates = violates(automaton, edge);
+            *good |= !violates;
+            *bad |= violates;
+        }
+    }
+    if let Some(way) = ways.get_mut(usize::from(automaton.initial.0)) {
+        way.0 = true;
+    }
+    ways.into_iter().map(|(good, bad)| bad && !good).collect()
+}
+
+/// Whether an edge sets this clock to 0.
+fn resets(edge: &Edge, clock: ClockId) -> bool {
+    edge.updates.contains(&Update::Reset(clock))
+}

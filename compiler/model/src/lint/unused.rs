@@ -1,0 +1,305 @@
+//! HR0107: declarations that nothing uses. What suites use is told only if there are suites or tests.
+
+use hrdsl_source::{Code, Diagnostic, FileId, Span};
+
+use super::{events::own_events, facts::Facts};
+use crate::{
+    ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
+    Player, Role, Scenario, StepKind, Sync, TriggerOn, Update, Var,
+};
+
+pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+    let mut found = Vec::new();
+    vocabulary(scenario, facts, &mut found);
+    if facts.has_tests {
+        players(scenario, &mut found);
+    }
+    scenario.agents.iter().enumerate().for_each(|(i, a)| beliefs(scenario, i, a, &mut found));
+    variables(scenario, &mut found);
+    signals(scenario, &mut found);
+    issues.extend(found.into_iter().filter(|u| u.at.file == FileId(0)).map(Unused::said));
+}
+
+/// A declaration that nothing uses.
+struct Unused<'a> {
+    noun: &'static str,
+    name: &'a str,
+    at: Span,
+    /// What is not done with it.
+    lacks: &'static str,
+    /// The whole declaration, if nothing speaks of it; and whether nobody can miss it.
+    whole: Option<(Span, bool)>,
+}
+
+impl Unused<'_> {
+    fn said(self) -> Diagnostic {
+        let Self { noun, name, at, lacks, whole } = self;
+        let message = format!("{noun} `{name}` is never {lacks}");
+        let issue = Diagnostic::warning(Code::UNUSED, at, message);
+        match whole {
+            Some((span, certain)) => {
+                issue.help("use it, or delete it").fix(format!("delete `{name}`"), span, "", certain)
+            }
+            None => issue.help("use it, or delete it and what sets it"),
+        }
+    }
+}
+
+fn vocabulary<'a>(scenario: &'a Scenario, facts: &Facts, found: &mut Vec<Unused<'a>>) {
+    for declared in scenario.declared.iter().filter(|c| !c.used) {
+        let whole = Some((declared.span, true));
+        let (name, at) = (declared.name.as_str(), declared.place);
+        found.push(Unused { noun: declared.noun, name, at, lacks: "used", whole });
+    }
+    for (id, event, at) in own_events(scenario) {
+        if facts.made(id) || facts.read(id) {
+            continue;
+        }
+        let name = event.name.as_str();
+        found.push(if event.stimulus.is_some() {
+            Unused { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.span, false)) }
+        } else {
+            Unused { noun: "the event", name, at, lacks: "made nor taken", whole: Some((event.span, true)) }
+        });
+    }
+}
+
+/// Agents and automata that play in no suite, networks that no suite searches.
+fn players<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
+    let mut agents = vec![false; scenario.agents.len()];
+    let mut automata = vec![false; scenario.automata.len()];
+    let mut networks = vec![false; scenario.networks.len()];
+    let set =
+        |used: &mut [bool], i: u16| used.iter_mut().skip(usize::from(i)).take(1).for_each(|u| *u = true);
+    for suite in &scenario.suites {
+        match &suite.method {
+            Method::Agents { players, .. } => players.iter().for_each(|p| match p {
+                Player::Agent(a) => set(&mut agents, a.0),
+                Player::Automaton(a) => set(&mut automata, a.0),
+            }),
+            Method::Search { network: NetworkId(n), .. } => set(&mut networks, *n),
+            Method::Random { .. } => {}
+        }
+    }
+    for AutomatonId(a) in scenario.networks.iter().flat_map(|n| &n.automata) {
+        set(&mut automata, *a);
+    }
+    let places = &scenario.places;
+    for (i, agent) in scenario.agents.iter().enumerate().filter(|(i, _)| !agents[*i]) {
+        let at = places.agents.get(i).map_or(agent.span, |p| p.name);
+        let whole = Some((agent.span, false));
+        found.push(Unused { noun: "the agent", name: &agent.name, at, lacks: "played in a suite", whole });
+    }
+    for (i, automaton) in scenario.automata.iter().enumerate().filter(|(i, _)| !automata[*i]) {
+        let at = places.automata.get(i).map_or(automaton.span, |p| p.name);
+        let (name, whole) = (automaton.name.as_str(), Some((automaton.span, false)));
+        found.push(Unused { noun: "the automaton", name, at, lacks: "played in a suite or network", whole });
+    }
+    for (i, network) in scenario.networks.iter().enumerate().filter(|(i, _)| !networks[*i]) {
+        let at = places.networks.get(i).copied().unwrap_or(network.span);
+        let whole = Some((network.span, false));
+        found.push(Unused {
+            noun: "the network",
+            name: &network.name,
+            at,
+            lacks: "searched by a suite",
+            whole,
+        });
+    }
+}
+
+fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &mut Vec<Unused<'a>>) {
+    let mut read = vec![false; agent.beliefs.len()];
+    let mut named = vec![false; agent.beliefs.len()];
+    for plan in &agent.plans {
+        match plan.trigger {
+            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => read[usize::from(b.0)] = true,
+            TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => {}
+        }
+        reads_beliefs(&plan.context, &mut read);
+        for step in &plan.body {
+            match &step.kind {
+                StepKind::Query(b, _) => read[usize::from(b.0)] = true,
+                StepKind::Add(b, _) | StepKind::Remove(b, _) | StepKind::Replace(b, _) => {
+                    named[usize::from(b.0)] = true;
+                }
+                StepKind::Do(..)
+                | StepKind::Achieve(..)
+                | StepKind::Spawn(..)
+                | StepKind::Await { .. }
+                | StepKind::Wait(_) => {}
+            }
+        }
+    }
+    for suite in &scenario.suites {
+        let Method::Agents { choose, .. } = &suite.method else { continue };
+        for choice in choose.iter().filter(|c| usize::from(c.agent.0) == index) {
+            named[usize::from(choice.belief.0)] = true;
+        }
+    }
+    let places = scenario.places.agents.get(index);
+    for (i, belief) in agent.beliefs.iter().enumerate().filter(|(i, _)| !read[*i]) {
+        let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.span);
+        let whole = (!named[i]).then_some((belief.span, true));
+        found.push(Unused { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
+    }
+}
+
+fn reads_beliefs(context: &Context, read: &mut [bool]) {
+    match context {
+        Context::Belief(b, _, _) => read[usize::from(b.0)] = true,
+        Context::Not(c) => reads_beliefs(c, read),
+        Context::And(cs) | Context::Or(cs) => cs.iter().for_each(|c| reads_beliefs(c, read)),
+        Context::True | Context::Test(_) => {}
+    }
+}
+
+/// What is read and what is set of some variables.
+struct Uses {
+    read: Vec<bool>,
+    set: Vec<bool>,
+}
+
+impl Uses {
+    fn new(count: usize) -> Self {
+        Self { read: vec![false; count], set: vec![false; count] }
+    }
+}
+
+/// Marks the variables that an expression reads; `but` is the one it is for.
+fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
+    e.each(&mut |part| {
+        let ExprKind::Leaf(leaf) = part.kind else { return };
+        if Some(leaf) == but {
+            return;
+        }
+        match leaf {
+            Leaf::Own(i) => own.read[usize::from(i)] = true,
+            Leaf::Shared(i) => shared.read[usize::from(i)] = true,
+            Leaf::Local(_) | Leaf::Signal(_) => {}
+        }
+    });
+}
+
+fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
+    let mut shared = Uses::new(scenario.shared.len());
+    for (index, automaton) in scenario.automata.iter().enumerate() {
+        let (mut own, clocks) = uses_of(automaton, &mut shared);
+        let places = scenario.places.automata.get(index);
+        for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[*i]) {
+            let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.span);
+            // Several clocks may share a declaration: there is no text that can simply go.
+            found.push(Unused { noun: "the clock", name: clock, at, lacks: "read", whole: None });
+        }
+        for i in unread(&automaton.vars, &mut own) {
+            let var = &automaton.vars[i];
+            let place = places.and_then(|p| p.vars.get(i));
+            let at = place.map_or(automaton.span, |p| p.name);
+            let whole = place.filter(|_| !own.set[i]).map(|p| (p.whole, true));
+            found.push(Unused {
+                noun: "the variable",
+                name: whole_name(&var.name),
+                at,
+                lacks: "read",
+                whole,
+            });
+        }
+    }
+    for i in unread(&scenario.shared, &mut shared) {
+        let var = &scenario.shared[i];
+        let Some(place) = scenario.places.shared.get(i) else { continue };
+        let whole = (!shared.set[i]).then_some((place.whole, true));
+        let (name, at) = (whole_name(&var.name), place.name);
+        found.push(Unused { noun: "the variable", name, at, lacks: "read", whole });
+    }
+}
+
+/// The name of the variable that this is a part of.
+fn whole_name(part: &str) -> &str {
+    part.split(['.', '[']).next().unwrap_or(part)
+}
+
+/// The first parts of the variables of which no part is read; a part that is set stands for them all.
+fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
+    let mut first = Vec::new();
+    let mut at = 0;
+    while at < vars.len() {
+        let name = whole_name(&vars[at].name);
+        let parts = vars[at..].iter().take_while(|v| whole_name(&v.name) == name && v.span == vars[at].span);
+        let end = at + parts.count().max(1);
+        if !uses.read[at..end].contains(&true) {
+            uses.set[at] |= uses.set[at..end].contains(&true);
+            first.push(at);
+        }
+        at = end;
+    }
+    first
+}
+
+/// The uses of an automaton's own variables, and of its clocks.
+fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
+    let mut own = Uses::new(automaton.vars.len());
+    let mut clocks = Uses::new(automaton.clocks.len());
+    let bounds = automaton.locations.iter().flat_map(|l| &l.invariant);
+    for bound in bounds.chain(automaton.edges.iter().flat_map(|e| &e.clock_guard)) {
+        for clock in std::iter::once(bound.clock).chain(bound.minus) {
+            clocks.read[usize::from(clock.0)] = true;
+        }
+    }
+    for edge in &automaton.edges {
+        if let Some(guard) = &edge.guard {
+            reads(guard, &mut own, shared, None);
+        }
+        match &edge.sync {
+            Sync::Send { args, .. } => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
+            Sync::Internal | Sync::Receive { .. } => {}
+        }
+        for update in &edge.updates {
+            match update {
+                Update::Own(i, e) => {
+                    own.set[usize::from(*i)] = true;
+                    reads(e, &mut own, shared, Some(Leaf::Own(*i)));
+                }
+                Update::Shared(i, e) => {
+                    shared.set[usize::from(*i)] = true;
+                    reads(e, &mut own, shared, Some(Leaf::Shared(*i)));
+                }
+                Update::Reset(clock) => clocks.set[usize::from(clock.0)] = true,
+            }
+        }
+    }
+    (own, clocks)
+}
+
+/// Signals that no actor, rule, requirement or other signal reads.
+fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
+    let Some(world) = &scenario.world else { return };
+    // Only the code of a system actor reads signals by itself.
+    let is_code = |a: &ActorId| scenario.actors.get(usize::from(a.0)).is_some_and(|a| a.role == Role::System);
+    let mut read: Vec<bool> = world.signals.iter().map(|s| s.to.iter().any(is_code)).collect();
+    let mut mark = |e: &Expr| {
+        e.each(&mut |part| {
+            if let ExprKind::Leaf(Leaf::Signal(s)) = part.kind
+                && let Some(read) = read.get_mut(usize::from(s.0))
+            {
+                *read = true;
+            }
+        });
+    };
+    world.signals.iter().for_each(|s| mark(&s.value));
+    for rule in &world.rules {
+        rule.guard.iter().chain(&rule.args).for_each(&mut mark);
+    }
+    for requirement in &scenario.requirements {
+        match &requirement.pattern {
+            Pattern::NeverWhile { condition, .. } => condition.iter().for_each(&mut mark),
+            Pattern::Globally(condition) => mark(condition),
+            Pattern::Causes { .. } | Pattern::Forbids { .. } => {}
+        }
+    }
+    for (i, signal) in world.signals.iter().enumerate().filter(|(i, _)| !read[*i]) {
+        let at = scenario.places.signals.get(i).copied().unwrap_or(signal.span);
+        let whole = Some((signal.span, true));
+        found.push(Unused { noun: "the signal", name: &signal.name, at, lacks: "read", whole });
+    }
+}

@@ -1,0 +1,341 @@
+//! Members to lines: one line for what fits and may, else blocks are opened and long lines broken.
+
+use crate::print::align::Line;
+use crate::print::flat::{Flat, columns};
+use crate::print::marks::BlockKind;
+use crate::print::shape::{Block, Member, Part};
+use crate::print::spacing::{Weakness, blank, ends_line, weakness};
+use crate::print::trivia::{Comment, Tok};
+use crate::print::{STEP, WIDTH};
+use crate::token::Kind;
+
+/// The lines of a file.
+pub(super) fn lines<'t>(toks: &[Tok<'t>], members: &[Member]) -> Vec<Line<'t>> {
+    let mut layout = Layout { toks, lines: Vec::new() };
+    for (n, member) in members.iter().enumerate() {
+        layout.member(member, Place { indent: 0, first: n == 0, separator: "" });
+    }
+    if let Some(end) = toks.last() {
+        layout.comments(&end.leading, 0, members.is_empty());
+    }
+    layout.lines
+}
+
+/// Where a member goes.
+#[derive(Clone, Copy)]
+struct Place {
+    indent: usize,
+    /// The first of its block: no empty line before it.
+    first: bool,
+    /// What follows it.
+    separator: &'static str,
+}
+
+/// A piece of text that no line end divides.
+struct Atom {
+    text: String,
+    width: usize,
+    /// A blank before it.
+    space: bool,
+    /// How weakly it holds to the one before, the brackets around first; `None`: always.
+    key: Option<Weakness>,
+    /// A line starts here, for a comment or by the author's right.
+    must: bool,
+    /// The author started a line here.
+    newline: bool,
+    depth: Weakness,
+    tok: usize,
+    last: usize,
+}
+
+/// How a sequence of atoms came out.
+struct Laid {
+    /// All lines fit, and end where the author ended them.
+    as_written: bool,
+}
+
+struct Layout<'a, 't> {
+    toks: &'a [Tok<'t>],
+    lines: Vec<Line<'t>>,
+}
+
+impl<'t> Layout<'_, 't> {
+    fn comments(&mut self, comments: &[Comment<'t>], indent: usize, first: bool) {
+        for (n, comment) in comments.iter().enumerate() {
+            let blank = comment.blank && !(first && n == 0);
+            self.lines.push(Line { blank, indent, comment: Some(comment.text), ..Line::default() });
+        }
+    }
+
+    // ── Members ──
+
+    /// The members of an open block.
+    fn members(&mut self, block: &Block, indent: usize) {
+        for (n, member) in block.members.iter().enumerate() {
+            let last = n + 1 == block.members.len();
+            let separator = match block.kind {
+                BlockKind::Steps if !last => ";",
+                BlockKind::List => ",",
+                BlockKind::Steps | BlockKind::Members => "",
+            };
+            if n > 0 && self.joins(member, block.kind, separator) {
+                continue;
+            }
+            self.member(member, Place { indent, first: n == 0, separator });
+        }
+    }
+
+    /// Puts a member on the line of the one before, if the author did and there is room.
+    fn joins(&mut self, member: &Member, kind: BlockKind, separator: &str) -> bool {
+        let first = &self.toks[member.first];
+        let Some(line) = self.lines.last() else { return false };
+        if first.newline || !first.leading.is_empty() || !line.whole || line.comment.is_some() {
+            return false;
+        }
+        let between = if kind == BlockKind::Members { "; " } else { " " };
+        let used = line.indent + line.text.chars().count() + between.len() + separator.len();
+        let Some(flat) = Flat::member(self.toks, member, WIDTH.saturating_sub(used)) else { return false };
+        let comment = self.toks[member.end - 1].trailing;
+        if let Some(line) = self.lines.last_mut() {
+            line.text += between;
+            line.text += &flat.text;
+            line.text += separator;
+            line.sort = None;
+            line.comment = comment;
+        }
+        true
+    }
+
+    fn member(&mut self, member: &Member, place: Place) {
+        let first = &self.toks[member.first];
+        self.comments(&first.leading, place.indent, place.first);
+        let from = self.lines.len();
+        if !self.whole(member, place) && !self.inline(member, place) {
+            self.open(member, place);
+        }
+        if let Some(line) = self.lines.get_mut(from) {
+            line.blank = first.blank && !(place.first && first.leading.is_empty());
+        }
+    }
+
+    /// On one line.
+    fn whole(&mut self, member: &Member, place: Place) -> bool {
+        let room = WIDTH.saturating_sub(place.indent + place.separator.len());
+        let Some(flat) = Flat::member(self.toks, member, room) else { return false };
+        let (sort, _) = columns(self.toks, member);
+        self.lines.push(Line {
+            indent: place.indent,
+            text: flat.text + place.separator,
+            stops: flat.stops,
+            sort,
+            whole: true,
+            comment: self.toks[member.end - 1].trailing,
+            ..Line::default()
+        });
+        true
+    }
+
+    /// On several lines, blocks on one: as the author has it, if every line fits.
+    fn inline(&mut self, member: &Member, place: Place) -> bool {
+        let blocks = member.parts.iter().any(|p| matches!(p, Part::Block(_)));
+        let mut atoms = Vec::new();
+        for part in &member.parts {
+            match part {
+                Part::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
+                Part::Block(block) => match Flat::block(self.toks, block, WIDTH) {
+                    Some(flat) if !ends_line(self.toks, block.open, member.first) => {
+                        let width = flat.width();
+                        atoms.push(Atom {
+                            text: flat.text,
+                            width,
+                            last: block.close,
+                            ..self.brace(block.open)
+                        });
+                    }
+                    Some(_) | None => return false,
+                },
+            }
+        }
+        end_with(&mut atoms, place.separator);
+        let from = self.lines.len();
+        let laid = self.lay(&atoms, place.indent, STEP);
+        if blocks && !laid.as_written {
+            self.lines.truncate(from);
+            return false;
+        }
+        true
+    }
+
+    /// Every block open, one member a line.
+    fn open(&mut self, member: &Member, place: Place) {
+        let mut atoms = Vec::new();
+        for part in &member.parts {
+            match part {
+                Part::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
+                Part::Block(block) => {
+                    let close = &self.toks[block.close];
+                    atoms.push(self.brace(block.open));
+                    let commented = self.toks[block.open].trailing.is_some() || !close.leading.is_empty();
+                    if block.members.is_empty() && !commented {
+                        atoms.push(self.brace(block.close));
+                        continue;
+                    }
+                    self.lay(&atoms, place.indent, 2 * STEP);
+                    let inner = place.indent + STEP;
+                    self.members(block, inner);
+                    self.comments(&close.leading, inner, block.members.is_empty());
+                    atoms.clear();
+                    atoms.push(Atom { must: false, ..self.brace(block.close) });
+                }
+            }
+        }
+        end_with(&mut atoms, place.separator);
+        self.lay(&atoms, place.indent, STEP);
+    }
+
+    // ── Atoms ──
+
+    fn atoms(&self, run: std::ops::Range<usize>, first: usize, atoms: &mut Vec<Atom>) {
+        let mut depth: Weakness = 0;
+        for at in run {
+            let tok = &self.toks[at];
+            if matches!(tok.kind, Kind::RParen | Kind::RBracket | Kind::RBrace) {
+                depth = depth.saturating_sub(1);
+            }
+            let mut text = String::with_capacity(tok.text.len() + 1);
+            crate::print::flat::write(tok, &mut text);
+            let closes = tok.broken && tok.kind == Kind::RParen;
+            if closes {
+                end_with(atoms, ",");
+            }
+            atoms.push(Atom {
+                width: text.chars().count(),
+                text,
+                space: blank(self.toks, at),
+                key: weakness(self.toks, at, first).map(|w| depth * 16 + w),
+                must: ends_line(self.toks, at, first),
+                newline: tok.newline,
+                depth,
+                tok: at,
+                last: at,
+            });
+            if matches!(tok.kind, Kind::LParen | Kind::LBracket | Kind::LBrace) {
+                depth += 1;
+            }
+        }
+    }
+
+    /// The brace of a block.
+    fn brace(&self, at: usize) -> Atom {
+        let text = self.toks[at].text.to_owned();
+        let must = at > 0 && (!self.toks[at].leading.is_empty() || self.toks[at - 1].trailing.is_some());
+        Atom { text, width: 1, space: true, key: None, must, newline: false, depth: 0, tok: at, last: at }
+    }
+
+    // ── Lines ──
+
+    /// Atoms to lines; those after the first are indented by `more`.
+    fn lay(&mut self, atoms: &[Atom], indent: usize, more: usize) -> Laid {
+        let total: usize = atoms.iter().map(|a| a.width + usize::from(a.space)).sum();
+        let long = indent + total > WIDTH;
+        let mut laid = Laid { as_written: true };
+        let mut lists = Lists { open: Vec::new(), base: indent, more };
+        let (mut at, mut here) = (0, indent);
+        while at < atoms.len() {
+            if at > 0 {
+                let leading = self.toks[atoms[at].tok].leading.iter().map(|c| c.text);
+                let line = |comment| Line { indent: here, comment: Some(comment), ..Line::default() };
+                self.lines.extend(leading.map(line));
+            }
+            let end = line_end(atoms, at, here, long, &mut laid);
+            let mut text = String::new();
+            for (n, atom) in atoms[at..end].iter().enumerate() {
+                if n > 0 && atom.space {
+                    text.push(' ');
+                }
+                text += &atom.text;
+                lists.pass(self.toks, atom, here);
+            }
+            let comment = self.toks[atoms[end - 1].last].trailing;
+            self.lines.push(Line { indent: here, text, comment, ..Line::default() });
+            if let Some(next) = atoms.get(end) {
+                here = lists.indent(self.toks, &atoms[end - 1], next);
+            }
+            at = end;
+        }
+        laid
+    }
+}
+
+/// The lists that are broken after their parenthesis, while lines are laid.
+struct Lists {
+    /// The indentation of the elements, and how deep they are.
+    open: Vec<(usize, Weakness)>,
+    base: usize,
+    more: usize,
+}
+
+impl Lists {
+    fn pass(&mut self, toks: &[Tok<'_>], atom: &Atom, here: usize) {
+        let tok = &toks[atom.tok];
+        if tok.broken && tok.kind == Kind::LParen {
+            self.open.push((here + STEP, atom.depth + 1));
+        } else if tok.broken {
+            self.open.pop();
+        }
+    }
+
+    /// The indentation of the line that starts with `next`.
+    fn indent(&mut self, toks: &[Tok<'_>], last: &Atom, next: &Atom) -> usize {
+        let Some((inner, depth)) = self.open.last().copied() else {
+            let here = self.base + self.more;
+            if toks[next.tok].mark.pattern {
+                // What continues a pattern is not to look like one.
+                self.more += STEP;
+            }
+            return here;
+        };
+        let (before, tok) = (&toks[last.tok], &toks[next.tok]);
+        if tok.broken && tok.kind == Kind::RParen {
+            return inner.saturating_sub(STEP);
+        }
+        let starts = (before.broken && before.kind == Kind::LParen)
+            || (before.kind == Kind::Comma && last.depth == depth);
+        if starts { inner } else { inner + STEP }
+    }
+}
+
+/// Writes a separator after the last atom.
+fn end_with(atoms: &mut [Atom], separator: &str) {
+    if let Some(last) = atoms.last_mut() {
+        last.text += separator;
+        last.width += separator.len();
+    }
+}
+
+/// Where the line that starts at an atom ends: where it must, or where it holds together least of all places that fit.
+fn line_end(atoms: &[Atom], at: usize, indent: usize, long: bool, laid: &mut Laid) -> usize {
+    let mut width = indent + atoms[at].width;
+    let mut best: Option<(Weakness, usize)> = None;
+    for (n, atom) in atoms.iter().enumerate().skip(at + 1) {
+        if atom.must || (long && atom.newline && atom.key.is_some()) {
+            laid.as_written &= width <= WIDTH;
+            return n;
+        }
+        if let Some(key) = atom.key
+            && (width <= WIDTH || best.is_none())
+            && best.is_none_or(|(least, _)| key <= least)
+        {
+            best = Some((key, n));
+        }
+        width += atom.width + usize::from(atom.space);
+        if width > WIDTH
+            && let Some((_, n)) = best
+        {
+            laid.as_written = false;
+            return n;
+        }
+    }
+    laid.as_written &= width <= WIDTH;
+    atoms.len()
+}

@@ -1,0 +1,204 @@
+//! The members of agents, automata, suites, tests, systems and worlds.
+
+use crate::ast::{
+    Access, AgentMember, AgentMemberKind, Automaton, AutomatonMember, AutomatonMemberKind, Edge,
+    EdgeActionKind, Plan, RuleOn, Step, StepKind, SuiteMemberKind, SystemMemberKind, TestMemberKind, Var,
+    WorldMember, WorldMemberKind,
+};
+use crate::print::marks::{BlockKind, Marker};
+use crate::token::Kind;
+
+impl Marker<'_> {
+    // ── Agents ──
+
+    pub(super) fn agent_member(&mut self, member: &AgentMember) {
+        self.start(member.span.start);
+        match &member.kind {
+            AgentMemberKind::Belief { name, params, initial } => {
+                self.params(name.span.end, params);
+                self.calls(initial);
+            }
+            AgentMemberKind::Goal(call) => self.call(call),
+            AgentMemberKind::Plan(plan) => self.plan(plan),
+            AgentMemberKind::Allow(_) | AgentMemberKind::Error => {}
+        }
+    }
+
+    pub(super) fn plan(&mut self, plan: &Plan) {
+        self.set(plan.trigger.span.start, |m| m.prefix = true);
+        self.call(&plan.trigger.call);
+        self.maybe(plan.context.as_ref());
+        let header = plan.context.as_ref().map_or(plan.trigger.span.end, |c| c.span.end);
+        self.block(header, BlockKind::Steps);
+        plan.body.iter().for_each(|s| self.step(s));
+    }
+
+    pub(super) fn step(&mut self, step: &Step) {
+        self.set(step.span.start, |m| {
+            m.start = true;
+            m.prefix = true;
+        });
+        match &step.kind {
+            StepKind::Do(call)
+            | StepKind::Achieve(call)
+            | StepKind::Spawn(call)
+            | StepKind::Query(call)
+            | StepKind::Add(call)
+            | StepKind::Remove(call)
+            | StepKind::Replace(call) => self.call(call),
+            StepKind::Await { events, within } => {
+                self.calls(events);
+                self.maybe(within.as_ref());
+            }
+            StepKind::Wait(expr) => self.expr(expr),
+            StepKind::Error => {}
+        }
+    }
+
+    // ── Automata ──
+
+    pub(super) fn var(&mut self, var: &Var) {
+        self.ty(&var.ty);
+        self.maybe(var.init.as_ref());
+    }
+
+    pub(super) fn automaton(&mut self, start: u32, automaton: &Automaton) {
+        self.block(start, BlockKind::Members);
+        self.params(automaton.name.span.end, automaton.params.as_deref().unwrap_or_default());
+        automaton.members.iter().for_each(|m| self.automaton_member(m));
+    }
+
+    pub(super) fn automaton_member(&mut self, member: &AutomatonMember) {
+        self.start(member.span.start);
+        match &member.kind {
+            AutomatonMemberKind::Clock(_) | AutomatonMemberKind::Allow(_) | AutomatonMemberKind::Error => {}
+            AutomatonMemberKind::Var(var) => self.var(var),
+            AutomatonMemberKind::Location { name, invariant, .. } => {
+                let after = self.at(name.span.end);
+                if self.tokens.get(after).is_some_and(|t| t.kind == Kind::LBrace && t.start < member.span.end)
+                {
+                    self.marks[after].block = Some(BlockKind::Members);
+                    if invariant.is_some() {
+                        self.marks[after + 1].start = true;
+                    }
+                }
+                self.maybe(invariant.as_ref());
+            }
+            AutomatonMemberKind::Edge(edge) => self.edge(edge),
+        }
+    }
+
+    pub(super) fn edge(&mut self, edge: &Edge) {
+        edge.selects.iter().for_each(|p| self.param(p));
+        self.maybe(edge.guard.as_ref());
+        edge.on.iter().for_each(|c| self.call(c));
+        for action in &edge.actions {
+            self.set(action.span.start, |m| m.action = true);
+            match &action.kind {
+                EdgeActionKind::Send(call) => self.call(call),
+                EdgeActionKind::Assign { access, value, .. } => {
+                    for part in access {
+                        match part {
+                            Access::Index(index) => self.expr(index),
+                            Access::Field(_) => {}
+                        }
+                    }
+                    self.expr(value);
+                }
+            }
+        }
+    }
+
+    // ── Suites, tests, system ──
+
+    pub(super) fn suite_member(&mut self, kind: &SuiteMemberKind) {
+        match kind {
+            SuiteMemberKind::Tests(expr)
+            | SuiteMemberKind::Horizon(expr)
+            | SuiteMemberKind::Patience(expr) => self.expr(expr),
+            SuiteMemberKind::Await(events) => self.calls(events),
+            SuiteMemberKind::Length(range) | SuiteMemberKind::Pause(range) => self.range(range),
+            SuiteMemberKind::Choose { .. }
+            | SuiteMemberKind::Explore(_)
+            | SuiteMemberKind::ReachBins(_)
+            | SuiteMemberKind::ReachLocations
+            | SuiteMemberKind::ReachEdges
+            | SuiteMemberKind::Stimuli(_)
+            | SuiteMemberKind::Error => {}
+        }
+    }
+
+    pub(super) fn test_member(&mut self, kind: &TestMemberKind) {
+        match kind {
+            TestMemberKind::Seed(expr) | TestMemberKind::Wait(expr) => self.expr(expr),
+            TestMemberKind::Do { call, with } => {
+                self.call(call);
+                with.iter().for_each(|(_, value)| self.expr(value));
+            }
+            TestMemberKind::Await { events, within } => {
+                self.calls(events);
+                self.expr(within);
+            }
+            TestMemberKind::Method(_)
+            | TestMemberKind::Because(_)
+            | TestMemberKind::Predicts(_)
+            | TestMemberKind::Error => {}
+        }
+    }
+
+    pub(super) fn system_member(&mut self, kind: &SystemMemberKind) {
+        match kind {
+            SystemMemberKind::Limit(expr) | SystemMemberKind::Budget(expr) => self.expr(expr),
+            SystemMemberKind::Run(_) | SystemMemberKind::Coverage(_) | SystemMemberKind::Error => {}
+        }
+    }
+
+    // ── World ──
+
+    pub(super) fn world_member(&mut self, member: &WorldMember) {
+        self.start(member.span.start);
+        match &member.kind {
+            WorldMemberKind::Step(e) | WorldMemberKind::Sample(e) | WorldMemberKind::Gravity(e) => {
+                self.expr(e)
+            }
+            WorldMemberKind::Part { of, args, at, rotated, .. } => {
+                self.args(of.span.end, args.as_deref().unwrap_or_default());
+                self.expr(at);
+                self.maybe(rotated.as_ref());
+            }
+            WorldMemberKind::Body(body) => {
+                self.args(body.shape.span.end, &body.sizes);
+                self.expr(&body.at);
+                self.maybe(body.rotated.as_ref());
+                self.maybe(body.mass.as_ref());
+            }
+            WorldMemberKind::Joint { at, axis, limits, .. } => {
+                self.expr(at);
+                self.expr(axis);
+                self.range(limits);
+            }
+            WorldMemberKind::Arm { tool, speed, .. } => {
+                self.expr(tool);
+                self.expr(speed);
+            }
+            WorldMemberKind::Gripper { tool, reach, delay, .. } => {
+                self.expr(tool);
+                self.expr(reach);
+                self.expr(delay);
+            }
+            WorldMemberKind::Signal { ty, value, .. } => {
+                self.ty(ty);
+                self.expr(value);
+            }
+            WorldMemberKind::Rule(rule) => {
+                match &rule.on {
+                    RuleOn::Event(call) => self.call(call),
+                    RuleOn::Closes(_) | RuleOn::Opens(_) => {}
+                }
+                self.maybe(rule.when.as_ref());
+                self.call(&rule.emit);
+            }
+            WorldMemberKind::Current { .. } | WorldMemberKind::Allow(_) | WorldMemberKind::Error => {}
+        }
+    }
+}

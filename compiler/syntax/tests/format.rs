@@ -1,0 +1,562 @@
+//! What is formatted is the same text to the parser, keeps its comments, and is formatted once and for all.
+
+#![allow(clippy::disallowed_methods, reason = "the texts are files")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hrdsl_source::FileId;
+use hrdsl_syntax::token::KEYWORDS;
+use hrdsl_syntax::{format, parse};
+use proptest::prelude::*;
+use serde_json::Value;
+
+// ── The texts: every file and every block of the specification that can be read ──
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn files(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            files(&path, extension, found);
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+}
+
+fn texts() -> Vec<(String, String)> {
+    let (mut scenarios, mut pages) = (Vec::new(), Vec::new());
+    files(&root(), "hri", &mut scenarios);
+    files(&root().join("spec"), "md", &mut pages);
+    let mut texts = Vec::new();
+    for path in scenarios {
+        texts.push((path.display().to_string(), fs::read_to_string(&path).unwrap()));
+    }
+    for path in pages {
+        let page = fs::read_to_string(&path).unwrap();
+        for (n, block) in page.split("```hri").skip(1).enumerate() {
+            let (_, code) = block.split_once('\n').unwrap();
+            let code = code.split("```").next().unwrap();
+            texts.push((format!("{} {n}", path.display()), code.to_owned()));
+        }
+    }
+    texts.retain(|(_, text)| parse(FileId(0), text).1.is_empty());
+    texts
+}
+
+// ── What must stay ──
+
+/// The tree without spans.
+fn tree(text: &str) -> Value {
+    let (file, diagnostics) = parse(FileId(0), text);
+    assert!(diagnostics.is_empty(), "{text}\n{diagnostics:#?}");
+    let mut tree = serde_json::to_value(&file).unwrap();
+    erase(&mut tree);
+    tree
+}
+
+fn erase(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            map.remove("span");
+            map.values_mut().for_each(erase);
+        }
+        Value::Array(list) => list.iter_mut().for_each(erase),
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+    }
+}
+
+/// A piece of text: a blank between tokens, a comment, or something else.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Piece<'t> {
+    Blank(&'t str),
+    Comment(&'t str),
+    Code(&'t str),
+}
+
+fn pieces(text: &str) -> Vec<Piece<'_>> {
+    let mut pieces = Vec::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let length = if c.is_whitespace() {
+            rest.find(|c: char| !c.is_whitespace()).unwrap_or(rest.len())
+        } else if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if c == '"' {
+            let mut end = 1;
+            while !rest[end..].starts_with('"') {
+                end += if rest[end..].starts_with('\\') { 2 } else { 1 };
+            }
+            end + 1
+        } else if c.is_ascii_digit() {
+            rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())
+        } else if c.is_alphanumeric() || c == '_' {
+            rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len())
+        } else {
+            c.len_utf8()
+        };
+        let (piece, after) = rest.split_at(length);
+        pieces.push(match c {
+            c if c.is_whitespace() => Piece::Blank(piece),
+            '/' if piece.len() > 1 => Piece::Comment(piece.trim_end()),
+            _ => Piece::Code(piece),
+        });
+        rest = after;
+    }
+    pieces
+}
+
+fn comments(text: &str) -> Vec<&str> {
+    let comment = |p| if let Piece::Comment(comment) = p { Some(comment) } else { None };
+    pieces(text).into_iter().filter_map(comment).collect()
+}
+
+/// All words and marks, without semicolons and last commas.
+fn code(text: &str) -> Vec<&str> {
+    let code = |p| if let Piece::Code(code) = p { Some(code) } else { None };
+    let mut code: Vec<&str> = pieces(text).into_iter().filter_map(code).filter(|c| *c != ";").collect();
+    let next: Vec<&str> = code.iter().skip(1).copied().chain([""]).collect();
+    let mut next = next.iter();
+    code.retain(|c| {
+        let closed = matches!(next.next(), Some(&(")" | "}")));
+        *c != "," || !closed
+    });
+    code
+}
+
+/// Formats, and checks what holds for every text without faults.
+fn checked(name: &str, text: &str) -> String {
+    let result = format(text).unwrap_or_else(|d| panic!("{name}: {d:#?}\n{text}"));
+    assert_eq!(tree(&result), tree(text), "{name}: the tree\n{text}\n----\n{result}");
+    assert_eq!(code(&result), code(text), "{name}: the tokens\n{result}");
+    assert_eq!(comments(&result), comments(text), "{name}: the comments\n{result}");
+    let again = format(&result).unwrap();
+    assert!(again == result, "{name}: not stable\n{result}\n----\n{again}");
+    for line in result.lines() {
+        assert_eq!(line, line.trim_end(), "{name}: blanks at the end");
+    }
+    assert!(!result.contains("\n\n\n") && !result.contains("{\n\n"), "{name}: empty lines\n{result}");
+    assert!(result.is_empty() || (result.ends_with('\n') && !result.ends_with("\n\n")), "{name}: the end");
+    result
+}
+
+#[test]
+fn every_text() {
+    let texts = texts();
+    assert!(texts.len() > 60, "{} texts", texts.len());
+    for (name, text) in texts {
+        checked(&name, &text);
+    }
+}
+
+#[test]
+fn the_examples_are_formatted() {
+    let mut found = Vec::new();
+    files(&root().join("examples"), "hri", &mut found);
+    assert!(!found.is_empty());
+    for path in found {
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(checked("", &text) == text, "{} is not formatted: run `hrdsl fmt examples`", path.display());
+    }
+}
+
+#[test]
+fn the_page_of_the_style_is_written_in_it() {
+    let page = fs::read_to_string(root().join("spec/style.md")).unwrap();
+    let block = page.split("```hri\n").nth(1).unwrap().split("```").next().unwrap();
+    assert_eq!(checked("style.md", block), block);
+}
+
+/// As if somebody else had typed it: other blanks, other line ends, more empty lines.
+#[test]
+fn blanks_do_not_matter() {
+    for (name, text) in texts() {
+        let plain = format(&text).unwrap();
+        let typed: String = pieces(&plain)
+            .into_iter()
+            .map(|piece| match piece {
+                Piece::Blank(blank) if blank.contains("\n\n") => " \r\n\n\t\n\r\n   ".to_owned(),
+                Piece::Blank(blank) if blank.contains('\n') => "\t\r\n".to_owned(),
+                Piece::Blank(_) => " \t ".to_owned(),
+                Piece::Comment(text) | Piece::Code(text) => text.to_owned(),
+            })
+            .collect();
+        assert_eq!(format(&format!("\u{feff}{typed}")).unwrap(), plain, "{name}");
+    }
+}
+
+/// A line must not end here: a number takes its unit on the same line only, a name after a dot is any word.
+fn holds(before: &str) -> bool {
+    before.starts_with(|c: char| c.is_ascii_digit()) || matches!(before, "%" | ".")
+}
+
+/// The text with other line ends; `None` if that has made it another text.
+fn mangled(text: &str, picks: &[u8]) -> Option<String> {
+    let mut picks = picks.iter().cycle();
+    let mut out = String::new();
+    let mut before = "";
+    let mut commented = false;
+    for piece in pieces(text) {
+        match piece {
+            Piece::Blank(blank) => {
+                let pick = picks.next().copied().unwrap_or(0);
+                let line = blank.contains('\n');
+                out.push_str(match pick {
+                    0..=2 if line && !commented && !holds(before) => " ",
+                    3 if !line && !holds(before) => "\n",
+                    4 if line => "\n\n\n",
+                    5 if !line => "   ",
+                    _ => blank,
+                });
+            }
+            Piece::Comment(comment) => out.push_str(comment),
+            Piece::Code(code) => {
+                out.push_str(code);
+                before = code;
+            }
+        }
+        if !matches!(piece, Piece::Blank(_)) {
+            commented = matches!(piece, Piece::Comment(_));
+        }
+    }
+    parse(FileId(0), &out).1.is_empty().then_some(out)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn line_ends(at in any::<prop::sample::Index>(), picks in prop::collection::vec(0..40_u8, 50..200)) {
+        let texts = texts();
+        let (name, text) = at.get(&texts);
+        // A word that starts a line may be taken for a declaration: such a text has other faults, and is left out.
+        if let Some(mangled) = mangled(text, &picks) {
+            prop_assert_eq!(tree(&mangled), tree(text));
+            checked(name, &mangled);
+        }
+    }
+
+    /// Names of any length, so that lines break in all sorts of places.
+    #[test]
+    fn long_names(at in any::<prop::sample::Index>(), picks in prop::collection::vec(0..60_usize, 20..80)) {
+        let texts = texts();
+        let (name, text) = at.get(&texts);
+        let mut lengths = picks.iter().cycle();
+        let keyword = |word: &str| KEYWORDS.iter().any(|k| k.word == word);
+        let mut renamed = String::new();
+        for piece in pieces(text) {
+            let (Piece::Blank(piece) | Piece::Comment(piece) | Piece::Code(piece)) = piece;
+            renamed.push_str(piece);
+            if piece.starts_with(|c: char| c.is_ascii_alphabetic()) && !keyword(piece) {
+                let length = lengths.next().copied().unwrap_or(0);
+                renamed.push_str(&"_of_a_long_name".repeat(5)[..length]);
+            }
+        }
+        let picks: Vec<u8> = picks.iter().map(|p| *p as u8).collect();
+        for text in [mangled(&renamed, &picks), mangled(&renamed, &[9])].into_iter().flatten() {
+            checked(name, &text);
+        }
+    }
+
+    /// Comments anywhere between two tokens stay, in their order.
+    #[test]
+    fn comments_anywhere(at in any::<prop::sample::Index>(), picks in prop::collection::vec(0..30_u8, 50..200)) {
+        let texts = texts();
+        let (name, text) = at.get(&texts);
+        let mut picks = picks.iter().cycle();
+        let mut commented = String::new();
+        let mut before = "";
+        for piece in pieces(text) {
+            match piece {
+                Piece::Code(code) | Piece::Comment(code) => {
+                    commented.push_str(code);
+                    before = code;
+                }
+                Piece::Blank(blank) => {
+                    let pick = picks.next().copied().unwrap_or(0);
+                    let plain = holds(before) || before.starts_with("//");
+                    match pick {
+                        0 if !plain => commented.push_str(" // at the end\n"),
+                        1 if !plain => commented.push_str("\n\n// alone\n// twice\n\n"),
+                        _ => commented.push_str(blank),
+                    }
+                }
+            }
+        }
+        if parse(FileId(0), &commented).1.is_empty() {
+            checked(name, &commented);
+        }
+    }
+}
+
+/// The share of mangled texts that are still the same scenario: were it small, the properties would say little.
+#[test]
+fn most_mangled_texts_are_checked() {
+    let texts = texts();
+    let kept =
+        texts.iter().filter(|(_, text)| mangled(text, &[9, 3, 9, 1, 9, 9, 4, 9, 2, 9, 9]).is_some()).count();
+    assert!(kept * 2 > texts.len(), "{kept} of {}", texts.len());
+}
+
+#[test]
+fn faults_change_nothing() {
+    for text in ["event", "agent A plays p {", "const a = $", "const s = \"a", "scenario a b"] {
+        let diagnostics = format(text).expect_err(text);
+        assert_eq!(diagnostics, parse(FileId(0), text).1);
+        assert!(!diagnostics.is_empty());
+    }
+}
+
+/// A list of thousands of elements on one line, and thousands of blocks in a row.
+#[test]
+fn long_texts() {
+    let list = format!("suite s by random {{ stimuli {} }}", vec!["a_stimulus"; 20_000].join(", "));
+    assert!(checked("list", &list).lines().all(|l| l.len() <= 110));
+    let scenario = fs::read_to_string(root().join("examples/handover/scenario.hri")).unwrap();
+    checked("scenarios", &scenario.replace("scenario handover\n", "").repeat(20));
+}
+
+// ── The style, construct by construct ──
+
+macro_rules! styles {
+    ($($name:ident $text:literal)*) => {$(
+        #[test]
+        fn $name() {
+            insta::assert_snapshot!(checked(stringify!($name), $text));
+        }
+    )*};
+}
+
+styles! {
+    empty ""
+    only_comments "\n\n  // one\n\n\n   /// two  \n//three\n\n"
+    vocabulary r#"
+
+/// A head.
+scenario    s ;
+
+
+use std . robots.bert2;use "people.hri"
+allow HR0107    "why"
+actor person:environment
+actor the_robot
+  : system   // the code
+enum Order{feed,clean,}
+enum Longer {
+  feed, clean,
+  rest   // none
+}
+enum Nothing{
+}
+record Pose{x:length,y:length}
+record Wide{ x:length, // to the front
+  y:length }
+const A=4
+const LONG=2*(3+-1)   // six
+const LIST = f(1,-2,3,)
+event a,b(x:bool)from p to r
+event much_longer(x:bool,n:0..4,) from p   to r,q
+event an_extraordinarily_long_name(gaze: bool, pressure: bool, location: bool) from sensors to robot
+event c from p
+"#
+    expressions r#"
+const a=1+2*3- -4%5
+const b=not x&&y or z==1&&! w
+const c=(1,-2.5,3 e)
+const d=50%
+const e = 7%2+10m/s-5cm
+const f=if a<b{1}else{if c {2} else{3}}
+const g=f(x,_,a.b . c)+abs(-(y))
+const h=!!true||false and not not x
+const h2=! !true||! ( x )
+const i=1.5e3+0.25   rad/s/2 + 3 m/s^2
+const j=a.system.part*(1)>=x.y
+const k=if a {1} else if b {2} else {3}
+const l=seen[i+1] .at[0].x-1
+const m = 7
+  % 2
+const n = aaaaaaaaaaaaaaaaaaaaaaaaaa && bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb && (cccccccccccccccccccccc || dddddddddddddddddd) && eeeeeeeeee
+const o = distance(person.hand.position, robot.finger_left.position) + distance(person.head.position, robot.finger_right.position)
+const p = a
+  && b
+const q = f(a,
+  b)
+const r = f(
+  a, g(b,
+  c),
+  d)
+const s = a // one
+  // two
+  + b
+"#
+    stimulus r#"
+/// The person asks.
+stimulus ask(ok:bool,n:0 .. 3)by person{
+  sample offset in if ok{10cm..20cm}else{if n>1{1m..2m}else{3m..4m}}
+  sample dy in - 10 cm..if ok {1cm} else {2cm}
+  emit leg_request emit decided ( true );hold 5s;
+
+  person.hand.move_to(leg+(dx,dy,dz),800ms)
+  if ok{person.grasp.grasp()}else{hold 1s;if n>2{emit x}}
+  if ok { emit a } else if n > 1 {
+    emit b } else { }
+  if n > 1 { emit a } else if n > 2 { emit b } else { emit c }
+}
+stimulus nothing()by person{
+}
+stimulus say(ok: bool) by person { sample long_name in 10 cm .. 20 cm; person.hand.move_to(leg, 800 ms); hold 1 s }
+"#
+    agent r#"
+agent Human(n:0..4,e:event)plays person{
+
+  /// Chosen.
+  belief wants(legs:0..LEGS);
+  belief asked(legs:0..LEGS-1)=asked(0),asked(1); belief away goal!table
+  belief near=near
+
+  allow HR0107 "why"
+  plan+!table when asked(N)&&N<4{ask;! a;!!b(1);?c(X);+d;-e(_);-+f(N+1);}
+  plan@again-!leg(_){await released|discarded(true)within 120s;wait 10s;await x}
+  plan + b{}
+  plan-b{
+  }
+  plan +?b(X)when if X {true} else {false}{leave}
+  plan on look ( G ){reach;hold(1)}
+  plan on grip{reach} // why
+
+  plan +!long when shows(L, G, P, X) && fickle_at(L) { look(G); reach(X); grip(P); say_ready; grip(false); !settle(1) }
+  plan +!long
+    when shows(L, G, P, X) && fickle_at(L) { look(G); reach(X); grip(P); say_ready; grip(false); !settle }
+  plan +!long when shows(Leg, Gaze, Pressure, Location) && fickle_at(Leg) && another_belief(Leg) && yet_another_one(Leg) { a; b }
+  plan +!open {
+    ask; look(true);
+    // then
+    leave;
+
+  }
+}
+agent B=Human(3,asked)
+agent Long=Human(3,asked)
+"#
+    automaton r#"
+var away:bool=false
+var location_  :bool
+var seen: bool[4]
+var grid:(0..4)[LEGS+1]
+automaton P(n: 0..4) plays person{
+  clock x,y
+  var left:0..LEGS=0;var g:bool
+  init committed location start
+  urgent location mid{invariant x<=3s&&y<2s;}
+  location idle{ }
+  location broken {
+    invariant x <= 1 s
+  }
+
+  start->idle when x>=3s do ask;left=left-1;x=0;
+  idle->a_long_name select n:0..4,g:bool on look(g)
+  mid -> mid do a[i] . x=3;; n+=1
+  mid->mid
+  mid -> idle when x >= 3 s && left > 0 && not pressure_ && not location_ && gaze_ on a_long_event_name(g, p, l) do left = left - 1; x = 0
+}
+network table=P|Q
+automaton Q=P(3)
+"#
+    requirements r#"
+require R1 functional "a leg is released or discarded in time" after decided ( _ ):(released or discarded)within DEADLINE
+require R2 functional "short"
+  sensed(true,true,true)causes released
+require R3 functional (a or b) forbids c until d
+require R5 safety "the gripper does not close on a hand" never gripper_closing while min(distance(person.hand, robot.finger_left), 3 m) < 5 cm
+require R6(e:event) safety globally speed<0.25rad/s
+require R7=R6(asked)
+assume at most 4 leg_request within 300s
+assume at most
+  4
+  (a or b)
+"#
+    coverage r#"
+cover legs=count(leg_request)bins none=0,one=1,few=2..3,four=4..
+cover ok=count( decided(true) or x )bins no=0,
+  some=1 ..
+cover m(e:event)=count(e)bins some=1..
+cover n=m(asked)
+cross c(a:cover)=legs*ok{
+  bin "4 legs"when legs.four&&ok.some
+  bin "a few legs, whatever" when legs.few;
+  allow HR0107 "why"
+  ignore when legs.none
+}
+"#
+    suites r#"
+suite s by agents Human,Robot{
+  choose one wants of Human choose any shows of Human per leg
+  explore pairwise;tests 160;horizon 300s
+  patience 60s
+}
+suite t by search of table{reach each bin of c;reach each location reach each edge}
+suite r by random{stimuli ask,look;await offered|gone;length 5 .. 20;pause 0s..10s;tests 3}
+"#
+    tests r#"
+test bdi_tests.t017{seed 17 method agents;because "wants(2)";predicts "a, b\n\\"}
+test a.b{
+  seed 1;ask
+  look(true)with offset=15cm,d=-1cm;
+  await released|discarded within 60s
+  wait 10s
+  look(true) with offset = 15 cm, distance = 55 cm, angle = 20 deg, another = 1 m, one_more = 2 m, and_the_last = 3 m
+}
+"#
+    world r#"
+part p(n:0..4){
+  /// A palm.
+  body palm:dynamic box(4cm,8cm,8cm)at(0m,0m,0m)graspable mass 0.4kg ghost rotated(0deg,0deg,1deg)
+  joint j:torso->palm at(0m,0m,0m)axis(0,0,1)limits -60deg..60deg
+  arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s
+  arm arm: hip_rotor, hip_flexor, shoulder_flexor, shoulder_abduction, humeral_rotation, elbow_flexor, wrist_pronation, wrist_abduction tip palm tool (8 cm, 0 cm, 0 cm) speed 0.2 rad/s
+  gripper g:palm tool(8cm,0m,0m)reach 4cm delay 500ms
+}
+world{
+
+  step 10ms // fine
+  sample 50 ms       // coarse
+  gravity(0,0,-9.81)
+
+  part robot=p(3)at(0m,0m,0m)rotated(0deg,0deg,90deg)
+  part me=q at(0m,0m,0m)
+  current leg in leg1,p.leg2 by robot.g
+  signal gaze:bool to robot,person=abs(x)<=20cm
+    &&visible(a,b)
+  signal gaze: bool to robot = abs(person.head.y - leg.y) <= 20 cm && range(person.head, leg) <= 60 cm && angle(person.head, leg) < 40 deg
+  on sense when range(a.b,c.d)<2m emit sensed(gaze)
+  on close robot.g emit closing on open robot.g emit opening
+  on open ( x )when x emit f
+
+}
+system robot{run "python3 robot.py" coverage "a.py","b.py";limit 300s;budget 10s}
+"#
+    comments_everywhere r#"// head
+scenario s // name
+// ── Agents ── the people
+agent A plays p { // opens
+
+  // first
+  belief a // one
+  belief longer // two
+  // between
+
+  // alone
+  plan +!x { a; // a
+    // b
+    b }
+  // last
+
+} // closed
+// end"#
+}

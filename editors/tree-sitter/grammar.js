@@ -1,0 +1,733 @@
+// The grammar of hrdsl for editors. It follows spec/grammar.md and compiler/syntax/src/grammar.lalrpop, and accepts at
+// least what they do.
+//
+// Words are read by src/scanner.c: it knows which are keywords where, so `identifier` never is a reserved word, and a
+// soft keyword is a keyword only where one fits.
+
+const KEYWORDS = require("./keywords.json").map((row) => row.word);
+
+// From the loosest operator to the tightest.
+const PREC = { OR: 1, AND: 2, NOT: 3, COMPARE: 4, ADD: 5, MULTIPLY: 6, NEGATE: 7 };
+
+/** The external token of a keyword, shown as the word itself. */
+function keyword($, word) {
+  if (!KEYWORDS.includes(word)) throw new Error(`"${word}" is not in keywords.json`);
+  return alias($[`_keyword_${word}`], word);
+}
+
+/** One or more, separated. */
+const list = (rule, separator = ",") => seq(rule, repeat(seq(separator, rule)));
+
+/** None or more, separated by commas; a last comma is allowed. */
+const listed = (rule) => optional(seq(list(rule), optional(",")));
+
+/** Members with optional semicolons. */
+const block = ($, member) => seq("{", repeat(choice(member, ";")), closing($));
+
+/** The end of a block, also if it was forgotten: so the next declaration is read as if the block had ended. */
+const closing = ($) => choice("}", $.missing_brace);
+
+module.exports = grammar({
+  name: "hri",
+
+  externals: ($) => [
+    $.identifier,
+    $._member, // any word after a dot
+    $._origin, // a name before `->`
+    $.unit,
+    $.missing_brace, // without text, where a declaration begins in a block
+    ...KEYWORDS.map((word) => $[`_keyword_${word}`]),
+    $._never, // valid only after a fault
+  ],
+
+  extras: ($) => [/[ \t\r\n]/, $.comment],
+
+  supertypes: ($) => [$.declaration, $.expression, $.type],
+
+  inline: ($) => [$._range_end],
+
+  conflicts: ($) => [
+    // `bool[4]`, and `limits[4] .. 7`.
+    [$.named_type, $._path],
+  ],
+
+  rules: {
+    source_file: ($) => seq(optional($.scenario_declaration), repeat(choice($.declaration, ";"))),
+
+    scenario_declaration: ($) => seq(keyword($, "scenario"), field("name", $.identifier)),
+
+    declaration: ($) =>
+      choice(
+        $.use_declaration,
+        $.allow,
+        $.enum_declaration,
+        $.record_declaration,
+        $.instance_declaration,
+        $.actor_declaration,
+        $.const_declaration,
+        $.event_declaration,
+        $.stimulus_declaration,
+        $.agent_declaration,
+        $.var_declaration,
+        $.automaton_declaration,
+        $.network_declaration,
+        $.require_declaration,
+        $.assume_declaration,
+        $.cover_declaration,
+        $.cross_declaration,
+        $.suite_declaration,
+        $.part_declaration,
+        $.world_declaration,
+        $.system_declaration,
+        $.test_declaration,
+      ),
+
+    // ── Vocabulary ──
+
+    use_declaration: ($) => seq(keyword($, "use"), choice(field("module", $._path), field("file", $.string))),
+
+    allow: ($) => seq(keyword($, "allow"), field("code", $.identifier), field("reason", $.string)),
+
+    enum_declaration: ($) => seq(keyword($, "enum"), field("name", $.identifier), field("body", $.enum_body)),
+    enum_body: ($) => seq("{", listed(field("value", $.identifier)), closing($)),
+
+    record_declaration: ($) => seq(keyword($, "record"), field("name", $.identifier), field("body", $.record_body)),
+    record_body: ($) => seq("{", listed(alias($.parameter, $.record_field)), closing($)),
+
+    instance_declaration: ($) =>
+      seq(
+        choice(...["agent", "automaton", "require", "cover", "cross"].map((word) => keyword($, word))),
+        field("name", $.identifier),
+        "=",
+        field("template", $.identifier),
+        field("arguments", $.arguments),
+      ),
+
+    actor_declaration: ($) =>
+      seq(
+        keyword($, "actor"),
+        field("name", $.identifier),
+        ":",
+        field("role", choice($.identifier, alias($._keyword_system, $.identifier))),
+      ),
+
+    const_declaration: ($) =>
+      seq(keyword($, "const"), field("name", $.identifier), "=", field("value", $.expression)),
+
+    event_declaration: ($) =>
+      seq(
+        keyword($, "event"),
+        list($.event_name),
+        keyword($, "from"),
+        field("from", $.identifier),
+        optional(seq(keyword($, "to"), list(field("to", $.identifier)))),
+      ),
+    event_name: ($) => seq(field("name", $.identifier), optional(field("parameters", $.parameters))),
+
+    parameters: ($) => seq("(", listed($.parameter), ")"),
+    parameter: ($) => seq(field("name", $.identifier), ":", field("type", $.type)),
+
+    type: ($) => choice($.named_type, $.template_type, $.range_type, $.array_type),
+    named_type: ($) => field("name", $.identifier),
+    // What a template can be given besides values.
+    template_type: ($) => choice(keyword($, "event"), keyword($, "actor"), keyword($, "cover")),
+    range_type: ($) => seq(field("low", $._range_end), "..", field("high", $._range_end)),
+    array_type: ($) =>
+      choice(
+        seq(field("element", choice($.named_type, $.array_type)), "[", field("size", $.expression), "]"),
+        seq("(", field("element", $.range_type), ")", "[", field("size", $.expression), "]"),
+      ),
+
+    // ── Stimuli ──
+
+    stimulus_declaration: ($) =>
+      seq(
+        keyword($, "stimulus"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        keyword($, "by"),
+        field("by", $.identifier),
+        field("body", $.stimulus_body),
+      ),
+    stimulus_body: ($) => block($, $._stimulus_step),
+    _stimulus_step: ($) => choice($.sample_step, $.emit_step, $.hold_step, $.act_step, $.if_step),
+    sample_step: ($) =>
+      seq(keyword($, "sample"), field("name", $.identifier), keyword($, "in"), field("range", $._drawn)),
+    _drawn: ($) => choice($.range, $.if_range),
+    // As with `if_expression`, the compiler wants an `else`; without it here, one that is not yet typed costs less.
+    if_range: ($) =>
+      seq(
+        keyword($, "if"),
+        field("condition", $.expression),
+        "{",
+        field("consequence", $._drawn),
+        closing($),
+        optional(seq(keyword($, "else"), "{", field("alternative", $._drawn), closing($))),
+      ),
+    emit_step: ($) => seq(keyword($, "emit"), field("event", $.call)),
+    hold_step: ($) => seq(keyword($, "hold"), field("time", $.expression)),
+    act_step: ($) => seq(field("action", alias($._action_path, $.path)), field("arguments", $.arguments)),
+    // An action is always some thing's: two names at least. `sample` and `hold` may be things.
+    _action_path: ($) =>
+      seq(
+        choice(
+          $.identifier,
+          alias($._keyword_sample, $.identifier),
+          alias($._keyword_hold, $.identifier),
+        ),
+        repeat1($._dot_name),
+      ),
+    if_step: ($) =>
+      seq(
+        keyword($, "if"),
+        field("condition", $.expression),
+        field("consequence", $.stimulus_body),
+        optional(seq(keyword($, "else"), field("alternative", choice($.stimulus_body, $.if_step)))),
+      ),
+
+    // ── Expressions ──
+
+    expression: ($) =>
+      choice(
+        $.binary_expression,
+        $.unary_expression,
+        $.integer,
+        $.float,
+        $.quantity,
+        $.boolean,
+        $.wildcard,
+        $.identifier,
+        $.path,
+        $.call_expression,
+        $.index_expression,
+        $.field_expression,
+        $.parenthesized_expression,
+        $.tuple,
+        $.if_expression,
+      ),
+
+    binary_expression: ($) => {
+      const rows = [
+        [PREC.OR, ["||", keyword($, "or")]],
+        [PREC.AND, ["&&", keyword($, "and")]],
+        [PREC.COMPARE, ["==", "!=", "<", "<=", ">", ">="]],
+        [PREC.ADD, ["+", "-"]],
+        [PREC.MULTIPLY, ["*", "/", "%"]],
+      ];
+      return choice(
+        ...rows.map(([level, operators]) =>
+          prec.left(
+            level,
+            seq(
+              field("left", $.expression),
+              field("operator", choice(...operators)),
+              field("right", $.expression),
+            ),
+          ),
+        ),
+      );
+    },
+
+    unary_expression: ($) =>
+      choice(
+        prec(
+          PREC.NOT,
+          seq(field("operator", choice(keyword($, "not"), "!", "!!")), field("operand", $.expression)),
+        ),
+        prec(PREC.NEGATE, seq(field("operator", "-"), field("operand", $.expression))),
+      ),
+
+    parenthesized_expression: ($) => seq("(", $.expression, ")"),
+    tuple: ($) => seq("(", $.expression, ",", list($.expression), optional(","), ")"),
+
+    if_expression: ($) =>
+      seq(
+        keyword($, "if"),
+        field("condition", $.expression),
+        "{",
+        field("consequence", $.expression),
+        closing($),
+        optional(
+          seq(
+            keyword($, "else"),
+            choice(
+              seq("{", field("alternative", $.expression), closing($)),
+              field("alternative", $.if_expression),
+            ),
+          ),
+        ),
+      ),
+
+    call_expression: ($) => seq(field("function", $._path), field("arguments", $.arguments)),
+    index_expression: ($) =>
+      seq(
+        field("value", choice($._path, $.index_expression, $.field_expression)),
+        "[",
+        field("index", $.expression),
+        "]",
+      ),
+    field_expression: ($) =>
+      seq(field("value", choice($.index_expression, $.field_expression)), ".", field("field", $._after_dot)),
+
+    arguments: ($) => seq("(", listed($.expression), ")"),
+
+    _path: ($) => choice($.identifier, $.path),
+    path: ($) => seq($.identifier, repeat1($._dot_name)),
+    _dot_name: ($) => seq(".", $._after_dot),
+    _after_dot: ($) => alias($._member, $.identifier),
+
+    range: ($) => seq(field("low", $._range_end), "..", field("high", $._range_end)),
+    _range_end: ($) => $.expression,
+
+    quantity: ($) => seq(field("value", choice($.integer, $.float)), field("unit", $.unit)),
+    integer: () => /[0-9]+/,
+    float: () => /[0-9]+\.[0-9]+([eE][+-]?[0-9]+)?/,
+    boolean: ($) => choice(keyword($, "true"), keyword($, "false")),
+    wildcard: () => "_",
+
+    string: ($) =>
+      seq('"', repeat(choice($.string_content, $.escape_sequence)), token.immediate('"')),
+    // Rather than a comment, if it holds `//`.
+    string_content: () => token.immediate(prec(1, /[^"\\\n]+/)),
+    escape_sequence: () => token.immediate(prec(1, /\\["\\n]/)),
+
+    comment: () => token(/\/\/[^\n]*/),
+
+    // ── Calls and events ──
+
+    call: ($) => seq(field("name", $.identifier), optional(field("arguments", $.arguments))),
+
+    // `a | b`
+    await_events: ($) => list($.call, "|"),
+
+    // `a`, `a or b`, `(a or b)`
+    events: ($) => choice(list($.call, keyword($, "or")), seq("(", list($.call, keyword($, "or")), ")")),
+
+    _within: ($) => seq(keyword($, "within"), field("within", $.expression)),
+
+    // ── Agents ──
+
+    agent_declaration: ($) =>
+      seq(
+        keyword($, "agent"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        keyword($, "plays"),
+        field("plays", $.identifier),
+        field("body", $.agent_body),
+      ),
+    agent_body: ($) => block($, choice($.belief, $.goal, $.plan, $.allow)),
+    belief: ($) =>
+      seq(
+        keyword($, "belief"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        optional(seq("=", list(field("initial", $.call)))),
+      ),
+    goal: ($) => seq(keyword($, "goal"), "!", field("goal", $.call)),
+    plan: ($) =>
+      seq(
+        keyword($, "plan"),
+        optional(seq("@", field("label", $.identifier))),
+        field("trigger", $.trigger),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
+        field("body", $.plan_body),
+      ),
+    trigger: ($) => seq(field("kind", $.trigger_kind), field("call", $.call)),
+    trigger_kind: ($) =>
+      choice("+", "-", seq("+", "!"), seq("-", "!"), seq("+", "?"), keyword($, "on")),
+    plan_body: ($) => seq("{", optional(seq(list($._plan_step, ";"), optional(";"))), closing($)),
+    _plan_step: ($) =>
+      choice(
+        $.do_step,
+        $.achieve_step,
+        $.spawn_step,
+        $.query_step,
+        $.add_step,
+        $.remove_step,
+        $.replace_step,
+        $.await_step,
+        $.wait_step,
+      ),
+    do_step: ($) => $.call,
+    achieve_step: ($) => seq("!", $.call),
+    spawn_step: ($) => seq("!!", $.call),
+    query_step: ($) => seq("?", $.call),
+    add_step: ($) => seq("+", $.call),
+    remove_step: ($) => seq("-", $.call),
+    replace_step: ($) => seq("-+", $.call),
+    await_step: ($) => seq(keyword($, "await"), field("events", $.await_events), optional($._within)),
+    wait_step: ($) => seq(keyword($, "wait"), field("time", $.expression)),
+
+    // ── Automata ──
+
+    var_declaration: ($) =>
+      seq(
+        keyword($, "var"),
+        field("name", $.identifier),
+        ":",
+        field("type", $.type),
+        optional(seq("=", field("value", $.expression))),
+      ),
+
+    automaton_declaration: ($) =>
+      seq(
+        keyword($, "automaton"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        keyword($, "plays"),
+        field("plays", $.identifier),
+        field("body", $.automaton_body),
+      ),
+    automaton_body: ($) => block($, choice($.clock, $.var_declaration, $.location, $.edge, $.allow)),
+    clock: ($) => seq(keyword($, "clock"), list(field("name", $.identifier))),
+    location: ($) =>
+      seq(
+        optional(keyword($, "init")),
+        optional(choice(keyword($, "urgent"), keyword($, "committed"))),
+        keyword($, "location"),
+        field("name", $.identifier),
+        optional(field("body", $.location_body)),
+      ),
+    location_body: ($) =>
+      seq(
+        "{",
+        optional(seq(keyword($, "invariant"), field("invariant", $.expression), repeat(";"))),
+        closing($),
+      ),
+    edge: ($) =>
+      seq(
+        field("from", alias($._origin, $.identifier)),
+        "->",
+        field("to", $.identifier),
+        repeat(choice($.select, $.guard, $.synchronisation)),
+        optional(seq(keyword($, "do"), field("actions", $.actions))),
+      ),
+    select: ($) => seq(keyword($, "select"), list($.parameter)),
+    guard: ($) => seq(keyword($, "when"), field("condition", $.expression)),
+    synchronisation: ($) => seq(keyword($, "on"), field("event", $.call)),
+    // Takes the semicolons after the last action.
+    actions: ($) => prec.right(seq($._action, repeat(choice(";", seq(";", $._action))))),
+    _action: ($) => choice($.call, $.assignment),
+    assignment: ($) =>
+      seq(
+        field("left", choice($._path, $.index_expression, $.field_expression)),
+        field("operator", choice("=", "+=", "-=")),
+        field("right", $.expression),
+      ),
+
+    network_declaration: ($) =>
+      seq(keyword($, "network"), field("name", $.identifier), "=", list(field("automaton", $.identifier), "|")),
+
+    // ── Requirements ──
+
+    require_declaration: ($) =>
+      seq(
+        keyword($, "require"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        field("kind", $.identifier),
+        optional(field("title", $.string)),
+        field("pattern", $._pattern),
+      ),
+    _pattern: ($) =>
+      choice(
+        $.after_pattern,
+        $.causes_pattern,
+        $.forbids_pattern,
+        $.never_pattern,
+        $.globally_pattern,
+      ),
+    after_pattern: ($) =>
+      seq(
+        keyword($, "after"),
+        field("trigger", $.events),
+        ":",
+        field("response", $.events),
+        optional($._within),
+      ),
+    causes_pattern: ($) =>
+      seq(
+        field("trigger", $.events),
+        keyword($, "causes"),
+        field("response", $.events),
+        optional($._within),
+      ),
+    forbids_pattern: ($) =>
+      seq(
+        field("trigger", $.events),
+        keyword($, "forbids"),
+        field("forbidden", $.events),
+        keyword($, "until"),
+        field("until", $.events),
+      ),
+    never_pattern: ($) =>
+      seq(
+        keyword($, "never"),
+        field("events", $.events),
+        optional(seq(keyword($, "while"), field("condition", $.expression))),
+      ),
+    globally_pattern: ($) => seq(keyword($, "globally"), field("condition", $.expression)),
+
+    assume_declaration: ($) =>
+      seq(
+        keyword($, "assume"),
+        keyword($, "at"),
+        keyword($, "most"),
+        field("count", choice($.integer, $.identifier)),
+        field("events", $.events),
+        optional($._within),
+      ),
+
+    // ── Coverage ──
+
+    cover_declaration: ($) =>
+      seq(
+        keyword($, "cover"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        "=",
+        keyword($, "count"),
+        "(",
+        field("count", alias($._counted, $.events)),
+        ")",
+        keyword($, "bins"),
+        list($.bin),
+      ),
+    _counted: ($) => list($.call, keyword($, "or")),
+    bin: ($) =>
+      seq(
+        field("name", $.identifier),
+        "=",
+        field("low", $._range_end),
+        optional(seq("..", optional(field("high", $._range_end)))),
+      ),
+
+    cross_declaration: ($) =>
+      seq(
+        keyword($, "cross"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        "=",
+        list(field("point", $.identifier), "*"),
+        field("body", $.cross_body),
+      ),
+    cross_body: ($) => block($, choice($.cross_bin, $.cross_ignore, $.allow)),
+    cross_bin: ($) =>
+      seq(
+        keyword($, "bin"),
+        field("name", $.string),
+        keyword($, "when"),
+        field("condition", $.expression),
+      ),
+    cross_ignore: ($) => seq(keyword($, "ignore"), keyword($, "when"), field("condition", $.expression)),
+
+    // ── Suites and tests ──
+
+    suite_declaration: ($) =>
+      seq(
+        keyword($, "suite"),
+        field("name", $.identifier),
+        keyword($, "by"),
+        field("method", $._method),
+        field("body", $.suite_body),
+      ),
+    _method: ($) => choice($.agents_method, $.search_method, $.random_method),
+    agents_method: ($) => seq(keyword($, "agents"), list(field("agent", $.identifier))),
+    search_method: ($) => seq(keyword($, "search"), keyword($, "of"), field("network", $.identifier)),
+    random_method: ($) => keyword($, "random"),
+    suite_body: ($) => block($, choice($.choose, $.setting, $.reach)),
+    choose: ($) =>
+      seq(
+        keyword($, "choose"),
+        choice(keyword($, "one"), keyword($, "any")),
+        field("belief", $.identifier),
+        keyword($, "of"),
+        field("agent", $.identifier),
+        optional(seq(keyword($, "per"), field("per", $.identifier))),
+      ),
+    // A word, and what it is set to.
+    setting: ($) =>
+      choice(
+        seq(keyword($, "explore"), field("value", $.identifier)),
+        ...["tests", "horizon", "patience"].map((word) =>
+          seq(keyword($, word), field("value", $.expression)),
+        ),
+        seq(keyword($, "stimuli"), list(field("value", $.identifier))),
+        seq(keyword($, "await"), field("value", $.await_events)),
+        ...["length", "pause"].map((word) => seq(keyword($, word), field("value", $.range))),
+      ),
+    reach: ($) =>
+      seq(
+        keyword($, "reach"),
+        keyword($, "each"),
+        choice(
+          seq(keyword($, "bin"), keyword($, "of"), field("of", $.identifier)),
+          keyword($, "location"),
+          keyword($, "edge"),
+        ),
+      ),
+
+    test_declaration: ($) => seq(keyword($, "test"), field("name", $._path), field("body", $.test_body)),
+    test_body: ($) =>
+      block($, choice(alias($._test_setting, $.setting), $.stimulus_step, $.await_step, $.wait_step)),
+    _test_setting: ($) =>
+      choice(
+        seq(keyword($, "seed"), field("value", $.expression)),
+        seq(keyword($, "method"), field("value", $.identifier)),
+        seq(keyword($, "because"), field("value", $.string)),
+        seq(keyword($, "predicts"), field("value", $.string)),
+      ),
+    stimulus_step: ($) => seq(field("stimulus", $.call), optional(seq(keyword($, "with"), list($.sampled)))),
+    sampled: ($) => seq(field("name", $.identifier), "=", field("value", $.expression)),
+
+    // ── World and system ──
+
+    part_declaration: ($) =>
+      seq(
+        keyword($, "part"),
+        field("name", $.identifier),
+        optional(field("parameters", $.parameters)),
+        field("body", $.world_body),
+      ),
+    world_declaration: ($) => seq(keyword($, "world"), field("body", $.world_body)),
+    world_body: ($) =>
+      block($, 
+        choice(
+          alias($._world_setting, $.setting),
+          $.placement,
+          $.body,
+          $.joint,
+          $.arm,
+          $.gripper,
+          $.current,
+          $.signal,
+          $.rule,
+          $.allow,
+        ),
+      ),
+    _world_setting: ($) =>
+      choice(
+        ...["step", "sample", "gravity"].map((word) => seq(keyword($, word), field("value", $.expression))),
+      ),
+    placement: ($) =>
+      seq(
+        keyword($, "part"),
+        field("name", $.identifier),
+        "=",
+        field("part", $.identifier),
+        optional(field("arguments", $.arguments)),
+        keyword($, "at"),
+        field("at", $.expression),
+        optional(seq(keyword($, "rotated"), field("rotated", $.expression))),
+      ),
+    body: ($) =>
+      seq(
+        keyword($, "body"),
+        field("name", $.identifier),
+        ":",
+        field("motion", $.identifier),
+        field("shape", $.identifier),
+        field("sizes", $.arguments),
+        keyword($, "at"),
+        field("at", $.expression),
+        repeat(
+          choice(
+            seq(keyword($, "rotated"), field("rotated", $.expression)),
+            seq(keyword($, "mass"), field("mass", $.expression)),
+            keyword($, "ghost"),
+            keyword($, "graspable"),
+          ),
+        ),
+      ),
+    joint: ($) =>
+      seq(
+        keyword($, "joint"),
+        field("name", $.identifier),
+        ":",
+        field("parent", alias($._origin, $.identifier)),
+        "->",
+        field("child", $.identifier),
+        keyword($, "at"),
+        field("at", $.expression),
+        keyword($, "axis"),
+        field("axis", $.expression),
+        keyword($, "limits"),
+        field("limits", $.range),
+      ),
+    arm: ($) =>
+      seq(
+        keyword($, "arm"),
+        field("name", $.identifier),
+        ":",
+        list(field("joint", $.identifier)),
+        keyword($, "tip"),
+        field("tip", $.identifier),
+        keyword($, "tool"),
+        field("tool", $.expression),
+        keyword($, "speed"),
+        field("speed", $.expression),
+      ),
+    gripper: ($) =>
+      seq(
+        keyword($, "gripper"),
+        field("name", $.identifier),
+        ":",
+        field("palm", $.identifier),
+        keyword($, "tool"),
+        field("tool", $.expression),
+        keyword($, "reach"),
+        field("reach", $.expression),
+        keyword($, "delay"),
+        field("delay", $.expression),
+      ),
+    current: ($) =>
+      seq(
+        keyword($, "current"),
+        field("name", $.identifier),
+        keyword($, "in"),
+        list(field("of", $._path)),
+        keyword($, "by"),
+        field("by", $._path),
+      ),
+    signal: ($) =>
+      seq(
+        keyword($, "signal"),
+        field("name", $.identifier),
+        ":",
+        field("type", $.type),
+        keyword($, "to"),
+        list(field("to", $.identifier)),
+        "=",
+        field("value", $.expression),
+      ),
+    rule: ($) =>
+      seq(
+        keyword($, "on"),
+        choice(
+          field("event", choice($.call, alias($._gripper_word_call, $.call))),
+          seq(keyword($, "close"), field("closes", $._path)),
+          seq(keyword($, "open"), field("opens", $._path)),
+        ),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
+        keyword($, "emit"),
+        field("emits", $.call),
+      ),
+    // Events may be called `close` and `open`.
+    _gripper_word_call: ($) =>
+      seq(
+        field("name", choice(alias($._keyword_close, $.identifier), alias($._keyword_open, $.identifier))),
+        optional(field("arguments", $.arguments)),
+      ),
+
+    system_declaration: ($) =>
+      seq(keyword($, "system"), field("actor", $.identifier), field("body", $.system_body)),
+    system_body: ($) => block($, alias($._system_setting, $.setting)),
+    _system_setting: ($) =>
+      choice(
+        seq(keyword($, "run"), field("value", $.string)),
+        seq(keyword($, "coverage"), list(field("value", $.string))),
+        ...["limit", "budget"].map((word) => seq(keyword($, word), field("value", $.expression))),
+      ),
+  },
+});

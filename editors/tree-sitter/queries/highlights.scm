@@ -1,0 +1,120 @@
+; Later patterns win where two fit.
+
+(identifier) @variable
+(comment) @comment
+((comment) @comment.documentation
+  (#match? @comment.documentation "^///([^/]|$)"))
+
+; ── Literals ──
+
+(string) @string
+(escape_sequence) @string.escape
+(integer) @number
+(float) @number.float
+(quantity value: (_) @number)
+(unit) @type.builtin
+(boolean) @boolean
+(wildcard) @variable.builtin
+
+; ── Marks ──
+
+["(" ")" "{" "}" "[" "]"] @punctuation.bracket
+["," ";" ":" "."] @punctuation.delimiter
+["->" ".." "=" "+=" "-=" "|" "||" "&&" "!" "!!" "==" "!=" "<" "<=" ">" ">=" "+" "-" "*" "/" "%" "?" "-+" "@"] @operator
+(trigger_kind) @operator
+
+; ── Keywords ──
+
+[
+  "scenario" "actor" "const" "stimulus" "agent" "automaton" "network" "require" "assume" "cover" "cross" "suite" "part"
+  "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on" "do" "emit" "within" "sample" "hold" "belief" "goal"
+  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "while" "globally" "at"
+  "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "explore" "tests"
+  "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
+  "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
+  "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event"
+] @keyword
+["enum" "record"] @keyword.type
+["init" "urgent" "committed"] @keyword.modifier
+["if" "else"] @keyword.conditional
+["await" "wait"] @keyword.coroutine
+"use" @keyword.import
+"allow" @keyword.directive
+["not" "and" "or"] @keyword.operator
+(boolean ["true" "false"] @boolean)
+
+; ── Names where they are declared ──
+
+(scenario_declaration name: (identifier) @module)
+(use_declaration module: (identifier) @module)
+(use_declaration module: (path (identifier) @module))
+(use_declaration file: (string) @string.special.path)
+(allow code: (identifier) @constant)
+(enum_declaration name: (identifier) @type)
+(enum_body value: (identifier) @constant)
+(record_declaration name: (identifier) @type)
+(record_field name: (identifier) @variable.member)
+(instance_declaration name: (identifier) @type)
+(instance_declaration template: (identifier) @type)
+(actor_declaration name: (identifier) @type)
+(actor_declaration role: (identifier) @type.builtin)
+(const_declaration name: (identifier) @constant)
+(event_name name: (identifier) @function)
+(event_declaration from: (identifier) @type)
+(event_declaration to: (identifier) @type)
+(parameter name: (identifier) @variable.parameter)
+(stimulus_declaration name: (identifier) @function)
+(stimulus_declaration by: (identifier) @type)
+(agent_declaration name: (identifier) @type)
+(agent_declaration plays: (identifier) @type)
+(belief name: (identifier) @function)
+(plan label: (identifier) @label)
+(automaton_declaration name: (identifier) @type)
+(automaton_declaration plays: (identifier) @type)
+(location name: (identifier) @label)
+(edge from: (identifier) @label)
+(edge to: (identifier) @label)
+(network_declaration name: (identifier) @type)
+(network_declaration automaton: (identifier) @type)
+(require_declaration name: (identifier) @constant)
+(require_declaration kind: (identifier) @attribute)
+(cover_declaration name: (identifier) @constant)
+(bin name: (identifier) @constant)
+(cross_declaration name: (identifier) @constant)
+(cross_declaration point: (identifier) @constant)
+(suite_declaration name: (identifier) @type)
+(agents_method agent: (identifier) @type)
+(search_method network: (identifier) @type)
+(choose agent: (identifier) @type)
+(choose belief: (identifier) @function)
+(test_declaration name: (identifier) @type)
+(test_declaration name: (path (identifier) @type))
+(sampled name: (identifier) @variable.parameter)
+(part_declaration name: (identifier) @type)
+(placement part: (identifier) @type)
+(body motion: (identifier) @attribute)
+(body shape: (identifier) @type.builtin)
+(signal to: (identifier) @type)
+(system_declaration actor: (identifier) @type)
+
+; ── Names where they are used ──
+
+(named_type name: (identifier) @type)
+((named_type name: (identifier) @type.builtin)
+  (#any-of? @type.builtin
+    "bool" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
+(template_type) @type.builtin
+(call name: (identifier) @function.call)
+(call_expression function: (identifier) @function.call)
+(call_expression function: (path (identifier) @function.call .))
+(act_step action: (path (identifier) @function.method.call .))
+(trigger call: (call name: (identifier) @function.method))
+(achieve_step (call name: (identifier) @function.method))
+(spawn_step (call name: (identifier) @function.method))
+(goal goal: (call name: (identifier) @function.method))
+(field_expression field: (identifier) @variable.member)
+(path "." . (identifier) @variable.member)
+
+; ── Faults ──
+
+(missing_brace) @error

@@ -1,0 +1,33 @@
+[
+  (enum_body)
+  (record_body)
+  (stimulus_body)
+  (agent_body)
+  (plan_body)
+  (automaton_body)
+  (location_body)
+  (cross_body)
+  (suite_body)
+  (test_body)
+  (world_body)
+  (system_body)
+  (parameters)
+  (arguments)
+  (tuple)
+  (if_expression)
+  (if_range)
+] @indent.begin
+
+["}" ")" "]"] @indent.branch @indent.end
+
+; The second line of a declaration without braces.
+[
+  (require_declaration)
+  (cover_declaration)
+  (signal)
+  (rule)
+] @indent.begin
+
+(comment) @indent.auto
+(string) @indent.ignore
+(ERROR) @indent.auto

@@ -1,0 +1,41 @@
+; The outline: what a file declares.
+
+(scenario_declaration name: (identifier) @name) @definition.module
+(enum_declaration name: (identifier) @name) @definition.type
+(record_declaration name: (identifier) @name) @definition.type
+(actor_declaration name: (identifier) @name) @definition.interface
+(const_declaration name: (identifier) @name) @definition.constant
+(event_name name: (identifier) @name) @definition.function
+(stimulus_declaration name: (identifier) @name) @definition.function
+(agent_declaration name: (identifier) @name) @definition.class
+(automaton_declaration name: (identifier) @name) @definition.class
+(instance_declaration name: (identifier) @name) @definition.class
+(network_declaration name: (identifier) @name) @definition.class
+(require_declaration name: (identifier) @name) @definition.constant
+(cover_declaration name: (identifier) @name) @definition.constant
+(cross_declaration name: (identifier) @name) @definition.constant
+(suite_declaration name: (identifier) @name) @definition.class
+(test_declaration name: (_) @name) @definition.class
+(part_declaration name: (identifier) @name) @definition.class
+(system_declaration actor: (identifier) @name) @definition.class
+
+(belief name: (identifier) @name) @definition.field
+(plan trigger: (trigger call: (call name: (identifier) @name))) @definition.method
+(var_declaration name: (identifier) @name) @definition.variable
+(location name: (identifier) @name) @definition.field
+(body name: (identifier) @name) @definition.field
+(joint name: (identifier) @name) @definition.field
+(arm name: (identifier) @name) @definition.field
+(gripper name: (identifier) @name) @definition.field
+(current name: (identifier) @name) @definition.field
+(signal name: (identifier) @name) @definition.field
+(placement name: (identifier) @name) @definition.field
+
+; Where they are used.
+
+(call name: (identifier) @name) @reference.call
+(call_expression function: (identifier) @name) @reference.call
+(instance_declaration template: (identifier) @name) @reference.class
+(agent_declaration plays: (identifier) @name) @reference.interface
+(automaton_declaration plays: (identifier) @name) @reference.interface
+(named_type name: (identifier) @name) @reference.type

@@ -1,0 +1,143 @@
+//! The page on random draws is a program: it draws what the generators of tests draw.
+
+use std::{
+    fmt::Write as _,
+    io::Write as _,
+    process::{Command, Stdio},
+};
+
+use hrdsl_bdi::choose::{Alternative, Factor, explore};
+use hrdsl_compiler::{Input, compile};
+use hrdsl_ir::{
+    Value,
+    bdi::{AgentId, BeliefId, Fact},
+    suite::Explore,
+    test::TestStep,
+};
+use hrdsl_runtime::testgen::generate;
+
+use crate::page::{read, split};
+
+const SCENARIO: &str = "scenario draws
+    actor person : environment
+    stimulus act(kind: 0..6) by person {
+      sample number in -3 .. 40
+      sample near in if kind > 3 { -10 cm .. 20 cm } else { 0 m .. 0 m }
+      sample turn in 0 rad .. 3 rad
+      hold near / 1 m * 1 s
+    }
+    suite chance by random { stimuli act length 3..9 pause 0 s .. 10 s tests 12 }";
+
+/// What hrdsl draws, a line for each number.
+fn drawn(seed: u64) -> (String, Vec<u64>) {
+    let compilation = compile(Input { name: "draws", text: SCENARIO }, &[]);
+    let program = compilation.program.expect("the scenario compiles");
+    let generated = generate(&program, &program.suites[0], None, seed).unwrap();
+    let (mut lines, mut seeds) = (String::new(), Vec::new());
+    for test in &generated.tests {
+        seeds.push(test.seed);
+        for step in &test.steps {
+            match step {
+                TestStep::Wait { time } => {
+                    let _ = writeln!(lines, "{time}");
+                }
+                TestStep::Do { args, samples, .. } => {
+                    for value in args.iter().chain(samples) {
+                        let _ = match value {
+                            Value::Int(n) => writeln!(lines, "{n}"),
+                            Value::Float(x) => writeln!(lines, "{:016x}", x.to_bits()),
+                            Value::Bool(_) | Value::Symbol(_) => panic!("{value:?}"),
+                        };
+                    }
+                }
+                TestStep::Await { .. } => panic!("none is in the suite"),
+            }
+        }
+    }
+    (lines, seeds)
+}
+
+/// The same by the program of the page.
+const BY_THE_PAGE: &str = "
+import struct, sys
+seed, seeds = int(sys.argv[1]), [int(s) for s in sys.argv[2:]]
+chance = Generator(seed)
+hexed = lambda x: '%016x' % struct.unpack('>Q', struct.pack('>d', x))[0]
+for own in seeds:
+    steps = []
+    for _ in range(chance.whole(3, 9, 32)):
+        pause = chance.whole(0, 10 * 10**9, 64) // 10**8 * 10**8
+        steps.append((pause, chance.whole(0, 6, 32)))
+    samples = Generator(own)
+    for pause, kind in steps:
+        if pause: print(pause)
+        print(kind)
+        print(samples.sample(-3, 40))
+        print(hexed(samples.sample(-0.1, 0.2) if kind > 3 else samples.sample(0.0, 0.0)))
+        print(hexed(samples.sample(0.0, 3.0)))
+";
+
+/// The programs of the page, followed by one more; what it prints.
+fn by_the_page(more: &str, args: &[String]) -> String {
+    let blocks = split(&read("spec/randomness.md")).0.into_iter().filter(|b| b.info == "python");
+    let program: String = blocks.map(|b| b.text).chain([more.to_owned()]).collect();
+    let mut child = Command::new("python3")
+        .arg("-")
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("python3 is there");
+    child.stdin.take().unwrap().write_all(program.as_bytes()).unwrap();
+    String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap()
+}
+
+fn compare(what: &str, expected: &str, got: &str) {
+    let first = expected.lines().zip(got.lines()).enumerate().find(|(_, (e, g))| e != g);
+    assert!(first.is_none(), "{what}: line, expected, got: {first:?}");
+    assert_eq!(expected.lines().count(), got.lines().count(), "{what}");
+}
+
+#[test]
+fn the_page_draws_what_the_generators_draw() {
+    for seed in [0, 1, 77, 18_000_000] {
+        let (expected, seeds) = drawn(seed);
+        let args: Vec<String> = std::iter::once(seed).chain(seeds).map(|s| s.to_string()).collect();
+        compare(&format!("seed {seed}"), &expected, &by_the_page(BY_THE_PAGE, &args));
+        assert!(expected.lines().count() > 100);
+    }
+}
+
+#[test]
+fn the_page_chooses_what_suites_choose() {
+    let choose = "
+import sys
+sizes, tests, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+chance = Generator(seed)
+for row in fill(pairwise(sizes, chance), sizes, tests, chance): print(*row)
+chance = Generator(seed)
+for row in fill([], sizes, tests, chance): print(*row)
+";
+    let spaces: [&[u32]; 6] = [&[], &[4], &[2, 2], &[3, 1, 2, 5], &[5, 8, 8, 8, 8, 2, 2], &[4; 9]];
+    for sizes in spaces {
+        for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
+            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let mut expected = String::new();
+            for how in [Explore::Pairwise, Explore::Random] {
+                for set in explore(&factors, how, tests, seed).sets {
+                    let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
+                    let _ = writeln!(expected, "{}", row.join(" "));
+                }
+            }
+            let args = [format!("{sizes:?}"), tests.to_string(), seed.to_string()];
+            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
+        }
+    }
+}
+
+/// A dimension whose alternatives are numbers.
+fn factor(size: u32) -> Factor {
+    let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())] };
+    let alternative = |n| Alternative { facts: vec![fact(n)], text: n.to_string() };
+    Factor { agent: AgentId(0), name: "n".to_owned(), alternatives: (0..size).map(alternative).collect() }
+}

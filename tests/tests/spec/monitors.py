@@ -1,0 +1,126 @@
+"""Monitors as `spec/monitors.md` defines them, step by step; as slow as it is plain."""
+
+import json
+import math
+import sys
+
+from agents import Fault, evaluate, fits
+
+NEVER = math.inf
+
+
+class Monitor:
+    def __init__(self, given, number):
+        self.it, self.number = given, number
+        self.q, self.z, self.f = given["initial"], 0, 0
+        self.o = self.s = self.V = self.margin = None
+        self.n = self.k = self.g = 0
+        self.sigma, self.burst = {}, (None, 0)
+        self.d = self.deadline(0)
+        self.triggers = any("trigger" in e["effects"] for e in given["edges"])
+
+    def deadline(self, t):
+        bound = self.it["states"][self.q]["deadline"]
+        return NEVER if bound is None else max(t, self.z + bound)
+
+    def value(self, e):
+        names = {i: self.sigma[s][0] for i, s in enumerate(self.it["signals"]) if s in self.sigma}
+        try:
+            return evaluate(e, names)
+        except Fault:
+            return None
+
+    def react(self, cause, t, i):
+        for e in self.it["edges"]:
+            if e["from"] == self.q and cause(e["on"]) and (e["guard"] is None or self.value(e["guard"]) is True):
+                break
+        else:
+            return
+        moves, effects = e["to"] != self.q, e["effects"]
+        for effect in effects:
+            if effect == "reset_clock":
+                self.z = t
+            elif effect == "trigger":
+                self.n += 1
+                stays = not moves and "reset_clock" not in effects and "fail" not in effects
+                if not (stays and self.o):
+                    self.o = (t, i)
+            elif effect == "discharge":
+                self.k, self.o = self.k + 1, None
+            elif effect == "fail":
+                self.g += 1
+                self.V = self.V or self.violation(t, i)
+        if moves:
+            self.q, self.f = e["to"], t
+            self.o = None if "fail" in effects else self.o
+        if moves or "reset_clock" in effects:
+            self.d = self.deadline(t)
+
+    def violation(self, t, i):
+        o, read = self.o or (t, i), [s for s in self.it["signals"] if s in self.sigma]
+        steps = [o[1], i, *(self.sigma[s][1] for s in read)]
+        witness = list(dict.fromkeys(step for step in steps if step is not None))
+        values = [[s, self.sigma[s][0]] for s in read]
+        return {"time": t, "step": i, "trigger_time": o[0], "witness": witness, "values": values}
+
+    def pass_time(self, t):
+        while self.d < t:
+            due, self.d = self.d, NEVER
+            self.burst = (due, self.burst[1] + 1 if self.burst[0] == due else 1)
+            if self.burst[1] <= len(self.it["states"]):
+                self.react(lambda on: on == "deadline", due, None)
+
+    def take_margin(self, t):
+        m = self.value(self.it["margin"]["value"])
+        if m is not None and math.isfinite(m) and (self.margin is None or m < self.margin[0]):
+            self.margin = (m, t)
+
+    def sampled(self):
+        if self.s:
+            (t, i), self.s = self.s, None
+            if self.it["margin"] and not self.it["margin"]["at"]:
+                self.take_margin(t)
+            watches = any(e["on"] == "sample" for e in self.it["edges"]) and not self.triggers
+            if watches and self.n == 0 and all(s in self.sigma for s in self.it["signals"]):
+                self.n, self.o = 1, (t, i)
+            self.react(lambda on: on == "sample", t, i)
+
+    def step(self, i, t, before, what, value):
+        if t > before:
+            self.sampled()
+        self.pass_time(t)
+        if isinstance(what, dict):
+            if what["signal"] in self.it["signals"]:
+                self.sigma[what["signal"]] = (value, i)
+                self.s = (t, i)
+            return
+        is_it = lambda on: on not in ("sample", "deadline") and fits(on["event"], what, value)
+        at = self.it["margin"]["at"] if self.it["margin"] else []
+        named = lambda patterns: any(p["event"] == what for p in patterns)
+        if named(at) or any(e["on"] not in ("sample", "deadline") and named(e["on"]["event"]) for e in self.it["edges"]):
+            self.sampled()
+        if fits(at, what, value):
+            self.take_margin(t)
+        self.react(is_it, t, i)
+
+    def verdict(self, end):
+        self.sampled()
+        self.pass_time(end + 1)
+        pending = self.it["states"][self.q]["pending"]
+        outcome = "fail" if self.g else "open" if pending else "pass" if self.n else "not_checked"
+        return {
+            "monitor": self.number, "outcome": outcome, "triggered": self.n, "discharged": self.k, "failures": self.g,
+            "first_failure": self.V, "worst_margin": self.margin and list(self.margin),
+            "open_since": (self.o[0] if self.o else self.f) if pending else None,
+        }
+
+
+given = json.load(sys.stdin)
+for trace in given["traces"]:
+    monitors = [Monitor(m, i) for i, m in enumerate(given["monitors"])]
+    before = 0
+    for i, (t, what, value) in enumerate(trace["steps"]):
+        for monitor in monitors:
+            monitor.step(i, t, before, what, value)
+        before = t
+    print(json.dumps([m.verdict(trace["end"]) for m in monitors]))

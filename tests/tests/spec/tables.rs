@@ -1,0 +1,117 @@
+//! What the pages repeat from registries is generated: between `<!-- NAME -->` and `<!-- end -->` stands what the code says.
+//! `HRDSL_RENEW=1` writes it.
+
+use std::{env, fmt::Write, fs};
+
+use hrdsl_compiler::token::{Class, KEYWORDS};
+use hrdsl_model::{Dim, Type, UNITS};
+use hrdsl_source::{GROUPS, REGISTRY};
+
+use crate::page::{pages, read, root};
+
+/// Compares a generated part of a page with what it should be, or writes it.
+pub fn generated(page: &str, name: &str, text: &str) {
+    let old = read(page);
+    let (start, end) = (format!("<!-- {name} -->\n"), "<!-- end -->");
+    let (before, rest) = old.split_once(&start).unwrap_or_else(|| panic!("{page} has no `{}`", start.trim()));
+    let (_, after) = rest.split_once(end).unwrap_or_else(|| panic!("{page}: `{name}` has no end"));
+    same(page, &old, &format!("{before}{start}\n{}\n\n{end}{after}", text.trim()));
+}
+
+/// Compares a page with what it should be, or writes it.
+fn same(page: &str, old: &str, new: &str) {
+    if old == new {
+        return;
+    }
+    if env::var_os("HRDSL_RENEW").is_some() {
+        fs::write(root().join(page), new).unwrap();
+        return;
+    }
+    let line = old.lines().zip(new.lines()).find(|(o, n)| o != n);
+    panic!("{page} differs from the code, first in {line:?} (old, new): renew it with HRDSL_RENEW=1");
+}
+
+/// The name of a dimension's type.
+fn type_of(dim: Dim) -> &'static str {
+    let mut names = Type::names().filter(|n| *n != "float");
+    names.find(|n| Type::named(n) == Some(Type::Float(dim))).expect("each unit is of a named dimension")
+}
+
+#[test]
+fn the_types() {
+    let mut table = String::from("| type | values | counted in |\n|---|---|---|\n");
+    for name in Type::names() {
+        let (values, unit) = match Type::named(name) {
+            Some(Type::Float(dim)) => {
+                let unit = dim.symbol().filter(|s| !s.is_empty()).map(|s| format!("`{s}`"));
+                ("64-bit floats", unit.unwrap_or_default())
+            }
+            Some(Type::Bool) => ("`false`, `true`", String::new()),
+            Some(Type::Int { .. } | Type::Enum(_)) | None => panic!("{name}"),
+        };
+        let _ = writeln!(table, "| `{name}` | {values} | {unit} |");
+    }
+    generated("spec/types.md", "types", &table);
+}
+
+#[test]
+fn the_units() {
+    let mut table = String::from("| unit | type | 1 of it is |\n|---|---|---|\n");
+    for unit in UNITS {
+        let si = unit.dim.symbol().unwrap_or_default();
+        let _ = writeln!(table, "| `{}` | `{}` | {} {si} |", unit.symbol, type_of(unit.dim), unit.to_si(1.0));
+    }
+    generated("spec/types.md", "units", &table.replace("  |", " |"));
+}
+
+#[test]
+fn the_keywords() {
+    let mut table = String::from("| keyword | reserved | where |\n|---|---|---|\n");
+    for keyword in KEYWORDS {
+        let reserved = match keyword.class {
+            Class::Head | Class::Hard => "always",
+            Class::Soft => "in its place",
+        };
+        let _ = writeln!(table, "| `{}` | {reserved} | {} |", keyword.word, keyword.place);
+    }
+    generated("spec/grammar.md", "keywords", &table);
+}
+
+#[test]
+fn the_codes() {
+    let mut text = String::new();
+    for (hundred, about) in GROUPS {
+        let _ = writeln!(text, "\n### HR{hundred:02}xx: {about}\n\n| code | rule |\n|---|---|");
+        for info in REGISTRY.iter().filter(|i| i.code.0 / 100 == *hundred) {
+            let _ = writeln!(text, "| [{0}](codes/{0}.md) | {1} |", info.code, info.title);
+        }
+    }
+    generated("spec/diagnostics.md", "codes", &text);
+}
+
+/// The contents of the book have a line for each code, below that of the diagnostics; renewed, also for each page that is
+/// not yet there, before it.
+#[test]
+fn the_contents_of_the_book() {
+    let old = read("spec/SUMMARY.md");
+    let is_code = |line: &&str| line.trim_start().starts_with("- [HR");
+    let missing: Vec<String> = pages(&root().join("spec"))
+        .iter()
+        .map(|p| p.file_name().unwrap().to_string_lossy().into_owned())
+        .filter(|name| name != "SUMMARY.md" && !old.contains(&format!("]({name})")))
+        .collect();
+    let mut new = String::new();
+    for line in old.lines().filter(|l| !is_code(l)) {
+        let of_codes = line.contains("(diagnostics.md)");
+        for name in missing.iter().filter(|_| of_codes) {
+            let page = read(&format!("spec/{name}"));
+            let title = page.lines().next().unwrap_or_default().trim_start_matches('#').trim();
+            let _ = writeln!(new, "- [{title}]({name})");
+        }
+        let _ = writeln!(new, "{line}");
+        for info in REGISTRY.iter().filter(|_| of_codes) {
+            let _ = writeln!(new, "  - [{0}: {1}](codes/{0}.md)", info.code, info.title);
+        }
+    }
+    same("spec/SUMMARY.md", &old, &new);
+}
