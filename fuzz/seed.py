@@ -22,7 +22,7 @@ def texts():
             yield from BLOCK.findall(path.read_text(encoding="utf-8"))
 
 
-for target in ("lexer", "parser", "checker"):
+for target in ("lexer", "parser", "checker", "formatter"):
     folder = ROOT / "fuzz" / "corpus" / target
     folder.mkdir(parents=True, exist_ok=True)
     for text in texts():

@@ -7,7 +7,8 @@ use hrdsl_source::{Diagnostic, FileId};
 pub const SEPARATOR: &str = "\n//====\n";
 
 /// By the names of the targets.
-pub const TARGETS: &[(&str, fn(&[u8]))] = &[("lexer", lexer), ("parser", parser), ("checker", checker)];
+pub const TARGETS: &[(&str, fn(&[u8]))] =
+    &[("lexer", lexer), ("parser", parser), ("checker", checker), ("formatter", formatter)];
 
 /// Tokens lie in the text, one after the other.
 pub fn lexer(data: &[u8]) {
@@ -42,6 +43,20 @@ pub fn checker(data: &[u8]) {
     let c = compile_with(scenario, &tests, &module);
     assert_eq!(c.program.is_none(), c.has_errors());
     within(&c.diagnostics, |file| c.files.get(file).map(|f| f.text.as_str()));
+}
+
+/// What can be formatted keeps its tokens but for separators, and stays as it is when it is formatted again.
+pub fn formatter(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let Ok(once) = hrdsl_syntax::format(&text) else { return };
+    assert_eq!(words(&text), words(&once));
+    assert_eq!(hrdsl_syntax::format(&once).as_ref(), Ok(&once));
+}
+
+/// The tokens of a text without the separators, which the formatter may set and take away.
+fn words(text: &str) -> Vec<&str> {
+    let (tokens, _) = hrdsl_syntax::lex_only(text);
+    tokens.into_iter().map(|t| &text[t]).filter(|t| !matches!(*t, ";" | ",")).collect()
 }
 
 /// Whatever file is used, it is this one.
