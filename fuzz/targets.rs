@@ -6,8 +6,11 @@ use hrdsl_source::{Diagnostic, FileId};
 /// Divides the input of [`checker`]: scenario, the module that it uses as a file, its tests.
 pub const SEPARATOR: &str = "\n//====\n";
 
+/// Takes one input; panics if something does not hold.
+pub type Target = fn(&[u8]);
+
 /// By the names of the targets.
-pub const TARGETS: &[(&str, fn(&[u8]))] =
+pub const TARGETS: &[(&str, Target)] =
     &[("lexer", lexer), ("parser", parser), ("checker", checker), ("formatter", formatter)];
 
 /// Tokens lie in the text, one after the other.
