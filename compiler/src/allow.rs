@@ -1,5 +1,7 @@
 //! `allow`: warnings that somebody has looked at, and why they do not matter.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::{Code, Diagnostic, REGISTRY, Span};
 use hrdsl_syntax::ast::{
     AgentMemberKind, Allow, AutomatonMemberKind, CrossMemberKind, File, Item, ItemKind, WorldMember,
@@ -23,20 +25,29 @@ pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
     }
     let broken = diagnostics.iter().any(Diagnostic::is_error);
     let mut used = vec![false; allowances.len()];
+    let mut by_code: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (i, a) in allowances.iter().enumerate() {
+        by_code.entry(&a.allow.code.text).or_default().push(i);
+    }
     let fits = |a: &Allowance<'_>, d: &Diagnostic| {
         let inside = |t: Span| t.file == d.span().file && t.start <= d.span().start && d.span().end <= t.end;
-        d.code.to_string() == a.allow.code.text && a.target.is_some_and(inside)
+        a.target.is_some_and(inside)
     };
     diagnostics.retain(|d| {
         let mut allowed = false;
-        for (allowance, used) in allowances.iter().zip(&mut used).filter(|(a, _)| fits(a, d)) {
-            *used |= !d.is_error();
-            allowed |= !d.is_error() && !allowance.allow.reason.text.trim().is_empty();
+        if d.is_error() {
+            return true;
+        }
+        let of_code = by_code.get(d.code.to_string().as_str()).map(Vec::as_slice).unwrap_or_default();
+        for i in of_code.iter().copied().filter(|i| fits(&allowances[*i], d)) {
+            used[i] = true;
+            allowed |= !allowances[i].allow.reason.text.trim().is_empty();
         }
         !allowed
     });
     for (allowance, used) in allowances.iter().zip(used) {
-        let errors = || diagnostics.iter().any(|d| d.is_error() && fits(allowance, d));
+        let is = |d: &Diagnostic| d.is_error() && d.code.to_string() == allowance.allow.code.text;
+        let errors = || broken && diagnostics.iter().any(|d| is(d) && fits(allowance, d));
         diagnostics.extend(judge(allowance, used, broken, errors()));
     }
 }

@@ -73,7 +73,7 @@ codes! {
     SYNTAX = 2 "text that does not fit the grammar",
     UNTERMINATED_STRING = 3 "a string without an end",
     BAD_NUMBER = 4 "a number that cannot be represented",
-    TOO_DEEP = 5 "nesting beyond the limit",
+    TOO_DEEP = 5 "more than the compiler takes",
     UNKNOWN_NAME = 101 "a name that is not declared",
     DUPLICATE_NAME = 102 "a name declared twice",
     WRONG_KIND = 103 "a name of another kind than the place needs",

@@ -30,3 +30,12 @@ mod grammar {
 pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
 pub use print::format;
+
+/// The spans of the tokens of a text, in order: for fuzzing the lexer by itself.
+#[doc(hidden)]
+#[must_use]
+pub fn lex_only(text: &str) -> (Vec<std::ops::Range<usize>>, Vec<hrdsl_source::Diagnostic>) {
+    let lexed = lex::lex(hrdsl_source::FileId(0), text);
+    let spans = lexed.tokens.iter().map(|t| t.start as usize..t.end as usize).collect();
+    (spans, lexed.diagnostics)
+}

@@ -83,6 +83,8 @@ struct Bracket {
     child: u32,
     /// The highest expression before it.
     highest: u32,
+    /// What is being read belongs to an element: `.x` after `a[0]`.
+    element: bool,
 }
 
 struct Splitter<'t> {
@@ -312,6 +314,7 @@ impl Splitter<'_> {
         let height = inner.highest.max(inner.operators + inner.child) + 1;
         if let Some(outer) = self.brackets.last_mut() {
             outer.child = outer.child.max(height);
+            outer.element = token.kind == Kind::RBracket;
         }
         self.limit(token);
     }
@@ -346,7 +349,17 @@ impl Splitter<'_> {
     fn measure(&mut self, token: Lexeme, i: usize) {
         let after_operand = self.before(i).is_some_and(Kind::ends_operand);
         let Some(top) = self.brackets.last_mut() else { return };
-        if token.kind.is_operator() {
+        top.element = match token.kind {
+            Kind::Dot => top.element,
+            kind => top.element && kind.is_name(),
+        };
+        // `a[0][0].x` is as high as it has indices and names after them.
+        let part = match token.kind {
+            Kind::LBracket => after_operand,
+            Kind::Dot => top.element,
+            _ => false,
+        };
+        if token.kind.is_operator() || part {
             top.operators += 1;
             self.limit(token);
             return;

@@ -371,7 +371,8 @@ impl Recovery<'_, '_> {
         let message = format!("expected `;`, found {}", found(token, self.cx.text));
         let span = self.cx.span_of(token);
         let before = self.tokens[at - 1];
-        let end = self.cx.span(before.end.saturating_sub(1), before.end);
+        let last = self.cx.text_of(before).chars().next_back().map_or(0, char::len_utf8);
+        let end = self.cx.span(before.end.saturating_sub(last as u32), before.end);
         // On a line of its own it can be nothing but the next step.
         let after = self.cx.span(before.end, before.end);
         self.cx.diagnostics.push(

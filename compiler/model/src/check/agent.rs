@@ -1,9 +1,15 @@
 //! Agents: beliefs, goals, and what holds at the start.
 
+use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, AgentMemberKind as Member, Call, ItemKind, Sort, StepKind, TriggerKind};
-use indexmap::IndexMap;
 
-use super::{Checker, Declared, Env, layout::Fields, table::Table};
+use indexmap::IndexSet;
+
+use super::{
+    Checker, Declared, Env,
+    layout::Fields,
+    table::{MAX_NAMES, Map, Table},
+};
 use crate::{
     AgentId, Belief, BeliefId, Context, Goal, GoalId, Kind, Value,
     noun::Noun,
@@ -17,11 +23,11 @@ use crate::{
 pub(super) struct Scope {
     pub id: AgentId,
     /// The goals that some plan achieves, with the number of their arguments.
-    pub goals: IndexMap<String, usize>,
+    pub goals: Map<String, usize>,
     /// Explicit labels of plans.
     pub labels: Table,
     /// How many plans each trigger's name has had so far.
-    pub plans_of: IndexMap<String, usize>,
+    pub plans_of: Map<String, usize>,
 }
 
 impl Checker<'_> {
@@ -63,12 +69,17 @@ impl Checker<'_> {
 
     fn agent(&mut self, index: usize, agent: &ast::Agent) {
         let id = AgentId(u16::try_from(index).unwrap_or(u16::MAX));
-        let goals = achieved(agent);
+        let mut goals = achieved(agent);
+        if goals.len() > MAX_NAMES {
+            let message = format!("there are more than {MAX_NAMES} goals in `{}`", agent.name.text);
+            self.report(super::too_many(message, agent.name.span));
+            goals.truncate(MAX_NAMES);
+        }
         self.s.agents[index].goals = goals
             .iter()
             .map(|(name, n)| Goal { name: name.clone(), arity: u16::try_from(*n).unwrap_or(u16::MAX) })
             .collect();
-        let mut scope = Scope { id, goals, labels: Table::default(), plans_of: IndexMap::new() };
+        let mut scope = Scope { id, goals, labels: Table::default(), plans_of: Map::default() };
         self.unread_members = super::unread::in_agent(agent);
         for member in &agent.members {
             match &member.kind {
@@ -91,14 +102,16 @@ impl Checker<'_> {
 
     /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
     fn unadopted(&mut self, scope: &Scope, agent: &ast::Agent) {
-        let mut adopted: Vec<&str> = Vec::new();
+        let mut adopted: IndexSet<&str> = IndexSet::new();
         for member in &agent.members {
             match &member.kind {
-                Member::Goal(call) => adopted.push(&call.name.text),
+                Member::Goal(call) => adopted.extend([call.name.text.as_str()]),
                 Member::Plan(plan) => {
                     for step in &plan.body {
                         match &step.kind {
-                            StepKind::Achieve(call) | StepKind::Spawn(call) => adopted.push(&call.name.text),
+                            StepKind::Achieve(call) | StepKind::Spawn(call) => {
+                                adopted.extend([call.name.text.as_str()])
+                            }
                             // It may have been an adoption.
                             StepKind::Error => return,
                             _ => {}
@@ -116,7 +129,7 @@ impl Checker<'_> {
         for member in &agent.members {
             if let Member::Plan(plan) = &member.kind
                 && plan.trigger.kind == TriggerKind::Achieve
-                && !adopted.contains(&plan.trigger.call.name.text.as_str())
+                && !adopted.contains(plan.trigger.call.name.text.as_str())
             {
                 let name = &plan.trigger.call.name;
                 self.report(not_adopted(&name.text, name.span, adopted.iter().copied()));
@@ -191,13 +204,16 @@ impl Checker<'_> {
     pub(super) fn goal(&mut self, scope: &Scope, call: &Call) -> Option<GoalId> {
         let name = &call.name;
         let Some((index, _, arity)) = scope.goals.get_full(&name.text) else {
-            let goals: Vec<&str> = scope.goals.keys().map(String::as_str).collect();
+            let helpless = self.compared > super::MAX_COMPARED;
+            let goals: Vec<&str> = scope.goals.keys().map(String::as_str).filter(|_| !helpless).collect();
+            self.compared += goals.len();
             let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
             let issue = match is {
                 Some(is) => names::wrong_kind(Noun::Goal, is, &name.text, name.span, goals),
                 None if self.unread_members => return None,
                 None => no_plan(&name.text, name.span, goals),
             };
+            let issue = Diagnostic { help: issue.help.filter(|_| !helpless), ..issue };
             self.report(issue);
             return None;
         };
@@ -220,8 +236,8 @@ impl Checker<'_> {
 }
 
 /// The goals with a plan `+!g`, by the first plan for each.
-fn achieved(agent: &ast::Agent) -> IndexMap<String, usize> {
-    let mut goals = IndexMap::new();
+fn achieved(agent: &ast::Agent) -> Map<String, usize> {
+    let mut goals = Map::default();
     for member in &agent.members {
         if let Member::Plan(plan) = &member.kind
             && plan.trigger.kind == TriggerKind::Achieve

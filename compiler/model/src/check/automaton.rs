@@ -1,12 +1,14 @@
 //! Automata: clocks, variables, locations; and networks.
 
+use std::rc::Rc;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sort};
 
-use super::{Checker, Declared, Env, env::Local, table::Table};
+use super::{Checker, Declared, Env, table::Table};
 use crate::{
-    ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, noun::Noun, report::automata,
-    types::Layout,
+    ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync,
+    noun::Noun, report::automata, types::Layout,
 };
 
 /// The names of one automaton.
@@ -17,11 +19,21 @@ pub(super) struct Scope {
     pub clocks: Table,
     /// The single values of the variables.
     pub vars: Table,
-    /// Of the variables that have several.
-    pub layouts: Vec<(String, Layout)>,
     pub locations: Table,
     /// What its edges see besides what they bind.
     pub env: Env,
+}
+
+/// The most events that the stimuli on the edges of one automaton emit.
+const MAX_MADE: usize = 10_000;
+
+fn emissions(steps: &[StimulusStep]) -> usize {
+    let of = |step: &StimulusStep| match step {
+        StimulusStep::Emit { .. } => 1,
+        StimulusStep::If { then, otherwise, .. } => emissions(then) + emissions(otherwise),
+        StimulusStep::Hold(_) | StimulusStep::Act(_) => 0,
+    };
+    steps.iter().map(of).sum()
 }
 
 impl Checker<'_> {
@@ -52,9 +64,8 @@ impl Checker<'_> {
             actor,
             clocks: Table::default(),
             vars: Table::default(),
-            layouts: Vec::new(),
             locations: Table::default(),
-            env: Env::default(),
+            env: Env { noun: Some(Noun::Variable), shared: self.shared_scope.clone(), ..Env::default() },
         };
         self.unread_members = super::unread::in_automaton(automaton);
         for member in &automaton.members {
@@ -68,7 +79,6 @@ impl Checker<'_> {
                 Member::Location { .. } | Member::Edge(_) | Member::Allow(_) | Member::Error => {}
             }
         }
-        scope.env = self.automaton_env(&scope);
         self.locations(index, automaton, &mut scope);
         for member in &automaton.members {
             if let Member::Edge(edge) = &member.kind {
@@ -77,55 +87,58 @@ impl Checker<'_> {
             }
         }
         self.unread_members = false;
+        self.made(&self.s.automata[index], automaton.name.span).into_iter().for_each(|i| self.report(i));
+    }
+
+    /// What the stimuli on edges emit becomes locations and variables, of which there can be too many.
+    fn made(&self, automaton: &crate::Automaton, span: Span) -> Option<hrdsl_source::Diagnostic> {
+        let (mut locations, mut vars) =
+            (automaton.locations.len(), automaton.vars.len() + self.s.shared.len());
+        let mut bound = 0;
+        for edge in &automaton.edges {
+            bound = bound.max(edge.selects.len());
+            let (Sync::Send { event, .. } | Sync::Receive { event, .. }) = &edge.sync else { continue };
+            let event = &self.s.events[usize::from(event.0)];
+            bound = bound.max(edge.selects.len() + event.params.len());
+            let emitted = event.stimulus.as_ref().map_or(0, |s| emissions(&s.steps));
+            if emitted > 0 && matches!(edge.sync, Sync::Send { .. }) {
+                locations = locations.saturating_add(emitted);
+                vars += event.params.len();
+            }
+        }
+        let name = &automaton.name;
+        if locations > automaton.locations.len() + MAX_MADE {
+            let message = format!("the stimuli on the edges of `{name}` emit more than {MAX_MADE} events");
+            return Some(super::too_many(message, span));
+        }
+        (vars + bound > super::table::MAX_NAMES).then(|| {
+            super::too_many(format!("`{name}` sees more than {} variables", super::table::MAX_NAMES), span)
+        })
     }
 
     fn clock(&mut self, index: usize, clock: &Name, scope: &mut Scope) {
-        self.check_free(&self.automaton_env(scope), Noun::Clock, clock);
+        self.check_free(&scope.env, Noun::Clock, clock);
         if scope.vars.get(&clock.text).is_none() && scope.clocks.insert(&clock.text, clock.span).is_ok() {
+            Rc::make_mut(&mut scope.env.own).add_clock(&clock.text);
             self.s.automata[index].clocks.push(clock.text.clone());
         }
     }
 
     fn own_var(&mut self, index: usize, var: &ast::Var, scope: &mut Scope) {
-        self.check_free(&self.automaton_env(scope), Noun::Clock, &var.name);
+        self.check_free(&scope.env, Noun::Clock, &var.name);
         let (layout, vars) = self.var(var);
         if scope.clocks.get(&var.name.text).is_some() {
             return;
         }
         for var in vars {
-            if scope.vars.insert(&var.name, var.span).is_ok() {
+            if let Ok(i) = scope.vars.insert(&var.name, var.span) {
+                Rc::make_mut(&mut scope.env.own).add_variable(Leaf::Own(i), &var);
                 self.s.automata[index].vars.push(var);
             }
         }
         if !matches!(layout, Layout::Scalar(_)) {
-            scope.layouts.push((var.name.text.clone(), layout));
+            Rc::make_mut(&mut scope.env.own).layouts.insert(var.name.text.clone(), layout);
         }
-    }
-
-    /// What the automaton's expressions can see: its variables, clocks (only in bounds), and the shared variables.
-    fn automaton_env(&self, scope: &Scope) -> Env {
-        let layouts = scope.layouts.clone();
-        let mut env = Env { noun: Some(Noun::Variable), layouts, ..Env::default() };
-        for (name, i) in scope.vars.entries() {
-            let own = local(name, Noun::Variable, Some(Leaf::Own(i)));
-            let ty = self.s.automata[scope.index].vars[usize::from(i)].ty;
-            env.locals.push(Local { ty: ty.kind(), range: ty.range(), ..own });
-        }
-        for (name, _) in scope.clocks.entries() {
-            env.locals.push(local(name, Noun::Clock, None));
-        }
-        for (i, var) in (0..).zip(&self.s.shared) {
-            if env.find(&var.name).is_none() {
-                let shared = local(&var.name, Noun::Variable, Some(Leaf::Shared(i)));
-                env.locals.push(Local { ty: var.ty.kind(), range: var.ty.range(), ..shared });
-            }
-        }
-        for (name, layout) in &self.shared_layouts {
-            if env.find(name).is_none() {
-                env.declare_layout(name, layout.clone());
-            }
-        }
-        env
     }
 
     fn locations(&mut self, index: usize, automaton: &ast::Automaton, scope: &mut Scope) {
@@ -194,8 +207,4 @@ impl Checker<'_> {
             self.s.networks.push(Network { name: name.text.clone(), automata: ids, span });
         }
     }
-}
-
-fn local(name: &str, noun: Noun, leaf: Option<Leaf>) -> Local {
-    Local { name: name.to_owned(), noun, leaf, ty: crate::Kind::Unknown, range: None, bound: true }
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     Bin, Condition, CoverPoint, Cross, EventPattern, PointId, Value,
     noun::Noun,
-    report::{coverage::overlap, names, types},
+    report::{coverage::overlap, types},
 };
 
 impl Checker<'_> {
@@ -127,9 +127,7 @@ impl Checker<'_> {
         for member in &cross.members {
             match &member.kind {
                 Member::Bin { name, when } => {
-                    if let Err(first) = titles.insert(&name.text, name.span) {
-                        self.report(names::duplicate(Noun::Bin, &name.text, name.span, Some(first)));
-                    }
+                    Self::declare_as(&mut self.issues, &mut titles, Noun::Bin, &name.text, name.span);
                     let when = self.cross_condition(when, &points);
                     bins.extend(when.map(|when| (name.text.clone(), when, member.span)));
                 }
@@ -176,7 +174,8 @@ impl Checker<'_> {
             | None => {}
         }
         let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
-        let Some(id) = points.iter().copied().find(|p| name_of(self, p) == point.text) else {
+        let here = self.points.get(&point.text).map(PointId).filter(|id| points.contains(id));
+        let Some(id) = here else {
             let own = points.iter().map(|p| name_of(self, p));
             let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, point, &all, None);
@@ -186,9 +185,9 @@ impl Checker<'_> {
     }
 
     fn bin_of(&mut self, id: PointId, bin: &Name) -> Option<Condition> {
-        let bins: Vec<String> =
-            self.s.points[usize::from(id.0)].bins.iter().map(|b| b.name.clone()).collect();
-        let Some(at) = bins.iter().position(|b| *b == bin.text) else {
+        let of_point = &self.s.points[usize::from(id.0)].bins;
+        let Some(at) = of_point.iter().position(|b| b.name == bin.text) else {
+            let bins: Vec<String> = of_point.iter().map(|b| b.name.clone()).collect();
             self.unknown(Noun::Bin, bin, &bins, Some(Noun::Bin));
             return None;
         };

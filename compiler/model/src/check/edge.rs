@@ -100,10 +100,14 @@ impl Checker<'_> {
             self.wrong_arity(self.noun_of(event), call, &fields);
             return None;
         }
-        let layouts = env.layouts.iter().map(|(n, _)| n.clone());
-        let known: Vec<String> = layouts.chain(env.locals.iter().map(|l| l.name.clone())).collect();
+        // What is there before the edge binds anything.
+        let scalar = fields.iter().all(|(_, layout)| matches!(layout, Layout::Scalar(_)));
+        let seen = if scalar { Env::default() } else { env.clone() };
         let free = |c: &Checker<'_>, name: &Name| {
-            !known.contains(&name.text) && !c.has_value(&name.text) && !is_variable_name(&name.text)
+            seen.layout(&name.text).is_none()
+                && seen.find(&name.text).is_none()
+                && !c.has_value(&name.text)
+                && !is_variable_name(&name.text)
         };
         let parts = self.spread_args(args, &fields, env, &free);
         let received = parts.into_iter().map(|part| self.received_part(part, env, equal)).collect();
@@ -227,9 +231,9 @@ impl Checker<'_> {
                 }
                 Some(layout) => layout.clone(),
                 None => {
-                    let vars = env.locals.iter().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
+                    let vars = env.all().filter(|l| !matches!(l.leaf, Some(Leaf::Local(_))));
                     let single = vars.map(|l| l.name.clone()).filter(|n| !n.contains(['.', '[']));
-                    let all: Vec<String> = single.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
+                    let all: Vec<String> = single.chain(env.layout_names().map(str::to_owned)).collect();
                     self.unknown(Noun::Variable, target, &all, None);
                     self.item(value, env);
                     return;

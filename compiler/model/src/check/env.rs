@@ -1,10 +1,12 @@
 //! What an expression can see besides constants.
 
+use std::rc::Rc;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::Name;
 
-use super::Checker;
-use crate::{Kind, Leaf, Type, noun::Noun, report::names::duplicate, types::Layout};
+use super::{Checker, table::Map};
+use crate::{Kind, Leaf, Type, Var, noun::Noun, report::names::duplicate, types::Layout};
 
 /// A name of the place's own scope.
 #[derive(Clone, Debug)]
@@ -20,10 +22,46 @@ pub(crate) struct Local {
     pub bound: bool,
 }
 
+/// Names that many expressions see: the variables and clocks of an automaton, or the shared variables. The numbers of
+/// the variables' leaves are their places.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scope {
+    pub names: Map<String, Local>,
+    /// Without values.
+    pub clocks: Map<String, Local>,
+    /// As in [`Env::layouts`].
+    pub layouts: Map<String, Layout>,
+}
+
+impl Scope {
+    pub fn add_variable(&mut self, leaf: Leaf, var: &Var) {
+        let local = Local {
+            name: var.name.clone(),
+            noun: Noun::Variable,
+            leaf: Some(leaf),
+            ty: var.ty.kind(),
+            range: var.ty.range(),
+            bound: true,
+        };
+        self.names.insert(var.name.clone(), local);
+    }
+
+    pub fn add_clock(&mut self, name: &str) {
+        let (noun, ty) = (Noun::Clock, Kind::Unknown);
+        let clock = Local { name: name.to_owned(), noun, leaf: None, ty, range: None, bound: true };
+        self.clocks.insert(name.to_owned(), clock);
+    }
+}
+
 /// The scope of an expression.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Env {
+    /// The place's own.
     pub locals: Vec<Local>,
+    /// The automaton's.
+    pub own: Rc<Scope>,
+    /// All automata's.
+    pub shared: Rc<Scope>,
     /// Names that stand for several locals, which are called `name.x` or `name[0]`.
     pub layouts: Vec<(String, Layout)>,
     /// Names that are bound by something with a diagnostic: nothing is said about what they stand for.
@@ -48,17 +86,41 @@ impl Env {
     }
 
     pub fn find(&self, name: &str) -> Option<&Local> {
-        self.locals.iter().find(|l| l.name == name)
+        let local = self.locals.iter().find(|l| l.name == name);
+        local
+            .or_else(|| self.own.names.get(name))
+            .or_else(|| self.own.clocks.get(name))
+            .or_else(|| self.shared.names.get(name))
+    }
+
+    /// What a leaf stands for.
+    pub fn of_leaf(&self, leaf: Leaf) -> Option<&Local> {
+        match leaf {
+            Leaf::Own(i) => self.own.names.get_index(usize::from(i)).map(|(_, local)| local),
+            Leaf::Shared(i) => self.shared.names.get_index(usize::from(i)).map(|(_, local)| local),
+            Leaf::Local(_) | Leaf::Signal(_) => self.locals.iter().find(|l| l.leaf == Some(leaf)),
+        }
+    }
+
+    /// All names, those of the place itself first.
+    pub fn all(&self) -> impl Iterator<Item = &Local> {
+        let own = self.own.names.values().chain(self.own.clocks.values());
+        self.locals.iter().chain(own).chain(self.shared.names.values())
+    }
+
+    /// The names that stand for several values.
+    pub fn layout_names(&self) -> impl Iterator<Item = &str> {
+        let local = self.layouts.iter().map(|(name, _)| name.as_str());
+        local.chain(self.own.layouts.keys().chain(self.shared.layouts.keys()).map(String::as_str))
     }
 
     pub fn find_mut(&mut self, name: &str) -> Option<&mut Local> {
         self.locals.iter_mut().find(|l| l.name == name)
     }
 
-    /// How many names are [`Leaf::Local`]: the next one's number.
+    /// The number of the next [`Leaf::Local`].
     pub fn next_local(&self) -> u16 {
-        let n = self.locals.iter().filter(|l| matches!(l.leaf, Some(Leaf::Local(_)))).count();
-        u16::try_from(n).unwrap_or(u16::MAX)
+        u16::try_from(self.locals.len()).unwrap_or(u16::MAX)
     }
 
     /// Adds a local without looking whether the name is free.
@@ -86,7 +148,8 @@ impl Env {
     }
 
     pub fn layout(&self, name: &str) -> Option<&Layout> {
-        self.layouts.iter().find(|(n, _)| n == name).map(|(_, layout)| layout)
+        let local = self.layouts.iter().find(|(n, _)| n == name).map(|(_, layout)| layout);
+        local.or_else(|| self.own.layouts.get(name)).or_else(|| self.shared.layouts.get(name))
     }
 
     /// A variable is of this kind, which was not known before.

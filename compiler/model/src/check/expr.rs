@@ -17,7 +17,7 @@ pub(super) const FUNCTIONS: [(&str, Function); 4] =
 /// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
 const MAX_TIME: f64 = 1e9;
 
-impl Checker<'_> {
+impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
     pub(super) fn expr(&mut self, e: &ast::Expr, env: &mut Env) -> Expr {
         let item = self.item(e, env);
@@ -57,7 +57,7 @@ impl Checker<'_> {
                 return self.either_item(&condition, then, otherwise, span, env);
             }
             Syntax::Tuple(parts) => {
-                return Item::Tuple(parts.iter().map(|p| self.item(p, env)).collect(), span);
+                return self.tuple(parts, span, env);
             }
             Syntax::Index { of, index } => return self.index(of, index, span, env),
             Syntax::Field { of, name } => {
@@ -285,7 +285,10 @@ impl Checker<'_> {
             return Some(self.assembled(&name.text, &layout, env, name.span));
         }
         match self.given(&name.text) {
-            Some(Given::Value(item)) => return Some(item.named_at(name.span)),
+            Some(Given::Value(item)) => {
+                let item = item.named_at(name.span);
+                return Some(if self.may_copy(&item, 1, name.span) { item } else { Item::error(name.span) });
+            }
             Some(Given::Unknown) => return Some(Item::error(name.span)),
             Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
@@ -357,11 +360,10 @@ impl Checker<'_> {
     /// All names that have a value here.
     fn names_with_value(&self, env: &Env) -> Vec<String> {
         let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
-        let locals = env.locals.iter().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.clone());
-        let mut names: Vec<String> = locals.chain(env.layouts.iter().map(|(n, _)| n.clone())).collect();
+        let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
+        let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));
         let given = self.given.iter().flat_map(|given| given.iter());
         names.extend(given.filter(|(_, g)| matches!(g, Given::Value(_))).map(|(n, _)| n.clone()));
-        names.extend(self.consts.keys().map(|k| (*k).to_owned()));
         names.extend(self.signal_names(env));
         names
     }
@@ -393,21 +395,57 @@ impl Checker<'_> {
                 Item::error(name.span)
             }
             ConstState::Unseen => {
-                let value = entry.value;
-                // A constant does not see the template that reads it.
-                let given = self.given.take();
-                let mut item = self.item(value, &mut Env::constants());
-                self.given = given;
-                if !item.is_constant() {
-                    item = Item::error(item.span());
+                let declared = entry.name;
+                self.work_out(declared);
+                match self.consts.get(name.text.as_str()).map(|entry| &entry.state) {
+                    Some(ConstState::Done(item)) => item.named_at(name.span),
+                    Some(ConstState::Unseen | ConstState::Open) | None => Item::error(name.span),
                 }
-                let here = item.named_at(name.span);
-                if let Some(entry) = self.consts.get_mut(name.text.as_str()) {
-                    entry.state = ConstState::Done(item);
-                }
-                here
             }
         }
+    }
+
+    /// Works out a constant after those that it names, without recursion: a chain of constants may be long.
+    fn work_out(&mut self, name: &'a Name) {
+        let mut open = vec![(name, self.unseen_in(name))];
+        while let Some((name, needed)) = open.last_mut() {
+            let name = *name;
+            if let Some(next) = needed.pop() {
+                let Some(entry) = self.consts.get_mut(next.text.as_str()) else { continue };
+                if matches!(entry.state, ConstState::Unseen) {
+                    entry.state = ConstState::Open;
+                    let next = entry.name;
+                    open.push((next, self.unseen_in(next)));
+                }
+                continue;
+            }
+            open.pop();
+            let Some(value) = self.consts.get(name.text.as_str()).map(|entry| entry.value) else { continue };
+            // A constant does not see the template that reads it.
+            let given = self.given.take();
+            let mut item = self.item(value, &mut Env::constants());
+            self.given = given;
+            if !item.is_constant() {
+                item = Item::error(item.span());
+            }
+            if let Some(entry) = self.consts.get_mut(name.text.as_str()) {
+                entry.state = ConstState::Done(item);
+            }
+        }
+    }
+
+    /// The constants that the value of a constant names and that are not worked out, the first last.
+    fn unseen_in(&self, name: &Name) -> Vec<&'a Name> {
+        let mut names = Vec::new();
+        if let Some(entry) = self.consts.get(name.text.as_str()) {
+            names_in(entry.value, &mut names);
+        }
+        let unseen = |n: &&Name| {
+            self.consts.get(n.text.as_str()).is_some_and(|c| matches!(c.state, ConstState::Unseen))
+        };
+        names.retain(unseen);
+        names.reverse();
+        names
     }
 
     /// Works out all constants, so that each fault in one is found.
@@ -459,7 +497,8 @@ impl Checker<'_> {
             self.report(issue.help(format!("write `{}({})`", name.text, names.join(", "))));
             return Item::error(span);
         }
-        let parts = args.iter().zip(&fields).map(|(a, (_, layout))| self.item_for(a, layout, env)).collect();
+        let parts =
+            args.iter().zip(fields.iter()).map(|(a, (_, layout))| self.item_for(a, layout, env)).collect();
         Item::Record(id, parts, span)
     }
 
@@ -647,6 +686,36 @@ impl Checker<'_> {
                 Expr::error(e.span)
             }
         }
+    }
+}
+
+/// The first names of all paths in an expression.
+fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
+    match &e.kind {
+        Syntax::Bool(_)
+        | Syntax::Int(_)
+        | Syntax::Float(_)
+        | Syntax::Quantity { .. }
+        | Syntax::Any
+        | Syntax::Error => {}
+        Syntax::Path(path) => names.extend(path.names.first()),
+        Syntax::Call { args, .. } => args.iter().for_each(|a| names_in(a, names)),
+        Syntax::Unary { operand, .. } => names_in(operand, names),
+        Syntax::Binary { left, right, .. } => {
+            names_in(left, names);
+            names_in(right, names);
+        }
+        Syntax::If { condition, then, otherwise } => {
+            names_in(condition, names);
+            names_in(then, names);
+            names_in(otherwise, names);
+        }
+        Syntax::Tuple(parts) => parts.iter().for_each(|p| names_in(p, names)),
+        Syntax::Index { of, index } => {
+            names_in(of, names);
+            names_in(index, names);
+        }
+        Syntax::Field { of, .. } => names_in(of, names),
     }
 }
 

@@ -1,12 +1,11 @@
 //! Templates: declarations with parameters, what an instance gives for them, and the check of a template by itself.
 
-use std::rc::Rc;
+use std::{collections::BTreeSet, rc::Rc};
 
-use hrdsl_source::{Diagnostic, Span};
+use hrdsl_source::{Code, Diagnostic, Span};
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
-use indexmap::IndexMap;
 
-use super::{Checker, Env, item::Item};
+use super::{Checker, Env, item::Item, table::Map};
 use crate::{
     ActorId, EventPattern, Expr, PointId, Type, Value,
     noun::Noun,
@@ -28,7 +27,7 @@ pub(crate) enum Given {
     Unknown,
 }
 
-pub(crate) type Givens = IndexMap<String, Given>;
+pub(crate) type Givens = Map<String, Given>;
 
 impl Given {
     /// Whether it is what a parameter of this kind stands for.
@@ -157,7 +156,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn is_template(&self, text: &str) -> bool {
-        self.templates.keys().any(|(_, name)| *name == text)
+        let sorts = [Sort::Agent, Sort::Automaton, Sort::Require, Sort::Cover, Sort::Cross];
+        sorts.into_iter().any(|sort| self.templates.contains_key(&(sort, text)))
     }
 
     /// What a name stands for in the instance that is being checked.
@@ -383,6 +383,8 @@ impl<'a> Checker<'a> {
     pub(super) fn by_itself(&mut self, params: &[ast::Param], check: impl Fn(&mut Self)) {
         let before = self.issues.len();
         let mut always: Option<Vec<Diagnostic>> = None;
+        // What is said in one trial may be taken back.
+        let (said, said_of) = (self.said.clone(), self.said_of);
         for trial in Trial::ALL {
             let given = self.placeholders(params, trial);
             let outer = self.given.replace(given);
@@ -391,8 +393,10 @@ impl<'a> Checker<'a> {
             self.by_itself = alone;
             self.given = outer;
             let found = self.issues.split_off(before);
-            let again =
-                |known: &Diagnostic| found.iter().any(|f| f.code == known.code && f.span() == known.span());
+            self.said.clone_from(&said);
+            self.said_of = said_of;
+            let places: BTreeSet<(Code, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
+            let again = |known: &Diagnostic| places.contains(&(known.code, known.span()));
             always = Some(match always {
                 None => found,
                 Some(known) => known.into_iter().filter(again).collect(),
@@ -424,15 +428,23 @@ impl<'a> Checker<'a> {
     /// The diagnostics since then are of an instance: what is new in them is said with the instance.
     pub(super) fn said_in(&mut self, before: usize, instance: Option<(&Name, Span)>) {
         let new = self.issues.split_off(before);
+        let found = !new.is_empty();
+        if found {
+            // Each issue is entered once, however many instances there are.
+            let unseen = self.issues.get(self.said_of..).unwrap_or_default();
+            self.said.extend(unseen.iter().map(|i| (i.code, i.span())));
+        }
         for issue in new {
-            let said = |known: &Diagnostic| known.code == issue.code && known.span() == issue.span();
-            if self.issues.iter().any(said) {
+            if !self.said.insert((issue.code, issue.span())) {
                 continue;
             }
             self.issues.push(match instance {
                 Some((name, span)) => issue.label(span, format!("in the instance `{}`", name.text)),
                 None => issue,
             });
+        }
+        if found {
+            self.said_of = self.issues.len();
         }
     }
 }

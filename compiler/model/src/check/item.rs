@@ -4,13 +4,16 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name};
 
-use super::{Checker, Env};
+use super::{Checker, Env, layout::MAX_PARTS};
 use crate::{
     Dim, Expr, ExprKind, Function, Kind, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
 };
+
+/// The most nodes that are made by copying expressions, as `a[i]` copies the index for each element.
+pub(super) const MAX_COPIES: usize = 2_000_000;
 
 /// The names of the parts of a short array.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -47,6 +50,16 @@ impl Item {
         match self {
             Item::One(e) => e.span,
             Item::Record(_, _, span) | Item::Array(_, span) | Item::Tuple(_, span) => *span,
+        }
+    }
+
+    /// How many nodes its expressions have; a constant is one.
+    fn nodes(&self) -> usize {
+        match self {
+            Item::One(e) => nodes(e),
+            Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => {
+                parts.iter().map(Item::nodes).sum()
+            }
         }
     }
 
@@ -89,6 +102,16 @@ impl Item {
         }
     }
 
+    /// How many single values it has.
+    fn singles(&self) -> usize {
+        match self {
+            Item::One(_) => 1,
+            Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => {
+                parts.iter().map(Item::singles).sum()
+            }
+        }
+    }
+
     fn parts(&self) -> Option<&[Item]> {
         match self {
             Item::One(_) => None,
@@ -116,7 +139,43 @@ fn axes(len: usize) -> &'static [&'static str] {
     AXES.get(..len).filter(|_| len > 1).unwrap_or_default()
 }
 
+fn nodes(e: &Expr) -> usize {
+    let mut n = 0;
+    e.each(&mut |_| n += 1);
+    n
+}
+
 impl Checker<'_> {
+    /// `(a, b)`, which has as many single values as anything can have.
+    pub(super) fn tuple(&mut self, parts: &[ast::Expr], span: Span, env: &mut Env) -> Item {
+        let parts: Vec<Item> = parts.iter().map(|p| self.item(p, env)).collect();
+        let whole = Item::Tuple(parts, span);
+        if whole.singles() > MAX_PARTS {
+            let rule = format!("at most {MAX_PARTS}");
+            self.report(types::must_be("the number of single values in it", &rule, span));
+            return Item::error(span);
+        }
+        whole
+    }
+
+    /// Whether an expression may be copied so many times; says so if that would be too much.
+    pub(super) fn may_copy(&mut self, item: &Item, times: usize, span: Span) -> bool {
+        if item.is_constant() || times == 0 {
+            return true;
+        }
+        match self.copies.checked_sub(item.nodes().saturating_mul(times)) {
+            Some(left) => self.copies = left,
+            None if self.copies == 0 => return false,
+            None => {
+                self.copies = 0;
+                let message = "the expression is too large when it is written out for single values";
+                self.report(super::too_many(message.to_owned(), span));
+                return false;
+            }
+        }
+        true
+    }
+
     /// What it is, as a message says it.
     pub(super) fn shown(&self, item: &Item) -> String {
         match item {
@@ -538,6 +597,9 @@ impl Checker<'_> {
         if let Some(Value::Int(n)) = at.constant() {
             return usize::try_from(n).map_or(Item::error(span), |n| parts[n].clone().at(span));
         }
+        if !self.may_copy(&Item::One(at.clone()), parts.len(), span) {
+            return Item::error(span);
+        }
         let mut parts = parts.clone().into_iter().enumerate().rev();
         let Some((_, last)) = parts.next() else { return Item::error(span) };
         parts.fold(last.at(span), |otherwise, (i, part)| {
@@ -567,6 +629,9 @@ impl Checker<'_> {
     ) -> Item {
         match (a, b) {
             (Item::One(a), Item::One(b)) => Item::One(self.conditional(condition.clone(), a, b, span, env)),
+            (a, _) if !self.may_copy(&Item::One(condition.clone()), a.singles() - 1, span) => {
+                Item::error(span)
+            }
             (Item::Record(i, a, _), Item::Record(j, b, _)) if i == j => {
                 Item::Record(i, self.either_items(condition, a, b, span, env), span)
             }
@@ -627,12 +692,18 @@ impl Checker<'_> {
             BinaryOp::Mul | BinaryOp::Div => match (a, b) {
                 (Item::One(a), Item::One(b)) => Item::One(self.operate(op, a, b, span, env)),
                 (Item::Array(a, _) | Item::Tuple(a, _), Item::One(by)) => {
-                    let scaled = a.into_iter();
                     let by = Item::One(by);
+                    if !self.may_copy(&by, a.len(), span) {
+                        return Item::error(span);
+                    }
+                    let scaled = a.into_iter();
                     Item::Array(scaled.map(|a| self.combine(op, a, by.clone(), span, env)).collect(), span)
                 }
                 (Item::One(by), Item::Array(b, _) | Item::Tuple(b, _)) if op == BinaryOp::Mul => {
                     let by = Item::One(by);
+                    if !self.may_copy(&by, b.len(), span) {
+                        return Item::error(span);
+                    }
                     let scaled = b.into_iter();
                     Item::Array(scaled.map(|b| self.combine(op, by.clone(), b, span, env)).collect(), span)
                 }

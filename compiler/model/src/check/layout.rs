@@ -16,6 +16,9 @@ use crate::{
 /// The most single values that something of a record or array type has.
 pub(super) const MAX_PARTS: usize = 256;
 
+/// How deep records can be in records.
+const MAX_RECORDS: usize = 64;
+
 /// Parameters or fields as they were declared: names and layouts.
 pub(super) type Fields = Rc<[(String, Layout)]>;
 
@@ -31,8 +34,10 @@ pub(super) enum RecordState {
 pub(super) struct RecordEntry<'a> {
     pub name: &'a Name,
     pub syntax: &'a [SyntaxParam],
-    pub fields: Vec<(String, Layout)>,
+    pub fields: Fields,
     pub state: RecordState,
+    /// How many single values it has.
+    pub size: usize,
 }
 
 impl<'a> Checker<'a> {
@@ -70,7 +75,7 @@ impl<'a> Checker<'a> {
         }
         if Self::declare(&mut self.issues, &mut self.record_names, Noun::Record, name).is_some() {
             let state = RecordState::Unseen;
-            self.records.push(RecordEntry { name, syntax, fields: Vec::new(), state });
+            self.records.push(RecordEntry { name, syntax, fields: Fields::default(), state, size: 0 });
         }
     }
 
@@ -88,28 +93,37 @@ impl<'a> Checker<'a> {
 
     pub(super) fn all_records(&mut self) {
         for id in 0..self.records.len() {
-            self.resolve_record(id);
+            self.resolve_record(id, 0);
         }
     }
 
-    fn resolve_record(&mut self, id: usize) {
+    /// `outer`: how many records are being resolved that have this one in them.
+    fn resolve_record(&mut self, id: usize, outer: usize) {
         if self.records[id].state != RecordState::Unseen {
             return;
         }
-        self.records[id].state = RecordState::Open;
         let (name, syntax) = (self.records[id].name, self.records[id].syntax);
+        if outer >= MAX_RECORDS {
+            let message = format!("records are in records more than {MAX_RECORDS} levels deep");
+            self.records[id].state = RecordState::Done;
+            return self.report(super::too_many(message, name.span));
+        }
+        self.open_records = outer + 1;
+        self.records[id].state = RecordState::Open;
         if syntax.is_empty() {
             let help = format!("write `record {} {{ x: length, y: length }}`", name.text);
             self.report(names::missing(name.span, "a record has fields", help));
         }
         let fields = self.fields_as(Noun::Field, syntax);
-        self.records[id].fields = fields.to_vec();
+        self.records[id].size = fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)));
+        self.records[id].fields = fields;
         self.records[id].state = RecordState::Done;
+        self.open_records = outer;
     }
 
     /// The fields of a record, which may be needed before its turn; `None` if they need themselves.
-    pub(super) fn record_fields(&mut self, id: u16, name: &Name) -> Option<Vec<(String, Layout)>> {
-        self.resolve_record(usize::from(id));
+    pub(super) fn record_fields(&mut self, id: u16, name: &Name) -> Option<Fields> {
+        self.resolve_record(usize::from(id), self.open_records);
         let entry = &self.records[usize::from(id)];
         if entry.state == RecordState::Open {
             self.report(types::record_cycle(&name.text, name.span));
@@ -198,10 +212,7 @@ impl<'a> Checker<'a> {
         match layout {
             Layout::Scalar(_) => 1,
             Layout::Unknown => 0,
-            Layout::Record(id) => {
-                let fields = &self.records[usize::from(*id)].fields;
-                fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)))
-            }
+            Layout::Record(id) => self.records[usize::from(*id)].size,
             Layout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
         }
     }
@@ -217,12 +228,13 @@ impl<'a> Checker<'a> {
             return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }
         if let Some(id) = self.record_names.get(&name.text) {
-            self.resolve_record(usize::from(id));
+            self.resolve_record(usize::from(id), self.open_records);
             if self.records[usize::from(id)].state == RecordState::Open {
                 self.report(types::record_cycle(&name.text, name.span));
                 return None;
             }
-            return Some(Layout::Record(id));
+            // One without fields has a diagnostic.
+            return (self.records[usize::from(id)].size > 0).then_some(Layout::Record(id));
         }
         let mut all = self.type_names();
         if self.given.is_some() {

@@ -29,7 +29,6 @@ use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
-use indexmap::IndexMap;
 
 use crate::{
     ActorId, EventId, Player, PointId, Role, Scenario,
@@ -38,13 +37,12 @@ use crate::{
         names::{duplicate, unknown, wrong_kind},
         types,
     },
-    types::Layout,
 };
 use env::Env;
 use given::{Given, Givens, Template};
 use item::Item;
 use layout::{Fields, RecordEntry};
-use table::Table;
+use table::{MAX_NAMES, Map, Refused, Table};
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///
@@ -149,11 +147,13 @@ pub(crate) struct Checker<'a> {
     actors: Table,
     enums: Table,
     /// By their bare names: the values of enumerations.
-    values: IndexMap<&'a str, Vec<Enumeration>>,
+    values: Map<&'a str, Vec<Enumeration>>,
     record_names: Table,
     records: Vec<RecordEntry<'a>>,
+    /// How many records are being resolved, each in the one before.
+    open_records: usize,
     /// By sort and name.
-    templates: IndexMap<(Sort, &'a str), Template<'a>>,
+    templates: Map<(Sort, &'a str), Template<'a>>,
     used_templates: BTreeSet<(Sort, String)>,
     /// Enumerations and records.
     used_types: BTreeSet<String>,
@@ -172,14 +172,14 @@ pub(crate) struct Checker<'a> {
     /// The single values of the shared variables.
     shared: Table,
     shared_names: Table,
-    /// Of those that have several.
-    shared_layouts: Vec<(String, Layout)>,
+    /// What every automaton sees of them.
+    shared_scope: Rc<env::Scope>,
     networks: Table,
     points: Table,
     crosses: Table,
     suites: Table,
-    parts: IndexMap<&'a str, (&'a ast::Part, Span)>,
-    consts: IndexMap<&'a str, ConstEntry<'a>>,
+    parts: Map<&'a str, (&'a ast::Part, Span)>,
+    consts: Map<&'a str, ConstEntry<'a>>,
     /// By [`EventId`]: the body of each stimulus.
     bodies: Vec<Option<&'a ast::Stimulus>>,
     agent_decls: Vec<Declared<'a, ast::Agent>>,
@@ -195,7 +195,17 @@ pub(crate) struct Checker<'a> {
     unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
     unread_members: bool,
+    /// How many names were looked at for those that were misspelt.
+    compared: usize,
+    /// How many nodes of expressions may still be copied.
+    copies: usize,
+    /// The codes and places of the first issues; see [`Checker::as_instance`].
+    said: BTreeSet<(Code, Span)>,
+    said_of: usize,
 }
+
+/// After so many comparisons no nearest names are looked for.
+const MAX_COMPARED: usize = 500_000;
 
 impl<'a> Checker<'a> {
     fn new(items: Vec<&'a ast::Item>, from_modules: usize) -> Self {
@@ -207,10 +217,11 @@ impl<'a> Checker<'a> {
             from_modules,
             actors: Table::default(),
             enums: Table::default(),
-            values: IndexMap::new(),
+            values: Map::default(),
             record_names: Table::default(),
             records: Vec::new(),
-            templates: IndexMap::new(),
+            open_records: 0,
+            templates: Map::default(),
             used_templates: BTreeSet::new(),
             used_types: BTreeSet::new(),
             broken_instances: BTreeSet::new(),
@@ -222,13 +233,13 @@ impl<'a> Checker<'a> {
             player_ids: Vec::new(),
             shared: Table::default(),
             shared_names: Table::default(),
-            shared_layouts: Vec::new(),
+            shared_scope: Rc::default(),
             networks: Table::default(),
             points: Table::default(),
             crosses: Table::default(),
             suites: Table::default(),
-            parts: IndexMap::new(),
-            consts: IndexMap::new(),
+            parts: Map::default(),
+            consts: Map::default(),
             bodies: Vec::new(),
             agent_decls: Vec::new(),
             automaton_decls: Vec::new(),
@@ -238,6 +249,10 @@ impl<'a> Checker<'a> {
             missing_modules: false,
             unread_items: false,
             unread_members: false,
+            compared: 0,
+            copies: item::MAX_COPIES,
+            said: BTreeSet::new(),
+            said_of: 0,
             in_world: world_parts::WorldNames::default(),
         }
     }
@@ -263,7 +278,7 @@ impl<'a> Checker<'a> {
         match self.actors.get(&name.text) {
             Some(id) => Some(ActorId(id)),
             None => {
-                let names: Vec<String> = self.actors.names().map(str::to_owned).collect();
+                let names = self.near(self.actors.names());
                 self.unknown(Noun::Actor, name, &names, None);
                 None
             }
@@ -292,11 +307,10 @@ impl<'a> Checker<'a> {
         if let Some(id) = self.events.get(&name.text).filter(|id| fits(self, *id)) {
             return Some(EventId(id));
         }
-        let names: Vec<String> =
-            self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n.to_owned()).collect();
-        let given = self.given_names(Noun::Event);
-        let names: Vec<String> =
-            if noun == Noun::EventOrStimulus { names.into_iter().chain(given).collect() } else { names };
+        let mut names = self.near(self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n));
+        if noun == Noun::EventOrStimulus {
+            names.extend(self.given_names(Noun::Event));
+        }
         self.unknown(noun, name, &names, local);
         None
     }
@@ -310,8 +324,8 @@ impl<'a> Checker<'a> {
         }
         let found = self.points.get(&name.text).map(PointId);
         if found.is_none() {
-            let own = self.points.names().map(str::to_owned);
-            let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
+            let mut all = self.near(self.points.names());
+            all.extend(self.given_names(Noun::Point));
             self.unknown(Noun::Point, name, &all, None);
         }
         found
@@ -326,11 +340,16 @@ impl<'a> Checker<'a> {
         if is.is_none() && unread::may_declare(noun, self.unread_items, self.unread_members) {
             return;
         }
-        let names = names.iter().map(String::as_str);
-        let issue = match is {
+        let helpless = self.compared > MAX_COMPARED;
+        self.compared += names.len();
+        let names = names.iter().map(String::as_str).filter(|_| !helpless);
+        let mut issue = match is {
             Some(is) if is != noun => wrong_kind(noun, is, &name.text, name.span, names),
             Some(_) | None => unknown(noun, &name.text, name.span, names),
         };
+        if helpless {
+            issue.help = None;
+        }
         self.report(issue);
     }
 
@@ -386,11 +405,17 @@ impl<'a> Checker<'a> {
     ) -> Option<u16> {
         match table.insert(full, span) {
             Ok(id) => Some(id),
-            Err(first) => {
-                issues.push(duplicate(noun, full, span, Some(first)));
+            Err(refused) => {
+                issues.extend(said_of(refused, noun, full, span));
                 None
             }
         }
+    }
+
+    /// The names that a misspelt one may have been meant to be; none after many misspelt names, since looking for the
+    /// nearest takes time that grows with both.
+    fn near<'n>(&self, names: impl Iterator<Item = &'n str>) -> Vec<String> {
+        if self.compared > MAX_COMPARED { Vec::new() } else { names.map(str::to_owned).collect() }
     }
 
     /// A word that is one of a fixed list.
@@ -409,6 +434,23 @@ impl<'a> Checker<'a> {
     fn actor_name(&self, actor: ActorId) -> &str {
         self.s.actors.get(usize::from(actor.0)).map_or("?", |a| a.name.as_str())
     }
+}
+
+/// What is to be said of a name that was not entered.
+fn said_of(refused: Refused, noun: Noun, name: &str, span: Span) -> Option<Diagnostic> {
+    match refused {
+        Refused::Taken(first) => Some(duplicate(noun, name, span, Some(first))),
+        Refused::Full { first: true } => {
+            let message = format!("there are more than {MAX_NAMES} {}", noun.plural());
+            Some(too_many(message, span))
+        }
+        Refused::Full { first: false } => None,
+    }
+}
+
+/// HR0005: more than can be looked at.
+fn too_many(message: String, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::TOO_DEEP, span, message).help("divide it into several scenarios, or say less")
 }
 
 /// Whether names like this are an agent's variables.

@@ -7,6 +7,7 @@ use hrdsl_syntax::ast::{
 
 use super::{
     Checker, Env, NOBODY, agent::Scope, expr::FUNCTIONS, is_variable_name, item::Part, layout::Fields,
+    table::MAX_NAMES,
 };
 use crate::{
     ActorId, Arg, BeliefId, Context, Dim, EventId, Expr, Kind, Leaf, Plan, Role, Step, StepKind, TriggerOn,
@@ -25,6 +26,10 @@ impl Checker<'_> {
             None => Context::True,
         };
         let body: Vec<Step> = plan.body.iter().filter_map(|step| self.step(scope, step, &mut env)).collect();
+        if env.locals.len() > MAX_NAMES {
+            let message = format!("the plan has more than {MAX_NAMES} variables");
+            self.report(super::too_many(message, plan.trigger.span));
+        }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
         let (trigger, args) = trigger?;
         let (head, name) = (plan.trigger.span, plan.trigger.call.name.span);

@@ -15,7 +15,7 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
         ExprKind::Const(Value::Bool(_) | Value::Float(_) | Value::Symbol(_))
         | ExprKind::Term(_)
         | ExprKind::Error => None,
-        ExprKind::Leaf(leaf) => env.locals.iter().find(|l| l.leaf == Some(*leaf)).and_then(|l| l.range),
+        ExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),
         ExprKind::Unary(UnaryOp::Neg, a) => {
             let (lo, hi) = of(a, env)?;
             Some((hi.checked_neg()?, lo.checked_neg()?))

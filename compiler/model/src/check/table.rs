@@ -2,20 +2,42 @@
 
 use hrdsl_source::Span;
 use indexmap::IndexMap;
+use rustc_hash::FxBuildHasher;
+
+/// In the order of insertion, whatever the hashes.
+pub(crate) type Map<K, V> = IndexMap<K, V, FxBuildHasher>;
+
+/// The most names that one table holds: ids are 16 bits wide, and the last number stands for nothing.
+pub(crate) const MAX_NAMES: usize = u16::MAX as usize;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
-    entries: IndexMap<String, Span>,
+    entries: Map<String, Span>,
+    overflown: bool,
+}
+
+/// Why a name was not entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Refused {
+    /// It is there already, declared here.
+    Taken(Span),
+    /// There is no room; said of the first name only.
+    Full { first: bool },
 }
 
 impl Table {
-    /// Enters a new name. A name that is there already gives the place of its declaration.
-    pub fn insert(&mut self, name: &str, span: Span) -> Result<u16, Span> {
+    /// Enters a new name.
+    pub fn insert(&mut self, name: &str, span: Span) -> Result<u16, Refused> {
         if let Some(first) = self.entries.get(name) {
-            return Err(*first);
+            return Err(Refused::Taken(*first));
         }
-        self.entries.insert(name.to_owned(), span);
-        Ok(u16::try_from(self.entries.len() - 1).unwrap_or(u16::MAX))
+        match u16::try_from(self.entries.len()) {
+            Ok(id) if self.entries.len() < MAX_NAMES => {
+                self.entries.insert(name.to_owned(), span);
+                Ok(id)
+            }
+            Ok(_) | Err(_) => Err(Refused::Full { first: !std::mem::replace(&mut self.overflown, true) }),
+        }
     }
 
     pub fn get(&self, name: &str) -> Option<u16> {
@@ -38,5 +60,22 @@ impl Table {
 
     pub fn span(&self, id: u16) -> Option<Span> {
         self.entries.get_index(usize::from(id)).map(|(_, span)| *span)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_end_before_they_would_be_wrong() {
+        let mut table = Table::default();
+        for i in 0..MAX_NAMES {
+            assert_eq!(table.insert(&format!("e{i}"), Span::default()), Ok(u16::try_from(i).unwrap()));
+        }
+        assert_eq!(table.insert("e7", Span::default()), Err(Refused::Taken(Span::default())));
+        assert_eq!(table.insert("more", Span::default()), Err(Refused::Full { first: true }));
+        assert_eq!(table.insert("yet", Span::default()), Err(Refused::Full { first: false }));
+        assert_eq!((table.get("e65534"), table.get("more")), (Some(65_534), None));
     }
 }

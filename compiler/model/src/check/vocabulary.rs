@@ -1,5 +1,7 @@
 //! Declarations that everything else speaks of: actors, constants, events, shared variables, and the names of players.
 
+use std::rc::Rc;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
@@ -7,8 +9,8 @@ use super::{
     Checker, ConstEntry, ConstState, Declared, Env, NOBODY, given::template, layout::Fields, table::Table,
 };
 use crate::{
-    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, LocationId, Player, Role, Stimulus,
-    Type, Value, Var,
+    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, Player, Role,
+    Stimulus, Type, Value, Var,
     noun::Noun,
     report::{names, roles, types},
     types::Layout,
@@ -218,18 +220,22 @@ impl<'a> Checker<'a> {
 
     fn declare_shared(&mut self, var: &ast::Var) {
         self.check_free(&Env::constants(), Noun::Variable, &var.name);
-        if let Err(first) = self.shared_names.insert(&var.name.text, var.name.span) {
-            let issue = names::duplicate(Noun::Variable, &var.name.text, var.name.span, Some(first));
-            return self.report(issue);
+        let (issues, names) = (&mut self.issues, &mut self.shared_names);
+        if Self::declare(issues, names, Noun::Variable, &var.name).is_none() {
+            return;
         }
         let (layout, vars) = self.var(var);
         for var in vars {
             // The parts of one variable have names that no other can have.
-            let _ = self.shared.insert(&var.name, var.span);
+            let (issues, table) = (&mut self.issues, &mut self.shared);
+            let Some(i) = Self::declare_as(issues, table, Noun::Variable, &var.name, var.span) else {
+                return;
+            };
+            Rc::make_mut(&mut self.shared_scope).add_variable(Leaf::Shared(i), &var);
             self.s.shared.push(var);
         }
         if !matches!(layout, Layout::Scalar(_)) {
-            self.shared_layouts.push((var.name.text.clone(), layout));
+            Rc::make_mut(&mut self.shared_scope).layouts.insert(var.name.text.clone(), layout);
         }
     }
 

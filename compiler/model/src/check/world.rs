@@ -84,6 +84,8 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let kept_names = std::mem::take(&mut self.in_world);
+            // What is checked for itself counts, too.
+            self.in_world.members = kept_names.members;
             let kept_world = self.s.world.take();
             let kept_flag = std::mem::replace(&mut self.has_world, true);
             match &part.params {
@@ -93,7 +95,9 @@ impl<'a> Checker<'a> {
                 }),
                 None => self.build(&part.members, part.name.span),
             }
+            let members = self.in_world.members;
             self.in_world = kept_names;
+            self.in_world.members = members;
             self.s.world = kept_world;
             self.has_world = kept_flag;
         }
@@ -335,7 +339,7 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.in_world.signals);
         if Self::declare_as(issues, table, Noun::Signal, &full, name.span).is_some() {
             if ty.is_none() {
-                self.in_world.broken.push(full.clone());
+                self.in_world.broken.insert(full.clone());
             }
             let ty = ty.unwrap_or(crate::Type::Bool);
             self.world_mut().signals.push(Signal { name: full, ty, to, value, span: p.member.span });

@@ -1,6 +1,6 @@
 //! Names of the world, and the instantiation of parts.
 
-use std::rc::Rc;
+use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::{Diagnostic, Span};
 use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
@@ -12,6 +12,9 @@ use crate::{
     report::{types, world::bad_world},
     world::{BodyRef, Frame},
 };
+
+/// The most members of the world, those of its parts included each time that they are used.
+const MAX_MEMBERS: usize = 100_000;
 
 /// How deep parts can be in parts; more is a part that contains itself.
 const MAX_DEPTH: usize = 16;
@@ -27,9 +30,11 @@ pub(crate) struct WorldNames {
     pub currents: Table,
     pub signals: Table,
     /// The parts that have been used.
-    pub used: Vec<String>,
+    pub used: BTreeSet<String>,
     /// Instances of unknown parts: nothing is said about what they have.
-    pub broken: Vec<String>,
+    pub broken: BTreeSet<String>,
+    /// How many members there are so far.
+    pub members: usize,
 }
 
 impl WorldNames {
@@ -106,6 +111,15 @@ impl<'a> Checker<'a> {
     ) -> Vec<Placed<'a>> {
         let mut all = Vec::new();
         for member in members {
+            self.in_world.members += 1;
+            if self.in_world.members > MAX_MEMBERS {
+                if self.in_world.members == MAX_MEMBERS + 1 {
+                    let message =
+                        format!("the world has more than {MAX_MEMBERS} members, with those of its parts");
+                    self.report(super::too_many(message, member.span));
+                }
+                return all;
+            }
             match &member.kind {
                 Member::Part { name, of, args, at, rotated } => {
                     let inner = self.frame(at, rotated.as_ref());
@@ -114,11 +128,11 @@ impl<'a> Checker<'a> {
                     let noun = Noun::PartInstance;
                     let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
                     let Some(part) = self.part(of, depth) else {
-                        self.in_world.broken.push(full);
+                        self.in_world.broken.insert(full);
                         continue;
                     };
                     let Ok(given) = self.given_part(part, of, args.as_deref(), prefix) else {
-                        self.in_world.broken.push(full);
+                        self.in_world.broken.insert(full);
                         continue;
                     };
                     if new {
@@ -194,7 +208,7 @@ impl<'a> Checker<'a> {
             ));
             return None;
         }
-        self.in_world.used.push(of.text.clone());
+        self.in_world.used.insert(of.text.clone());
         Some(part)
     }
 

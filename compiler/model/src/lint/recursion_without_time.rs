@@ -1,5 +1,7 @@
 //! HR0410: a goal that comes back to itself at the same instant, with nothing changed.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
@@ -13,14 +15,20 @@ use crate::{Arg, GoalId, Plan, Scenario, Step, StepKind, TriggerOn, Value};
 /// Longer ways back are not looked for.
 const DEEP: usize = 8;
 
+/// So many adoptions are followed in one agent.
+const MANY: usize = 20_000;
+
 pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario) {
+        let (mut left, mut progress) = (MANY, BTreeMap::new());
         for start in &facts.agent.plans {
             if let TriggerOn::Achieve(goal) = start.trigger
                 && !never_runs(&facts, start)
             {
                 let args: Vec<Passed> = start.args.iter().enumerate().map(Passed::at_start).collect();
-                let mut search = Search { facts, start, goal, args: &args, way: vec![], issues };
+                let (left, progress) = (&mut left, &mut progress);
+                let way = Vec::new();
+                let mut search = Search { facts, start, goal, args: &args, way, left, progress, issues };
                 search.from(start, &args);
             }
         }
@@ -61,6 +69,10 @@ struct Search<'a, 'i> {
     args: &'i [Passed],
     /// The plans and adoptions on the way.
     way: Vec<(&'a Plan, Span)>,
+    /// How many adoptions are still followed.
+    left: &'i mut usize,
+    /// By goal: whether its plans let time pass or change a belief.
+    progress: &'i mut BTreeMap<GoalId, bool>,
     issues: &'i mut Vec<Diagnostic>,
 }
 
@@ -74,10 +86,22 @@ impl<'a> Search<'a, '_> {
                 self.adopted(*goal, &args, step.span);
                 self.way.pop();
             }
-            if progresses(&self.facts, step, &mut Vec::new()) {
+            if self.progresses(step) {
                 return;
             }
         }
+    }
+
+    fn progresses(&mut self, step: &Step) -> bool {
+        let StepKind::Achieve(goal, _) = &step.kind else {
+            return progresses(&self.facts, step, &mut Vec::new());
+        };
+        if let Some(known) = self.progress.get(goal) {
+            return *known;
+        }
+        let found = progresses(&self.facts, step, &mut Vec::new());
+        self.progress.insert(*goal, found);
+        found
     }
 
     fn adopted(&mut self, goal: GoalId, args: &[Passed], span: Span) {
@@ -88,9 +112,10 @@ impl<'a> Search<'a, '_> {
             }
             return;
         }
-        if self.way.len() > DEEP {
+        if self.way.len() > DEEP || *self.left == 0 {
             return;
         }
+        *self.left -= 1;
         let facts = self.facts;
         for plan in facts.plans(TriggerOn::Achieve(goal)) {
             let later = plan.span.start > self.start.span.start;

@@ -57,7 +57,7 @@ pub(crate) fn shadows(earlier: &Plan, later: &Plan) -> bool {
         ours.iter().any(|ours| {
             let ours = Conjunction::of(earlier, ours);
             let positive: Vec<usize> = ours.positive().collect();
-            implied(&ours, &theirs, &positive, renaming.clone())
+            implied(&ours, &theirs, &positive, renaming.clone(), &mut TRIES.clone())
         })
     })
 }
@@ -78,9 +78,18 @@ impl<'a> Conjunction<'a> {
     }
 }
 
+/// How many pairs of literals are tried: there are exponentially many ways to match one conjunction with another.
+const TRIES: usize = 2_000;
+
 /// Whether each part of `ours` follows from a part of `theirs`. First the literals in turn, each of which may follow
 /// from several and so give its variables a meaning; then the rest.
-fn implied(ours: &Conjunction<'_>, theirs: &Conjunction<'_>, open: &[usize], renaming: Renaming) -> bool {
+fn implied(
+    ours: &Conjunction<'_>,
+    theirs: &Conjunction<'_>,
+    open: &[usize],
+    renaming: Renaming,
+    tries: &mut usize,
+) -> bool {
     let Some((first, open)) = open.split_first() else {
         return ours.parts.iter().all(|part| match part.0 {
             Context::Belief(..) => true,
@@ -92,10 +101,12 @@ fn implied(ours: &Conjunction<'_>, theirs: &Conjunction<'_>, open: &[usize], ren
     };
     let Context::Belief(belief, args, _) = ours.parts[*first].0 else { return false };
     theirs.parts.iter().any(|(their, _)| {
+        let Some(left) = tries.checked_sub(1) else { return false };
+        *tries = left;
         let mut renaming = renaming.clone();
         matches!(their, Context::Belief(b, special, _) if b == belief
             && more_general(&of_args(args), &of_args(special), &mut renaming))
-            && implied(ours, theirs, open, renaming)
+            && implied(ours, theirs, open, renaming, tries)
     })
 }
 

@@ -1,0 +1,149 @@
+//! The corpus of the fuzz targets, replayed: every input that was ever of interest, through the target that it belongs to.
+
+#![allow(clippy::disallowed_methods, reason = "reads the corpus")]
+
+use std::{collections::BTreeSet, fmt::Write, fs, path::PathBuf};
+
+use hrdsl_model::UNITS;
+use hrdsl_syntax::token::KEYWORDS;
+
+#[path = "../../fuzz/targets.rs"]
+mod targets;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../fuzz")
+}
+
+#[test]
+fn the_corpus_holds() {
+    for (name, target) in targets::TARGETS {
+        let mut seen = 0;
+        for part in ["corpus", "regressions"] {
+            let Ok(inputs) = fs::read_dir(folder().join(part).join(name)) else { continue };
+            for input in inputs {
+                let path = input.unwrap().path();
+                let data = fs::read(&path).unwrap();
+                // Which input it is that fails.
+                println!("{}", path.display());
+                target(&data);
+                seen += 1;
+            }
+        }
+        assert!(seen > 0, "the target `{name}` has no corpus");
+    }
+}
+
+/// Every target of the corpus has a binary that libFuzzer drives, and the other way round.
+#[test]
+fn every_target_is_fuzzed() {
+    let files = fs::read_dir(folder().join("fuzz_targets")).unwrap();
+    let fuzzed: BTreeSet<String> =
+        files.map(|f| f.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    let replayed: BTreeSet<String> = targets::TARGETS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(fuzzed, replayed);
+}
+
+/// The words and marks of the language, as libFuzzer reads them.
+fn dictionary() -> String {
+    let marks = [
+        "(",
+        ")",
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        ";",
+        ":",
+        ".",
+        "..",
+        "@",
+        "?",
+        "|",
+        "->",
+        "=",
+        "+=",
+        "-=",
+        "-+",
+        "!",
+        "!!",
+        "&&",
+        "||",
+        "==",
+        "!=",
+        "<",
+        "<=",
+        ">",
+        ">=",
+        "+",
+        "-",
+        "*",
+        "/",
+        "%",
+        "^",
+        "_",
+        "//",
+        "///",
+        "bool",
+        "float",
+        "number",
+        "event",
+        "actor",
+        "place",
+        "arm",
+        "gripper",
+        "std.person",
+        "std.robots.bert2",
+        "else if",
+        "plan +!",
+        "plan -!",
+        "-+",
+        "9223372036854775807",
+        "0.0",
+        "1e308",
+        "abs",
+        "min",
+        "max",
+        "norm",
+        "distance",
+        "range",
+        "angle",
+        "visible",
+        "holds",
+        "joint_speed",
+        "fixed",
+        "dynamic",
+        "kinematic",
+        "box",
+        "sphere",
+        "capsule",
+        "cylinder",
+        "pairwise",
+        "environment",
+    ];
+    let words = KEYWORDS.iter().map(|k| k.word).chain(marks);
+    let mut text =
+        "# The words of the language; made by `HRDSL_RENEW=1 cargo test -p hrdsl-compiler --test corpus`.\n"
+            .to_owned();
+    let mut seen = BTreeSet::new();
+    for word in words.filter(|w| seen.insert(*w)) {
+        let _ = writeln!(text, "\"{word}\"");
+    }
+    for unit in UNITS {
+        let _ = writeln!(text, "\" 1 {}\"", unit.symbol);
+    }
+    text.push_str("\"\\x0a//====\\x0a\"\n\"\\\"\"\n");
+    text
+}
+
+#[test]
+fn the_dictionary_is_that_of_the_language() {
+    let path = folder().join("hri.dict");
+    let now = dictionary();
+    assert!(now.contains(&targets::SEPARATOR.trim().replace('\n', "\\x0a")));
+    if std::env::var_os("HRDSL_RENEW").is_some() {
+        fs::write(&path, &now).unwrap();
+    }
+    let kept = fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(kept, now, "old: HRDSL_RENEW=1 cargo test -p hrdsl-compiler --test corpus");
+}
