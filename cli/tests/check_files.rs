@@ -139,7 +139,7 @@ fn gen_counts_warnings_and_shows_errors() {
     let folder = folder(&[("a.hri", &text)]);
     let out = hrdsl_in(folder.path(), "gen a.hri");
     expect_code(&out, 0);
-    assert_eq!(stderr(&out), "1 warning (`hrdsl check a.hri` shows it)\n");
+    assert_eq!(stderr(&out), "2 warnings (`hrdsl check a.hri` shows them)\n");
     fs::write(folder.path().join("a.hri"), text + "require R functional x causes called\n").unwrap();
     let out = hrdsl_in(folder.path(), "gen a.hri");
     expect_code(&out, 1);

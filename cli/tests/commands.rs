@@ -47,7 +47,7 @@ fn a_page_as_json_is_the_file() {
 fn codes_that_do_not_exist_have_neighbours() {
     let out = hrdsl(["explain", "HR0199"]);
     expect_code(&out, 2);
-    assert!(stderr(&out).contains("HR0105 (a declaration that the scenario needs)"), "{}", stderr(&out));
+    assert!(stderr(&out).contains("HR0109 (an allowance for nothing)"), "{}", stderr(&out));
     let out = hrdsl(["explain", "typo"]);
     expect_code(&out, 2);
     assert!(stderr(&out).contains("`hrdsl explain` lists them"), "{}", stderr(&out));

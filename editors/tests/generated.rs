@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_editors::{generated, textmate, words};
+use hrdsl_editors::{generated, textmate};
 use hrdsl_syntax::token::KEYWORDS;
 
 fn folder() -> &'static Path {
