@@ -162,7 +162,12 @@ module.exports = grammar({
         "{",
         field("consequence", $._drawn),
         closing($),
-        optional(seq(keyword($, "else"), "{", field("alternative", $._drawn), closing($))),
+        optional(
+          seq(
+            keyword($, "else"),
+            choice(seq("{", field("alternative", $._drawn), closing($)), field("alternative", $.if_range)),
+          ),
+        ),
       ),
     emit_step: ($) => seq(keyword($, "emit"), field("event", $.call)),
     hold_step: ($) => seq(keyword($, "hold"), field("time", $.expression)),

@@ -42,7 +42,10 @@ test("the indentation of the repository's files is what the rules give", () => {
       if (!opens.test(line)) return;
       blocks += 1;
       const indent = (text) => /^ */.exec(text)[0].length;
-      assert.equal(indent(lines[at + 1]), indent(line) + 2, `${file}:${at + 2}`);
+      // A header of several lines opens its block on the last of them, and is itself where the first begins.
+      let first = at;
+      while (/^\s+[*|&=+<>-]/.test(lines[first])) first -= 1;
+      assert.equal(indent(lines[at + 1]), indent(lines[first]) + 2, `${file}:${at + 2}`);
     });
   }
   assert.ok(blocks > 10, `${blocks} blocks`);
