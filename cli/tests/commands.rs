@@ -151,6 +151,7 @@ fn a_new_project_checks_generates_and_runs() {
     let out = hrdsl_in(&here, "check --deny warnings .");
     expect_code(&out, 0);
     assert!(stdout(&out).starts_with("scenario.hri: scenario `greeter` is well formed"), "{}", stdout(&out));
+    expect_code(&hrdsl_in(&here, "fmt --check ."), 0);
 
     let out = hrdsl_in(&here, "gen scenario.hri");
     expect_code(&out, 0);

@@ -100,3 +100,12 @@ fn a_missing_file_is_named() {
     expect_code(&out, 2);
     assert!(stderr(&out).starts_with("error: no such file: nowhere.hri\n"));
 }
+
+#[test]
+fn the_examples_and_the_library_are_formatted() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let [examples, library] = ["examples", "stdlib"].map(|f| root.join(f).to_string_lossy().into_owned());
+    let out = hrdsl(["fmt", "--check", &examples, &library]);
+    assert_eq!(stdout(&out), "");
+    expect_code(&out, 0);
+}
