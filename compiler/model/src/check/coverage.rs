@@ -122,16 +122,17 @@ impl Checker<'_> {
         for name in &cross.points {
             points.extend(self.point_named(name));
         }
+        let whole = points.len() == cross.points.len();
         let mut titles = Table::default();
         let (mut bins, mut ignore) = (Vec::new(), Vec::new());
         for member in &cross.members {
             match &member.kind {
                 Member::Bin { name, when } => {
                     Self::declare_as(&mut self.issues, &mut titles, Noun::Bin, &name.text, name.span);
-                    let when = self.cross_condition(when, &points);
+                    let when = self.cross_condition(when, &points, whole);
                     bins.extend(when.map(|when| (name.text.clone(), when, member.span)));
                 }
-                Member::Ignore { when } => ignore.extend(self.cross_condition(when, &points)),
+                Member::Ignore { when } => ignore.extend(self.cross_condition(when, &points, whole)),
                 Member::Allow(_) | Member::Error => {}
             }
         }
@@ -139,18 +140,19 @@ impl Checker<'_> {
     }
 
     /// A formula over `point.bin`.
-    fn cross_condition(&mut self, e: &ast::Expr, points: &[PointId]) -> Option<Condition> {
+    fn cross_condition(&mut self, e: &ast::Expr, points: &[PointId], whole: bool) -> Option<Condition> {
         match &e.kind {
             Syntax::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
-                let (l, r) = (self.cross_condition(left, points), self.cross_condition(right, points));
+                let (l, r) =
+                    (self.cross_condition(left, points, whole), self.cross_condition(right, points, whole));
                 let both = vec![l?, r?];
                 Some(if *op == BinaryOp::And { Condition::And(both) } else { Condition::Or(both) })
             }
             Syntax::Unary { op: UnaryOp::Not, operand } => {
-                Some(Condition::Not(Box::new(self.cross_condition(operand, points)?)))
+                Some(Condition::Not(Box::new(self.cross_condition(operand, points, whole)?)))
             }
             Syntax::Path(path) => match path.names.as_slice() {
-                [point, bin] => self.in_bin(point, bin, points),
+                [point, bin] => self.in_bin(point, bin, points, whole),
                 _ => {
                     self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
                     None
@@ -164,7 +166,7 @@ impl Checker<'_> {
         }
     }
 
-    fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId]) -> Option<Condition> {
+    fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId], whole: bool) -> Option<Condition> {
         match self.given(&point.text) {
             Some(Given::Unknown) => return None,
             Some(Given::Point(id)) if points.contains(id) => return self.bin_of(*id, bin),
@@ -176,6 +178,10 @@ impl Checker<'_> {
         let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
         let here = self.points.get(&point.text).map(PointId).filter(|id| points.contains(id));
         let Some(id) = here else {
+            // A point whose name is wrong may be the one that is meant.
+            if !whole {
+                return None;
+            }
             let own = points.iter().map(|p| name_of(self, p));
             let all: Vec<String> = own.chain(self.given_names(Noun::Point)).collect();
             self.unknown(Noun::Point, point, &all, None);

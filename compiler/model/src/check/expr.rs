@@ -358,7 +358,7 @@ impl<'a> Checker<'a> {
     }
 
     /// All names that have a value here.
-    fn names_with_value(&self, env: &Env) -> Vec<String> {
+    pub(super) fn names_with_value(&self, env: &Env) -> Vec<String> {
         let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
         let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
         let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));

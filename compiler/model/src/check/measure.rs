@@ -6,6 +6,7 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 use super::{Checker, Env, expr::FUNCTIONS, given::Given};
 use crate::{
     ArmId, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    nearest::nearest,
     noun::Noun,
     report::{names, types},
     world::BodyRef,
@@ -66,11 +67,31 @@ impl Checker<'_> {
             }
             return Expr::error(path.span);
         }
+        if let [only] = body
+            && let Some((noun, near)) = self.meant_in_world(only, &prefix, env)
+        {
+            self.unknown(noun, only, &near, None);
+            return Expr::error(path.span);
+        }
         let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
         match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
             Some(axis) => term(Term::Coordinate(body, axis as u8), Kind::Float(Dim::LENGTH), path.span),
             None => Expr::error(path.span),
         }
+    }
+
+    /// What a name before a dot is near to, if that is a value or a part of the world, and no body is.
+    fn meant_in_world(&self, name: &Name, prefix: &str, env: &Env) -> Option<(Noun, Vec<String>)> {
+        let near = |names: &[String]| nearest(&name.text, names.iter().map(String::as_str)).is_some();
+        let full = self.full_name(std::slice::from_ref(name), prefix)?;
+        let bodies = self.in_world.below(Noun::Body, prefix);
+        if self.in_world.kind_of(&full).is_some() || near(&bodies) {
+            return None;
+        }
+        let values = self.names_with_value(env);
+        let parts = self.in_world.below(Noun::PartInstance, prefix);
+        let found = [(Noun::Constant, values), (Noun::PartInstance, parts)];
+        found.into_iter().find(|(_, names)| near(names))
     }
 
     /// A function over the world.

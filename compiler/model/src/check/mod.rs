@@ -191,6 +191,8 @@ pub(crate) struct Checker<'a> {
     in_world: world_parts::WorldNames,
     /// A module is missing, which may have the parts that are used.
     missing_modules: bool,
+    /// The suite that is being checked names a player that does not exist.
+    unknown_player: bool,
     /// A declaration of the scenario, or a member of its world, could not be read.
     unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
@@ -247,6 +249,7 @@ impl<'a> Checker<'a> {
             belief_fields: Vec::new(),
             has_world,
             missing_modules: false,
+            unknown_player: false,
             unread_items: false,
             unread_members: false,
             compared: 0,

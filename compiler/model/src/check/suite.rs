@@ -89,6 +89,7 @@ impl Checker<'_> {
 
     /// Agents and automata; at most one for an actor.
     fn suite_players(&mut self, list: &[Name]) -> Vec<Player> {
+        self.unknown_player = list.iter().any(|name| self.players.get(&name.text).is_none());
         let mut players = Vec::new();
         let mut actors = Vec::new();
         for name in list {
@@ -198,7 +199,8 @@ impl Checker<'_> {
             self.unknown(Noun::Agent, agent, &all, None);
             return None;
         };
-        if !players.contains(&Player::Agent(id)) {
+        // A player whose name is wrong may be the one that is missing.
+        if !players.contains(&Player::Agent(id)) && !self.unknown_player {
             let message = format!("`{}` does not play in this suite", agent.text);
             self.report(bad_suite(agent.span, message, "add it after `by agents`"));
         }

@@ -131,9 +131,11 @@ impl Checker<'_> {
         let stimulus = self.s.events[usize::from(event.0)].stimulus.clone().unwrap_or_default();
         let all: Vec<String> = stimulus.samples.iter().map(|s| s.name.clone()).collect();
         let mut values: Vec<Option<Value>> = vec![None; all.len()];
+        let mut misspelt = false;
         for (name, value) in with {
             let Some(at) = all.iter().position(|s| *s == name.text) else {
                 self.unknown(Noun::Sample, name, &all, Some(Noun::Sample));
+                misspelt = true;
                 continue;
             };
             if values[at].is_some() {
@@ -151,7 +153,7 @@ impl Checker<'_> {
         }
         let missing: Vec<&str> =
             all.iter().zip(&values).filter(|(_, v)| v.is_none()).map(|(n, _)| n.as_str()).collect();
-        if !missing.is_empty() {
+        if !missing.is_empty() && !misspelt {
             let message = format!("`{}` is given some of its samples only", call.name.text);
             let help = format!("add `{}`, or leave all to the seed", missing.join("`, `"));
             self.report(bad_test(call.name.span, message, help));
