@@ -56,10 +56,12 @@ pub fn formatter(data: &[u8]) {
     assert_eq!(hrdsl_syntax::format(&once).as_ref(), Ok(&once));
 }
 
-/// The tokens of a text without the separators, which the formatter may set and take away.
-fn words(text: &str) -> Vec<&str> {
+/// The tokens of a text without the separators, which the formatter may set and take away, as it may the blank of `5 s`.
+fn words(text: &str) -> Vec<String> {
     let (tokens, _) = hrdsl_syntax::lex_only(text);
-    tokens.into_iter().map(|t| &text[t]).filter(|t| !matches!(*t, ";" | ",")).collect()
+    let words = tokens.into_iter().map(|t| &text[t]).filter(|t| !matches!(*t, ";" | ","));
+    let word = |w: &str| if w.starts_with('"') { w.to_owned() } else { w.split_whitespace().collect() };
+    words.map(word).collect()
 }
 
 /// Whatever file is used, it is this one.
