@@ -2,11 +2,11 @@
 //! knows single values alone.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, BinaryOp, Name};
 
 use super::{Checker, Env, layout::MAX_PARTS};
 use crate::{
-    Dim, Expr, ExprKind, Function, Kind, Type, Value,
+    Expr, ExprKind, Kind, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
@@ -88,7 +88,7 @@ impl Item {
     }
 
     /// Whether it is an array of one where that is due.
-    fn is_one_of(&self, layout: &Layout) -> bool {
+    pub(super) fn is_one_of(&self, layout: &Layout) -> bool {
         let one = matches!(self, Item::Array(parts, _) | Item::Tuple(parts, _) if parts.len() == 1);
         one && matches!(layout, Layout::Array(..))
     }
@@ -112,7 +112,7 @@ impl Item {
         }
     }
 
-    fn parts(&self) -> Option<&[Item]> {
+    pub(super) fn parts(&self) -> Option<&[Item]> {
         match self {
             Item::One(_) => None,
             Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => Some(parts),
@@ -130,7 +130,7 @@ impl Item {
     }
 
     /// Whether nothing is known of it: it has a diagnostic, or is a goal's argument.
-    fn is_unknown(&self) -> bool {
+    pub(super) fn is_unknown(&self) -> bool {
         matches!(self, Item::One(e) if e.ty == Kind::Unknown)
     }
 }
@@ -197,7 +197,7 @@ impl Checker<'_> {
     }
 
     /// The layouts of the parts, with the names that they are reached by.
-    fn parts_of(&self, layout: &Layout) -> Vec<(String, Layout)> {
+    pub(super) fn parts_of(&self, layout: &Layout) -> Vec<(String, Layout)> {
         match layout {
             Layout::Scalar(_) | Layout::Unknown => Vec::new(),
             Layout::Record(id) => {
@@ -220,7 +220,7 @@ impl Checker<'_> {
     }
 
     /// Says that nothing is known of something that must have parts, unless it has a diagnostic.
-    fn not_known(&mut self, item: &Item) {
+    pub(super) fn not_known(&mut self, item: &Item) {
         if let Item::One(e) = item
             && e.ty == Kind::Unknown
             && e.kind != ExprKind::Error
@@ -253,267 +253,6 @@ impl Checker<'_> {
             Layout::Record(id) => Item::Record(*id, parts(self), span),
             Layout::Array(..) => Item::Array(parts(self), span),
             Layout::Unknown => Item::error(span),
-        }
-    }
-
-    // ── what is due ──
-
-    /// An expression where something of this layout is due.
-    pub(super) fn item_for(&mut self, e: &ast::Expr, layout: &Layout, env: &mut Env) -> Item {
-        match layout {
-            Layout::Scalar(ty) => return Item::One(self.expr_for(e, *ty, env)),
-            Layout::Unknown => return Item::error(e.span),
-            Layout::Record(_) | Layout::Array(..) => {}
-        }
-        if let Syntax::Tuple(parts) = &e.kind {
-            let due = self.parts_of(layout);
-            if due.len() == parts.len() {
-                let items = parts.iter().zip(&due).map(|(p, (_, l))| self.item_for(p, l, env)).collect();
-                return self.whole(layout, items, e.span);
-            }
-        }
-        if let Syntax::If { condition, then, otherwise } = &e.kind {
-            let condition = self.expr_of(condition, Kind::Bool, env);
-            let (then, otherwise) = (self.item_for(then, layout, env), self.item_for(otherwise, layout, env));
-            return self.either_item(&condition, then, otherwise, e.span, env);
-        }
-        if let Some(of) = self.only_part(layout)
-            && (matches!(e.kind, Syntax::Tuple(_)) || self.needs_due(e))
-        {
-            let only = self.item_for(e, &of, env);
-            return self.whole(layout, vec![only], e.span);
-        }
-        let item = self.item(e, env);
-        self.coerce(item, layout, env)
-    }
-
-    /// The layout of what has one part alone: its value needs no parentheses of a tuple, which would be no tuple.
-    fn only_part(&self, layout: &Layout) -> Option<Layout> {
-        match self.parts_of(layout).as_slice() {
-            [(_, of)] => Some(of.clone()),
-            [] | [_, ..] => None,
-        }
-    }
-
-    fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
-        match layout {
-            Layout::Record(id) => Item::Record(*id, parts, span),
-            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Item::Array(parts, span),
-        }
-    }
-
-    fn coerce(&mut self, item: Item, layout: &Layout, env: &mut Env) -> Item {
-        let span = item.span();
-        if *layout == Layout::Unknown {
-            return Item::error(span);
-        }
-        let due = self.parts_of(layout);
-        let fits = match (&item, layout) {
-            (Item::One(e), Layout::Scalar(ty)) => {
-                let e = self.fit(e.clone(), ty.kind(), env);
-                self.in_range(&e, *ty);
-                return Item::One(e);
-            }
-            (Item::Record(id, ..), Layout::Record(want)) if id == want => true,
-            (_, Layout::Record(_) | Layout::Array(_, 1))
-                if due.len() == 1 && !item.is_unknown() && !item.is_one_of(layout) =>
-            {
-                let part = self.coerce(item, &due[0].1, env);
-                return self.whole(layout, vec![part], span);
-            }
-            (Item::Tuple(parts, _), Layout::Record(_) | Layout::Array(..))
-            | (Item::Array(parts, _), Layout::Array(..)) => parts.len() == due.len(),
-            (Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..), _) => false,
-        };
-        if !fits {
-            if item.is_unknown() {
-                self.not_known(&item);
-            } else {
-                let got = self.shown(&item);
-                self.other_shape(layout, &got, span);
-            }
-            return self.error_item(layout, span);
-        }
-        let parts = match item {
-            Item::One(_) => Vec::new(),
-            Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => parts,
-        };
-        let parts = parts.into_iter().zip(&due).map(|(p, (_, l))| self.coerce(p, l, env)).collect();
-        self.whole(layout, parts, span)
-    }
-
-    /// Something of another shape is needed: says which.
-    fn other_shape(&mut self, layout: &Layout, got: &str, span: Span) {
-        let issue = types::other_shape(&self.shown_layout(layout), got, span);
-        let due = self.parts_of(layout);
-        let form: Vec<&str> = match layout {
-            Layout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
-            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Vec::new(),
-        };
-        self.report(match form.as_slice() {
-            [] => issue,
-            form => issue.help(format!("write `({})`", form.join(", "))),
-        });
-    }
-
-    fn error_item(&self, layout: &Layout, span: Span) -> Item {
-        if matches!(layout, Layout::Scalar(_) | Layout::Unknown) {
-            return Item::error(span);
-        }
-        let parts = self.parts_of(layout).iter().map(|(_, l)| self.error_item(l, span)).collect();
-        self.whole(layout, parts, span)
-    }
-
-    /// The bare name of some enumeration's value, or something that holds one: what is due says which it is.
-    pub(super) fn needs_due(&self, e: &ast::Expr) -> bool {
-        match &e.kind {
-            Syntax::Path(path) => {
-                path.names.len() == 1 && self.values.contains_key(path.names[0].text.as_str())
-            }
-            Syntax::Tuple(parts) => parts.iter().any(|p| self.needs_due(p)),
-            Syntax::If { then, otherwise, .. } => self.needs_due(then) || self.needs_due(otherwise),
-            _ => false,
-        }
-    }
-
-    /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
-    pub(super) fn item_like(&mut self, e: &ast::Expr, like: &Item, env: &mut Env) -> Item {
-        match (&e.kind, like) {
-            (Syntax::Path(_) | Syntax::If { .. }, Item::One(Expr { ty: ty @ Kind::Enum(_), .. }))
-                if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) =>
-            {
-                self.item_due(e, *ty, env)
-            }
-            (Syntax::Tuple(parts), Item::Record(_, due, _) | Item::Array(due, _) | Item::Tuple(due, _))
-                if parts.len() == due.len() =>
-            {
-                let parts = parts.iter().zip(due).map(|(p, d)| self.item_like(p, d, env)).collect();
-                Item::Tuple(parts, e.span)
-            }
-            (_, _) => self.item(e, env),
-        }
-    }
-
-    /// An argument taken apart as its parameter is, without looking at the single values yet.
-    pub(super) fn spread<'e>(
-        &mut self,
-        arg: &'e ast::Expr,
-        layout: &Layout,
-        env: &mut Env,
-        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
-        out: &mut Vec<Part<'e>>,
-    ) {
-        if let Layout::Scalar(ty) = layout {
-            out.push(if arg.kind == Syntax::Any { Part::Any } else { Part::Syntax(arg, *ty) });
-            return;
-        }
-        if *layout == Layout::Unknown {
-            return self.bind_names(arg, env, variable);
-        }
-        let due = self.parts_of(layout);
-        let given: Option<&[ast::Expr]> = match &arg.kind {
-            Syntax::Tuple(parts) => Some(parts),
-            Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
-            _ => None,
-        };
-        if let (Some(of), Syntax::Tuple(_) | Syntax::Call { .. }) = (self.only_part(layout), &arg.kind)
-            && !matches!(&arg.kind, Syntax::Call { callee, .. } if self.is_record(callee, layout))
-        {
-            return self.spread(arg, &of, env, variable, out);
-        }
-        let mut leaves = Vec::new();
-        if let Some(parts) = given {
-            if parts.len() == due.len() {
-                for (part, (_, layout)) in parts.iter().zip(&due) {
-                    self.spread(part, layout, env, variable, out);
-                }
-                return;
-            }
-            self.other_shape(layout, &format!("a tuple of {}", parts.len()), arg.span);
-            parts.iter().for_each(|p| self.bind_names(p, env, variable));
-            self.leaves("", layout, &mut leaves);
-            out.extend(leaves.into_iter().map(|_| Part::Any));
-            return;
-        }
-        if arg.kind == Syntax::Any {
-            self.leaves("", layout, &mut leaves);
-            out.extend(leaves.into_iter().map(|_| Part::Any));
-            return;
-        }
-        if let Syntax::Path(path) = &arg.kind
-            && let [name] = path.names.as_slice()
-            && variable(self, name)
-        {
-            if env.broken.contains(&name.text) {
-                self.leaves("", layout, &mut leaves);
-                out.extend(leaves.into_iter().map(|_| Part::Any));
-                return;
-            }
-            if let Some(got) = self.stands_for_other(name, layout, env) {
-                let want = self.shown_layout(layout);
-                self.report(types::other_before(&name.text, &want, &got, name.span));
-                self.leaves("", layout, &mut leaves);
-                out.extend(leaves.into_iter().map(|_| Part::Any));
-                return;
-            }
-            self.leaves(&name.text, layout, &mut leaves);
-            env.declare_layout(&name.text, layout.clone());
-            let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
-            out.extend(leaves.into_iter().map(part));
-            return;
-        }
-        let item = self.item_for(arg, layout, env);
-        self.leaves("", layout, &mut leaves);
-        if matches!(&arg.kind, Syntax::Call { .. })
-            && matches!(item.parts(), Some([first, ..]) if first.is_unknown())
-        {
-            // It may have been meant as a record, whose parts are bound.
-            self.bind_names(arg, env, variable);
-        }
-        let mut values = Vec::new();
-        item.flatten(&mut values);
-        out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
-    }
-
-    /// What a variable stands for, if it is of another layout.
-    fn stands_for_other(&self, name: &Name, layout: &Layout, env: &Env) -> Option<String> {
-        match (env.find(&name.text), env.layout(&name.text)) {
-            (Some(local), _) => Some(local.ty.to_string()),
-            (None, Some(Layout::Unknown)) => None,
-            (None, Some(other)) => (other != layout).then(|| self.shown_layout(other)),
-            (None, None) => None,
-        }
-    }
-
-    /// What a pattern would bind is known, but not its types.
-    pub(super) fn bind_names(
-        &self,
-        e: &ast::Expr,
-        env: &mut Env,
-        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
-    ) {
-        match &e.kind {
-            Syntax::Path(path) => {
-                if let [name] = path.names.as_slice()
-                    && variable(self, name)
-                    && env.find(&name.text).is_none()
-                    && env.layout(&name.text).is_none()
-                {
-                    env.push_local(&name.text, Noun::Variable, Kind::Unknown);
-                    env.broken.push(name.text.clone());
-                }
-            }
-            Syntax::Tuple(parts) | Syntax::Call { args: parts, .. } => {
-                parts.iter().for_each(|p| self.bind_names(p, env, variable));
-            }
-            _ => {}
-        }
-    }
-
-    fn is_record(&self, callee: &ast::Path, layout: &Layout) -> bool {
-        match (callee.names.as_slice(), layout) {
-            ([name], Layout::Record(id)) => self.records[usize::from(*id)].name.text == name.text,
-            (_, _) => false,
         }
     }
 
@@ -663,7 +402,7 @@ impl Checker<'_> {
         a.into_iter().zip(b).map(|(a, b)| self.either_item(condition, a, b, span, env)).collect()
     }
 
-    fn clash(&mut self, op: &str, a: &Item, b: &Item, span: Span) -> Item {
+    pub(super) fn clash(&mut self, op: &str, a: &Item, b: &Item, span: Span) -> Item {
         self.not_known(a);
         self.not_known(b);
         if !a.is_unknown() && !b.is_unknown() {
@@ -671,117 +410,6 @@ impl Checker<'_> {
             self.report(types::shapes(op, span, (&left, a.span()), (&right, b.span())));
         }
         Item::error(span)
-    }
-
-    // ── operators ──
-
-    /// An operator of which one side at least has several parts.
-    pub(super) fn combine(&mut self, op: BinaryOp, a: Item, b: Item, span: Span, env: &mut Env) -> Item {
-        match op {
-            BinaryOp::Eq | BinaryOp::Ne => self.equal(op, a, b, span, env),
-            BinaryOp::Add | BinaryOp::Sub => match (a, b) {
-                (Item::One(a), Item::One(b)) => Item::One(self.operate(op, a, b, span, env)),
-                (Item::Array(a, _) | Item::Tuple(a, _), Item::Array(b, _) | Item::Tuple(b, _))
-                    if a.len() == b.len() =>
-                {
-                    let pairs = a.into_iter().zip(b);
-                    Item::Array(pairs.map(|(a, b)| self.combine(op, a, b, span, env)).collect(), span)
-                }
-                (a, b) => self.clash(super::expr::symbol(op), &a, &b, span),
-            },
-            BinaryOp::Mul | BinaryOp::Div => match (a, b) {
-                (Item::One(a), Item::One(b)) => Item::One(self.operate(op, a, b, span, env)),
-                (Item::Array(a, _) | Item::Tuple(a, _), Item::One(by)) => {
-                    let by = Item::One(by);
-                    if !self.may_copy(&by, a.len(), span) {
-                        return Item::error(span);
-                    }
-                    let scaled = a.into_iter();
-                    Item::Array(scaled.map(|a| self.combine(op, a, by.clone(), span, env)).collect(), span)
-                }
-                (Item::One(by), Item::Array(b, _) | Item::Tuple(b, _)) if op == BinaryOp::Mul => {
-                    let by = Item::One(by);
-                    if !self.may_copy(&by, b.len(), span) {
-                        return Item::error(span);
-                    }
-                    let scaled = b.into_iter();
-                    Item::Array(scaled.map(|b| self.combine(op, by.clone(), b, span, env)).collect(), span)
-                }
-                (a, b) => self.clash(super::expr::symbol(op), &a, &b, span),
-            },
-            BinaryOp::Rem
-            | BinaryOp::Lt
-            | BinaryOp::Le
-            | BinaryOp::Gt
-            | BinaryOp::Ge
-            | BinaryOp::And
-            | BinaryOp::Or => self.clash(super::expr::symbol(op), &a, &b, span),
-        }
-    }
-
-    /// Equal if all parts are.
-    fn equal(&mut self, op: BinaryOp, a: Item, b: Item, span: Span, env: &mut Env) -> Item {
-        let same = match (&a, &b) {
-            (Item::Record(i, ..), Item::Record(j, ..)) => i == j,
-            (Item::One(_), _) | (_, Item::One(_)) | (Item::Record(..), Item::Array(..)) => false,
-            (Item::Array(..), Item::Record(..)) => false,
-            (Item::Record(_, p, _) | Item::Array(p, _) | Item::Tuple(p, _), Item::Tuple(q, _))
-            | (Item::Tuple(p, _), Item::Record(_, q, _) | Item::Array(q, _))
-            | (Item::Array(p, _), Item::Array(q, _)) => p.len() == q.len(),
-        };
-        let (left, right) = match (a, b) {
-            (Item::One(l), Item::One(r)) => return Item::One(self.operate(op, l, r, span, env)),
-            (
-                Item::Record(_, p, _) | Item::Array(p, _) | Item::Tuple(p, _),
-                Item::Record(_, q, _) | Item::Array(q, _) | Item::Tuple(q, _),
-            ) if same => (p, q),
-            (a, b) => return self.clash(super::expr::symbol(op), &a, &b, span),
-        };
-        let join = if op == BinaryOp::Eq { BinaryOp::And } else { BinaryOp::Or };
-        let mut all: Option<Expr> = None;
-        for (l, r) in left.into_iter().zip(right) {
-            let Item::One(one) = self.equal(op, l, r, span, env) else { return Item::error(span) };
-            if one.kind == ExprKind::Error {
-                return Item::error(span);
-            }
-            all = Some(match all {
-                Some(before) => self.operate(join, before, one, span, env),
-                None => one,
-            });
-        }
-        all.map_or(Item::error(span), Item::One)
-    }
-
-    /// `norm(v)`: the length of a vector.
-    pub(super) fn norm(&mut self, args: &[ast::Expr], span: Span, env: &mut Env) -> Expr {
-        let [arg] = args else {
-            self.report(types::counts(Noun::Function, "norm", 1, args.len(), span));
-            return Expr::error(span);
-        };
-        let item = self.item(arg, env);
-        if item.is_unknown() {
-            self.not_known(&item);
-            return Expr::error(span);
-        }
-        let number = |part: &Item| matches!(part, Item::One(e) if e.ty.is_number());
-        let vector = matches!(item, Item::Array(..) | Item::Tuple(..));
-        if !vector || !item.parts().is_some_and(|parts| parts.iter().all(number)) {
-            let got = self.shown(&item);
-            self.report(types::not_a_vector(&got, arg.span));
-            return Expr::error(span);
-        }
-        let mut parts = Vec::new();
-        item.flatten(&mut parts);
-        if parts.iter().any(|p| p.kind == ExprKind::Error) {
-            return Expr::error(span);
-        }
-        let known = parts.iter().map(|p| p.ty).find(|ty| *ty != Kind::Unknown);
-        let ty = match known {
-            Some(Kind::Int) | None => Kind::Float(Dim::NUMBER),
-            Some(ty) => ty,
-        };
-        let floats = parts.into_iter().map(|part| self.fit(part, ty, env)).collect();
-        self.applied(Function::Norm, floats, ty, span)
     }
 }
 

@@ -2,14 +2,18 @@
 
 mod agent;
 mod args;
+mod assign;
 mod automaton;
+mod combine;
 mod coverage;
+mod due;
 mod edge;
 mod env;
 mod expr;
 mod given;
 mod item;
 mod layout;
+mod lookup;
 mod measure;
 mod places;
 mod plan;
