@@ -153,3 +153,10 @@ fn a_label_is_not_within_a_character() {
         assert!(c.files.get(span.file).is_some_and(|f| f.text.get(span.range()).is_some()), "{span:?}");
     }
 }
+
+#[test]
+fn a_part_in_itself_is_not_taken_apart_again() {
+    let part = "part p {\n  part a = p at (0 m, 0 m, 0 m)\n  part b = p at (0 m, 0 m, 0 m)\n}\n";
+    let world = "world { part w = p at (0 m, 0 m, 0 m) }\n";
+    assert_eq!(codes(&format!("scenario much\n{part}{world}")), ["HR0801"]);
+}

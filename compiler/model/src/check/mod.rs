@@ -192,6 +192,8 @@ pub(crate) struct Checker<'a> {
     beliefs: Vec<Table>,
     belief_fields: Vec<Vec<Fields>>,
     has_world: bool,
+    /// The parts that are being taken apart, the outermost first.
+    open_parts: Vec<&'a str>,
     in_world: world_parts::WorldNames,
     /// A module is missing, which may have the parts that are used.
     missing_modules: bool,
@@ -252,6 +254,7 @@ impl<'a> Checker<'a> {
             beliefs: Vec::new(),
             belief_fields: Vec::new(),
             has_world,
+            open_parts: Vec::new(),
             missing_modules: false,
             unknown_player: false,
             unread_items: false,

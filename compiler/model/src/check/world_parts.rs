@@ -142,8 +142,10 @@ impl<'a> Checker<'a> {
                         let instance = given.is_some().then(|| (here, name.span.to(end)));
                         let outer = std::mem::replace(&mut self.given, given);
                         let (before, prefix) = (self.issues.len(), format!("{full}."));
+                        self.open_parts.push(&part.name.text);
                         let inner =
                             self.flatten_in(&part.members, &prefix, frame, depth + 1, instance.clone());
+                        self.open_parts.pop();
                         self.given = outer;
                         if let Some((name, span)) = &instance {
                             self.said_in(before, Some((name, *span)));
@@ -200,7 +202,8 @@ impl<'a> Checker<'a> {
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
             return None;
         };
-        if depth >= MAX_DEPTH {
+        // A part in itself would be doubled at each level if it is there twice.
+        if depth >= MAX_DEPTH || self.open_parts.contains(&of.text.as_str()) {
             self.report(bad_world(
                 of.span,
                 format!("the part `{}` contains itself", of.text),
