@@ -116,7 +116,7 @@ impl Source {
 }
 
 /// All `.hri` files in and below a folder, in order. Hidden folders, build folders and links to folders are left out.
-fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
+pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {

@@ -2,22 +2,18 @@
 
 use std::{
     fs,
-    io::{Read, Write},
     path::{Path, PathBuf},
 };
 
 use hrdsl_compiler::format;
 use hrdsl_source::{Diagnostic, Files};
-use similar::TextDiff;
 
 use crate::{
+    color,
     exit::Exit,
     input::{self, Fault},
-    render,
+    project, render,
 };
-
-/// Folders that hold no scenarios of their own.
-const SKIPPED: &[&str] = &["target", "node_modules", "hrdsl-out"];
 
 /// The text on stdin, among the paths.
 const STDIN: &str = "-";
@@ -105,10 +101,9 @@ fn summary(tally: &Tally, dry: bool) -> String {
 // ── Texts ──
 
 fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
-    let mut text = String::new();
-    std::io::stdin().read_to_string(&mut text).map_err(|e| format!("cannot read stdin: {e}"))?;
+    let text = input::read_stdin()?;
     let Some(formatted) = formatted("<stdin>", &text, tally) else { return Ok(()) };
-    if args.check || args.diff { show(args, "<stdin>", &text, &formatted) } else { put(&formatted) }
+    if args.check || args.diff { show(args, "<stdin>", &text, &formatted) } else { input::print(&formatted) }
 }
 
 fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
@@ -121,7 +116,14 @@ fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
     if args.check || args.diff {
         return show(args, &name, &text, &formatted);
     }
-    replace(path, &formatted).inspect_err(|_| tally.changed -= 1)
+    // Put in its place beside it, even a read-only file could be replaced.
+    let readonly = fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
+    let written = if readonly {
+        Err(format!("cannot write {}: it is read-only", path.display()))
+    } else {
+        input::replace(path, &formatted)
+    };
+    written.inspect_err(|_| tally.changed -= 1)
 }
 
 /// The text in style, counted; of one with faults, its diagnostics are shown.
@@ -157,19 +159,9 @@ fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Faul
         return Ok(());
     }
     if args.diff {
-        let diff = TextDiff::from_lines(text, formatted);
-        return put(&diff.unified_diff().header(name, name).to_string());
+        return input::print(&render::unified(name, text, formatted, color::stdout_has()));
     }
-    put(&format!("{name}\n"))
-}
-
-/// To stdout. A reader that has seen enough is no fault.
-fn put(text: &str) -> Result<(), Fault> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("cannot write to stdout: {e}")),
-        _ => Ok(()),
-    }
+    input::print(&format!("{name}\n"))
 }
 
 // ── Files ──
@@ -180,47 +172,8 @@ fn expand(path: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
         found.push(path.to_owned());
         return Ok(());
     }
-    let fault = |e: std::io::Error| format!("cannot read {}: {e}", path.display());
-    for entry in fs::read_dir(path).map_err(fault)? {
-        let entry = entry.map_err(fault)?;
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if name.starts_with('.') {
-            continue;
-        }
-        // What a link points to is elsewhere, and is formatted there.
-        let sort = entry.file_type().map_err(fault)?;
-        if sort.is_dir() && !SKIPPED.contains(&name.as_ref()) {
-            expand(&entry.path(), found)?;
-        } else if sort.is_file() && name.ends_with(".hri") {
-            let path = entry.path();
-            found.push(path.strip_prefix(".").map_or(path.clone(), Path::to_owned));
-        }
-    }
+    let hidden = |p: &Path| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
+    // What a link points to is elsewhere, and is formatted there.
+    found.extend(project::walk(path)?.into_iter().filter(|p| !hidden(p) && !p.is_symlink()));
     Ok(())
-}
-
-/// Replaces a file in one step: whoever reads it sees the old text or the new one.
-fn replace(path: &Path, text: &str) -> Result<(), Fault> {
-    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
-    // The file itself, not a link to it.
-    let path = fs::canonicalize(path).map_err(fault)?;
-    let permissions = fs::metadata(&path).map_err(fault)?.permissions();
-    if permissions.readonly() {
-        return Err(format!("cannot write {}: it is read-only", path.display()));
-    }
-    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
-    let written = fs::File::create_new(&temporary)
-        .and_then(|mut file| {
-            file.write_all(text.as_bytes())?;
-            file.set_permissions(permissions)?;
-            file.sync_all()
-        })
-        .and_then(|()| fs::rename(&temporary, &path));
-    written.map_err(|e| {
-        // Nothing more can be done about a file that cannot be removed either.
-        let _ = fs::remove_file(&temporary);
-        fault(e)
-    })
 }
