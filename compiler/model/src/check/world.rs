@@ -49,7 +49,7 @@ impl<'a> Checker<'a> {
             rules: Vec::new(),
             span,
         });
-        let placed = self.flatten(members, "", Frame::default(), 0);
+        let placed = self.flatten(members, "", Frame::default(), None);
         // What is named first must exist first: by kind, not by place.
         let passes: [fn(&mut Self, &Placed<'a>); 7] = [
             Self::settings_and_bodies,

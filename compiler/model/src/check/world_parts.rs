@@ -16,7 +16,7 @@ use crate::{
 /// The most members of the world, those of its parts included each time that they are used.
 const MAX_MEMBERS: usize = 100_000;
 
-/// How deep parts can be in parts; more is a part that contains itself.
+/// How deep parts can be in parts.
 const MAX_DEPTH: usize = 16;
 
 /// Full names (`robot.palm`) of everything in the world, by kind.
@@ -96,17 +96,6 @@ impl<'a> Checker<'a> {
         members: &'a [WorldMember],
         prefix: &str,
         frame: Frame,
-        depth: usize,
-    ) -> Vec<Placed<'a>> {
-        self.flatten_in(members, prefix, frame, depth, None)
-    }
-
-    fn flatten_in(
-        &mut self,
-        members: &'a [WorldMember],
-        prefix: &str,
-        frame: Frame,
-        depth: usize,
         instance: Option<(Name, Span)>,
     ) -> Vec<Placed<'a>> {
         let mut all = Vec::new();
@@ -127,7 +116,7 @@ impl<'a> Checker<'a> {
                     let instances = &mut self.in_world.instances;
                     let noun = Noun::PartInstance;
                     let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
-                    let Some(part) = self.part(of, depth) else {
+                    let Some(part) = self.part(of) else {
                         self.in_world.broken.insert(full);
                         continue;
                     };
@@ -143,8 +132,7 @@ impl<'a> Checker<'a> {
                         let outer = std::mem::replace(&mut self.given, given);
                         let (before, prefix) = (self.issues.len(), format!("{full}."));
                         self.open_parts.push(&part.name.text);
-                        let inner =
-                            self.flatten_in(&part.members, &prefix, frame, depth + 1, instance.clone());
+                        let inner = self.flatten(&part.members, &prefix, frame, instance.clone());
                         self.open_parts.pop();
                         self.given = outer;
                         if let Some((name, span)) = &instance {
@@ -192,7 +180,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn part(&mut self, of: &Name, depth: usize) -> Option<&'a ast::Part> {
+    fn part(&mut self, of: &Name) -> Option<&'a ast::Part> {
         let Some((part, _)) = self.parts.get(of.text.as_str()) else {
             let names: Vec<String> = self.parts.keys().map(|k| (*k).to_owned()).collect();
             if self.unread_items || self.missing_modules {
@@ -203,12 +191,14 @@ impl<'a> Checker<'a> {
             return None;
         };
         // A part in itself would be doubled at each level if it is there twice.
-        if depth >= MAX_DEPTH || self.open_parts.contains(&of.text.as_str()) {
-            self.report(bad_world(
-                of.span,
-                format!("the part `{}` contains itself", of.text),
-                "remove it from its own members",
-            ));
+        if self.open_parts.contains(&of.text.as_str()) {
+            let message = format!("the part `{}` contains itself", of.text);
+            self.report(bad_world(of.span, message, "remove it from its own members"));
+            return None;
+        }
+        if self.open_parts.len() >= MAX_DEPTH {
+            let message = format!("parts are in parts more than {MAX_DEPTH} levels deep");
+            self.report(bad_world(of.span, message, "put the parts side by side in the world"));
             return None;
         }
         self.in_world.used.insert(of.text.clone());
