@@ -141,7 +141,11 @@ fn checked(name: &str, text: &str) -> String {
     for line in result.lines() {
         assert_eq!(line, line.trim_end(), "{name}: blanks at the end");
     }
-    assert!(!result.contains("\n\n\n") && !result.contains("{\n\n"), "{name}: empty lines\n{result}");
+    assert!(!result.contains("\n\n\n"), "{name}: empty lines\n{result}");
+    // What stands in a comment is its author's.
+    let opened =
+        |pair: &[Piece<'_>]| matches!(pair, [Piece::Code("{"), Piece::Blank(b)] if b.starts_with("\n\n"));
+    assert!(!pieces(&result).windows(2).any(opened), "{name}: an empty line after `{{`\n{result}");
     assert!(result.is_empty() || (result.ends_with('\n') && !result.ends_with("\n\n")), "{name}: the end");
     result
 }
