@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Symbol, Value};
+use crate::{List, Value, list};
 
 /// An expression over constants and the variables of its context.
 ///
@@ -20,6 +20,8 @@ pub enum Expr {
     /// `if cond { a } else { b }`
     If(Box<Expr>, Box<Expr>, Box<Expr>),
     Call(Function, Vec<Expr>),
+    /// `[a, b | rest]`; without a rest, of just these elements.
+    List(Vec<Expr>, Option<Box<Expr>>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -142,6 +144,12 @@ impl Expr {
                 let args: Vec<Value> = args.iter().map(|a| a.eval(var)).collect::<Result<_, _>>()?;
                 call(*f, &args)
             }
+            Expr::List(elements, rest) => {
+                let elements: Vec<Value> = elements.iter().map(|e| e.eval(var)).collect::<Result<_, _>>()?;
+                let rest = rest.as_ref().map_or(Ok(Value::List(List::EMPTY)), |r| r.eval(var))?;
+                let rest = rest.as_list().ok_or(EvalError::Type)?;
+                Ok(Value::List(elements.iter().rev().fold(rest, |rest, e| List::cons(*e, rest))))
+            }
         }
     }
 
@@ -161,6 +169,10 @@ impl Expr {
                 b.each_var(f);
             }
             Expr::Call(_, args) => args.iter().for_each(|a| a.each_var(f)),
+            Expr::List(elements, rest) => {
+                elements.iter().for_each(|e| e.each_var(f));
+                rest.iter().for_each(|r| r.each_var(f));
+            }
         }
     }
 }
@@ -178,8 +190,11 @@ pub fn unary(op: UnaryOp, v: Value) -> Result<Value, EvalError> {
         (UnaryOp::Not, Value::Bool(b)) => Ok(Value::Bool(!b)),
         (UnaryOp::Neg, Value::Int(n)) => n.checked_neg().map(Value::Int).ok_or(EvalError::Overflow),
         (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
-        (UnaryOp::Not, Value::Int(_) | Value::Float(_) | Value::Symbol(_))
-        | (UnaryOp::Neg, Value::Bool(_) | Value::Symbol(_)) => Err(EvalError::Type),
+        (
+            UnaryOp::Not,
+            Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_),
+        )
+        | (UnaryOp::Neg, Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)) => Err(EvalError::Type),
     }
 }
 
@@ -191,10 +206,11 @@ pub fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, EvalError> {
     match (a, b) {
         (Value::Bool(a), Value::Bool(b)) => on_bools(op, a, b),
         (Value::Int(a), Value::Int(b)) => on_ints(op, a, b),
-        (Value::Symbol(a), Value::Symbol(b)) => on_symbols(op, a, b),
-        (Value::Bool(_) | Value::Symbol(_), _) | (_, Value::Bool(_) | Value::Symbol(_)) => {
-            Err(EvalError::Type)
-        }
+        (Value::Symbol(a), Value::Symbol(b)) => compared(op, a == b),
+        (Value::Text(a), Value::Text(b)) => compared(op, a == b),
+        (Value::List(_), Value::List(_)) => compared(op, list::same(a, b)),
+        (Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_), _)
+        | (_, Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)) => Err(EvalError::Type),
         (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
             let (Some(a), Some(b)) = (a.as_f64(), b.as_f64()) else { return Err(EvalError::Type) };
             on_floats(op, a, b)
@@ -220,10 +236,11 @@ fn on_bools(op: BinaryOp, a: bool, b: bool) -> Result<Value, EvalError> {
     }))
 }
 
-fn on_symbols(op: BinaryOp, a: Symbol, b: Symbol) -> Result<Value, EvalError> {
+/// Symbols, strings and lists know `==` and `!=` only.
+fn compared(op: BinaryOp, equal: bool) -> Result<Value, EvalError> {
     match op {
-        BinaryOp::Eq => Ok(Value::Bool(a == b)),
-        BinaryOp::Ne => Ok(Value::Bool(a != b)),
+        BinaryOp::Eq => Ok(Value::Bool(equal)),
+        BinaryOp::Ne => Ok(Value::Bool(!equal)),
         BinaryOp::Add
         | BinaryOp::Sub
         | BinaryOp::Mul
@@ -308,6 +325,8 @@ fn norm(args: &[Value]) -> Result<Value, EvalError> {
 
 #[cfg(test)]
 mod tests {
+    use crate::Symbol;
+
     use super::*;
 
     fn symbol(name: &str) -> Value {

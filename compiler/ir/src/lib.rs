@@ -10,6 +10,7 @@ pub mod bdi;
 pub mod coverage;
 pub mod event;
 pub mod expr;
+pub mod list;
 pub mod monitor;
 pub mod suite;
 pub mod system;
@@ -23,7 +24,8 @@ use serde::{Deserialize, Serialize};
 pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
 pub use expr::Expr;
 pub use hrdsl_source::{Enumeration, Span, Symbol};
-pub use value::{Nanos, Type, Unit, Value};
+pub use list::{List, Text};
+pub use value::{ListOf, Nanos, Type, Unit, Value};
 
 /// A whole scenario, ready to generate tests from and to run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,6 +35,8 @@ pub struct Program {
     /// Events and stimuli, in source order; a stimulus is an event that carries a body.
     pub events: Vec<Event>,
     pub agents: Vec<bdi::Agent>,
+    /// What the agents' messages are about.
+    pub contents: Vec<bdi::Content>,
     /// Variables that all automata share.
     pub shared: Vec<ta::Var>,
     pub automata: Vec<ta::Automaton>,

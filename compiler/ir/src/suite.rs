@@ -21,7 +21,17 @@ pub struct Suite {
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Run a multi-agent system once for each chosen set of beliefs.
-    Agents { players: Vec<PlayerRef>, choose: Vec<Choice>, explore: Explore },
+    Agents {
+        players: Vec<PlayerRef>,
+        choose: Vec<Choice>,
+        explore: Explore,
+        /// End when so many belief sets in a row reached nothing new.
+        stop_after: Option<u32>,
+        /// What the suite is to reach; without any, each plan and each bin.
+        goals: Vec<ModelGoal>,
+        /// Keep only the tests that are needed for what all of them reach.
+        minimise: bool,
+    },
     /// Model-check the network for each goal and take the witnesses' stimuli.
     Search { network: u16, goals: Vec<SearchGoal> },
     /// Draw stimuli, waits and pauses at random.
@@ -67,9 +77,29 @@ pub enum ChoiceKind {
 #[serde(rename_all = "snake_case")]
 pub enum Explore {
     Exhaustive,
-    /// Every pair of values of two dimensions occurs in some test.
-    Pairwise,
+    /// Every t values of t dimensions occur together in some test: `pairwise` with 2.
+    Wise(u8),
     Random,
+    /// Q-learning: what brought new plans and bins is chosen more often.
+    Learn,
+}
+
+/// What a suite by agents is to reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelGoal {
+    /// `reach each bin of C`
+    Bins { cross: u16 },
+    /// `reach each plan`: selected
+    Plans,
+    /// `reach each context`: true once and false once
+    Contexts,
+    /// `reach each edge`: each goal of a plan's body by each plan for it
+    Edges,
+    /// `reach each message`: sent
+    Messages,
+    /// `reach each path`: each chain of three plans within an intention
+    Paths,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -58,7 +58,15 @@ impl Var {
             (Some(e), Value::Symbol(s)) => e.index_of(s).and_then(|n| i64::try_from(n).ok()),
             (None, Value::Bool(b)) if self.is_bool => Some(i64::from(b)),
             (None, Value::Int(n)) if !self.is_bool => Some(n),
-            (_, Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_)) => None,
+            (
+                _,
+                Value::Bool(_)
+                | Value::Int(_)
+                | Value::Float(_)
+                | Value::Symbol(_)
+                | Value::Text(_)
+                | Value::List(_),
+            ) => None,
         }
     }
 }

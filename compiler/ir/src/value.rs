@@ -1,10 +1,13 @@
 //! Values, their types, and the units that only printing needs.
 
-use std::fmt;
+use std::{
+    fmt,
+    sync::{Mutex, PoisonError},
+};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Enumeration, Symbol};
+use crate::{Enumeration, List, Symbol, Text};
 
 /// Simulated or virtual time since the start of a run, or a duration, in nanoseconds.
 pub type Nanos = i64;
@@ -79,18 +82,59 @@ pub enum Type {
     /// A quantity in an SI unit, or a bare float.
     Float(Unit),
     Enum(Enumeration),
+    /// A string.
+    Text,
+    /// A list of values of one type.
+    List(ListOf),
+}
+
+/// The type of a list's elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ListOf(&'static Type);
+
+impl ListOf {
+    #[must_use]
+    pub fn new(of: Type) -> Self {
+        let mut known = ELEMENTS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(same) = known.iter().find(|t| ***t == of) {
+            return Self(same);
+        }
+        let of: &'static Type = Box::leak(Box::new(of));
+        known.push(of);
+        Self(of)
+    }
+
+    #[must_use]
+    pub fn element(self) -> Type {
+        *self.0
+    }
+}
+
+/// The element types of all lists; there are few.
+static ELEMENTS: Mutex<Vec<&'static Type>> = Mutex::new(Vec::new());
+
+impl Serialize for ListOf {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for ListOf {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Type::deserialize(deserializer).map(Self::new)
+    }
 }
 
 impl Type {
     /// All values of a finite type, in order: `false` before `true`, integers upwards, symbols as they
-    /// are declared. `None` for floats.
+    /// are declared. `None` for floats, strings and lists.
     #[must_use]
     pub fn domain(self) -> Option<Vec<Value>> {
         match self {
             Type::Bool => Some(vec![Value::Bool(false), Value::Bool(true)]),
             Type::Int { lo, hi } => Some((lo..=hi).map(Value::Int).collect()),
             Type::Enum(e) => Some(e.values().iter().copied().map(Value::Symbol).collect()),
-            Type::Float(_) => None,
+            Type::Float(_) | Type::Text | Type::List(_) => None,
         }
     }
 
@@ -101,12 +145,17 @@ impl Type {
             (Type::Bool, Value::Bool(_)) | (Type::Float(_), Value::Float(_)) => true,
             (Type::Int { lo, hi }, Value::Int(n)) => (lo..=hi).contains(&n),
             (Type::Enum(e), Value::Symbol(s)) => e.index_of(s).is_some(),
-            (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), _) => false,
+            (Type::Text, Value::Text(_)) => true,
+            (Type::List(of), Value::List(list)) => list.iter().all(|v| of.element().admits(v)),
+            (
+                Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
+                _,
+            ) => false,
         }
     }
 }
 
-/// A value of any of the language's scalar types.
+/// A value: of one of the language's scalar types, or of an agent a string or a list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -115,6 +164,8 @@ pub enum Value {
     Float(f64),
     /// A value of an enumeration.
     Symbol(Symbol),
+    Text(Text),
+    List(List),
 }
 
 impl Value {
@@ -122,7 +173,7 @@ impl Value {
     pub fn as_bool(self) -> Option<bool> {
         match self {
             Value::Bool(b) => Some(b),
-            Value::Int(_) | Value::Float(_) | Value::Symbol(_) => None,
+            Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
         }
     }
 
@@ -130,7 +181,7 @@ impl Value {
     pub fn as_int(self) -> Option<i64> {
         match self {
             Value::Int(n) => Some(n),
-            Value::Bool(_) | Value::Float(_) | Value::Symbol(_) => None,
+            Value::Bool(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
         }
     }
 
@@ -138,7 +189,15 @@ impl Value {
     pub fn as_symbol(self) -> Option<Symbol> {
         match self {
             Value::Symbol(s) => Some(s),
-            Value::Bool(_) | Value::Int(_) | Value::Float(_) => None,
+            Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Text(_) | Value::List(_) => None,
+        }
+    }
+
+    #[must_use]
+    pub fn as_list(self) -> Option<List> {
+        match self {
+            Value::List(l) => Some(l),
+            Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) => None,
         }
     }
 
@@ -148,7 +207,7 @@ impl Value {
         match self {
             Value::Int(n) => Some(n as f64),
             Value::Float(x) => Some(x),
-            Value::Bool(_) | Value::Symbol(_) => None,
+            Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
         }
     }
 
@@ -161,6 +220,8 @@ impl Value {
             Value::Int(n) => (1, n as u64),
             Value::Float(x) => (2, x.to_bits()),
             Value::Symbol(s) => (3, s.number()),
+            Value::Text(t) => (4, t.text.number()),
+            Value::List(l) => (5, l.number()),
         }
     }
 }
@@ -172,6 +233,8 @@ impl fmt::Display for Value {
             Value::Int(n) => write!(f, "{n}"),
             Value::Float(x) => write!(f, "{x}"),
             Value::Symbol(s) => write!(f, "{s}"),
+            Value::Text(t) => write!(f, "{t}"),
+            Value::List(l) => write!(f, "{l}"),
         }
     }
 }

@@ -144,6 +144,8 @@ pub enum TypeExpr {
     Range(Expr, Expr),
     /// `bool[4]`
     Array(Box<TypeExpr>, Expr),
+    /// `[0..4]`: a list
+    List(Box<TypeExpr>),
     /// Could not be read.
     Error,
 }
@@ -181,7 +183,6 @@ pub enum ExprKind {
         callee: Path,
         args: Vec<Expr>,
     },
-    /// `not a` / `!a`, `-a`
     /// `a[i]`
     Index {
         of: Box<Expr>,
@@ -192,6 +193,7 @@ pub enum ExprKind {
         of: Box<Expr>,
         name: Name,
     },
+    /// `not a` / `!a`, `-a`
     Unary {
         op: UnaryOp,
         operand: Box<Expr>,
@@ -209,6 +211,27 @@ pub enum ExprKind {
     },
     /// `(a, b, c)`: a vector; always two or more
     Tuple(Vec<Expr>),
+    /// `"leg"`
+    Text(String),
+    /// `[a, b | rest]`
+    List {
+        items: Vec<Expr>,
+        rest: Option<Box<Expr>>,
+    },
+    /// `~b(X)`
+    Strong(Box<Expr>),
+    /// `b(X)[source(S), sure(9)]`. A single annotation of a name without arguments is an `Index`.
+    Annotated {
+        of: Box<Expr>,
+        annotations: Vec<Expr>,
+    },
+    /// `.count(b(_), N)`
+    Internal(Call),
+    /// `X = e`
+    Unify {
+        left: Box<Expr>,
+        right: Box<Expr>,
+    },
     /// Could not be read.
     Error,
 }
@@ -244,6 +267,16 @@ pub struct Call {
     pub name: Name,
     /// `None`: no parentheses were written.
     pub args: Option<Vec<Expr>>,
+    pub span: Span,
+}
+
+/// A belief as it is matched or made: `~near(X)[source(S)]`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Literal {
+    /// `~`: strong negation
+    pub negated: bool,
+    pub call: Call,
+    pub annotations: Vec<Expr>,
     pub span: Span,
 }
 
@@ -341,11 +374,24 @@ pub struct AgentMember {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AgentMemberKind {
-    /// `belief had(legs: 0..LEGS) = had(0)`: the initial beliefs, if any, separated by commas
+    /// `belief had(legs: 0..LEGS) [sure: 0..9] on counted = had(0)`: its annotations; the event whose arguments it holds;
+    /// the initial beliefs, if any, separated by commas
     Belief {
         name: Name,
         params: Vec<Param>,
-        initial: Vec<Call>,
+        annotations: Vec<Param>,
+        on: Option<Name>,
+        initial: Vec<Literal>,
+    },
+    /// `rule near(X) when at(X, D) && D < 3 m`
+    Rule {
+        head: Literal,
+        body: Option<Expr>,
+    },
+    /// `goal deliver(leg: 1..4)`: the types of its arguments
+    GoalType {
+        name: Name,
+        params: Vec<Param>,
     },
     /// `goal !table`: adopted at the start
     Goal(Call),
@@ -357,16 +403,24 @@ pub enum AgentMemberKind {
 /// `plan @label +!table when context { body }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
-    pub label: Option<Name>,
+    pub label: Option<Label>,
     pub trigger: Trigger,
     pub context: Option<Expr>,
     pub body: Vec<Step>,
 }
 
+/// `@label`, `@label[atomic]`
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Label {
+    pub name: Name,
+    /// What is in the brackets: `atomic`, or a mistake.
+    pub atomic: Option<Name>,
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trigger {
     pub kind: TriggerKind,
-    pub call: Call,
+    pub literal: Literal,
     pub span: Span,
 }
 
@@ -383,6 +437,8 @@ pub enum TriggerKind {
     Failed,
     /// `+?b`
     Test,
+    /// `-?b`
+    TestFailed,
     /// `on e`
     On,
 }
@@ -399,18 +455,28 @@ pub struct Step {
 pub enum StepKind {
     /// a stimulus or event of the agent's actor
     Do(Call),
-    /// `!g`
-    Achieve(Call),
+    /// `!g within 10 s`
+    Achieve {
+        call: Call,
+        within: Option<Expr>,
+    },
     /// `!!g`
     Spawn(Call),
     /// `?b`
-    Query(Call),
+    Query(Literal),
+    /// `?(F)`
+    Test(Expr),
+    /// `X = e`
+    Unify {
+        left: Expr,
+        right: Expr,
+    },
     /// `+b`
-    Add(Call),
+    Add(Literal),
     /// `-b`
-    Remove(Call),
+    Remove(Literal),
     /// `-+b`
-    Replace(Call),
+    Replace(Literal),
     /// `await a | b within 10 s`
     Await {
         events: Vec<Call>,
@@ -418,6 +484,29 @@ pub enum StepKind {
     },
     /// `wait 10 s`
     Wait(Expr),
+    /// `.send(A, tell, b(X))`
+    Internal(Call),
+    /// `if F { … } else { … }`
+    If {
+        condition: Expr,
+        then: Vec<Step>,
+        otherwise: Vec<Step>,
+    },
+    /// `while F { … }`
+    While {
+        condition: Expr,
+        body: Vec<Step>,
+    },
+    /// `for F { … }`
+    For {
+        condition: Expr,
+        body: Vec<Step>,
+    },
+    /// `fork { … } and { … }`, or with `or`: two branches at least
+    Fork {
+        all: bool,
+        branches: Vec<Vec<Step>>,
+    },
     Error,
 }
 
@@ -647,8 +736,14 @@ pub enum SuiteMemberKind {
         agent: Name,
         per: Option<Name>,
     },
-    /// `explore pairwise`
-    Explore(Name),
+    /// `explore pairwise`, `explore wise(3)`
+    Explore(Call),
+    /// `stop after 20`: when so many belief sets in a row added nothing
+    StopAfter(Expr),
+    /// `minimise`: only the tests that are needed for what all of them reach
+    Minimise,
+    /// `reach each plan`, `context`, `message`, `path`
+    ReachEach(Name),
     /// `tests 160`
     Tests(Expr),
     /// `horizon 300 s`: a model run ends at this virtual time

@@ -4,7 +4,8 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use crate::ast::{
     Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
-    EdgeAction, Expr, ExprKind, Instance, ItemKind, Name, Param, Path, Range, Sort, Step, StimulusStep,
+    EdgeAction, Expr, ExprKind, Instance, ItemKind, Literal, Name, Param, Path, Range, Sort, Step, StepKind,
+    StimulusStep,
     SuiteMember, SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
@@ -51,7 +52,7 @@ macro_rules! small {
     )*};
 }
 
-small!(Name, Path, Text, Call, Expr, Access);
+small!(Name, Path, Text, Call, Literal, Expr, Access);
 
 /// One of the parts of an edge that may come in any order.
 pub(crate) enum EdgePart {
@@ -189,6 +190,45 @@ impl<'t> Context<'t> {
         Expr { kind: ExprKind::Index { of: Box::new(of), index: Box::new(index) }, span }
     }
 
+    pub(crate) fn annotated(&self, of: Expr, annotations: Vec<Expr>, end: u32) -> Expr {
+        let span = self.span(of.span.start, end);
+        Expr { kind: ExprKind::Annotated { of: Box::new(of), annotations }, span }
+    }
+
+    pub(crate) fn list(&self, start: u32, items: Vec<Expr>, rest: Option<Expr>, end: u32) -> Expr {
+        let kind = ExprKind::List { items, rest: rest.map(Box::new) };
+        Expr { kind, span: self.span(start, end) }
+    }
+
+    /// The dot belongs to the call's span.
+    pub(crate) fn internal(&self, start: u32, name: Name, args: Option<Vec<Expr>>, end: u32) -> Call {
+        Call { name, args, span: self.span(start, end) }
+    }
+
+    pub(crate) fn internal_expr(&self, start: u32, name: Name, args: Option<Vec<Expr>>, end: u32) -> Expr {
+        let call = self.internal(start, name, args, end);
+        Expr { span: call.span, kind: ExprKind::Internal(call) }
+    }
+
+    pub(crate) fn strong(&self, start: u32, of: Expr) -> Expr {
+        let span = self.span(start, of.span.end);
+        Expr { kind: ExprKind::Strong(Box::new(of)), span }
+    }
+
+    pub(crate) fn unify(&self, left: Expr, right: Expr) -> Expr {
+        let span = left.span.to(right.span);
+        Expr { kind: ExprKind::Unify { left: Box::new(left), right: Box::new(right) }, span }
+    }
+
+    pub(crate) fn name_expr(&self, name: Name) -> Expr {
+        self.path_expr(self.path(vec![name]))
+    }
+
+    pub(crate) fn fork(&self, first: Vec<Step>, mut rest: Vec<Vec<Step>>, all: bool) -> StepKind {
+        rest.insert(0, first);
+        StepKind::Fork { all, branches: rest }
+    }
+
     pub(crate) fn field(&self, of: Expr, name: Name) -> Expr {
         let span = of.span.to(name.span);
         Expr { kind: ExprKind::Field { of: Box::new(of), name }, span }
@@ -202,10 +242,14 @@ impl<'t> Context<'t> {
                 None => TypeExpr::Error,
             },
             ExprKind::Index { of, index } => TypeExpr::Array(Box::new(self.type_of(*of)), *index),
+            ExprKind::List { mut items, rest: None } if items.len() == 1 => match items.pop() {
+                Some(item) => TypeExpr::List(Box::new(self.type_of(item))),
+                None => TypeExpr::Error,
+            },
             ExprKind::Error => TypeExpr::Error,
             _ => {
                 self.diagnostics.push(Diagnostic::error(Code::SYNTAX, expr.span, "expected a type").help(
-                    "a type is a name such as `bool` or `length`, a range `0..4`, or an array `bool[4]`",
+                    "a type is a name such as `bool` or `length`, a range `0..4`, an array `bool[4]`, or a list `[0..4]`",
                 ));
                 TypeExpr::Error
             }

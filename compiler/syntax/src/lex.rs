@@ -246,6 +246,10 @@ impl Join<'_> {
             let token = self.raw[i];
             let taken = match token.kind {
                 Kind::Int | Kind::Float => self.number(i),
+                Kind::Dot if self.starts_internal(i) => {
+                    self.out.push(Lexeme { kind: Kind::Internal, ..token });
+                    1
+                }
                 kind if kind.is_word() => {
                     self.out.push(Lexeme { kind: self.word(i), ..token });
                     1
@@ -264,6 +268,15 @@ impl Join<'_> {
         self.raw.get(i).map(|t| t.kind)
     }
 
+    /// A dot right before a name, and not right after anything that has parts: `.count`.
+    fn starts_internal(&self, i: usize) -> bool {
+        let dot = self.raw[i];
+        let before = i.checked_sub(1).map(|i| self.raw[i]);
+        let part = before.is_some_and(|t| t.end == dot.start && (t.kind.ends_operand() || t.kind.is_word()));
+        let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
+        named && !part
+    }
+
     /// The kind of a word: a name before `->` is an origin, and after a dot every word is a name.
     fn word(&self, i: usize) -> Kind {
         let kind = self.raw[i].kind;
@@ -271,7 +284,7 @@ impl Join<'_> {
             return Kind::From;
         }
         let hard = matches!(kind.class(), Some(Class::Head | Class::Hard));
-        if hard && !self.raw[i].first && self.out.last().is_some_and(|t| t.kind == Kind::Dot) {
+        if hard && !self.raw[i].first && self.out.last().is_some_and(|t| matches!(t.kind, Kind::Dot | Kind::Internal)) {
             return Kind::Ident;
         }
         kind

@@ -72,6 +72,7 @@ macro_rules! tokens {
             #[token("*")] Star,
             #[token("/")] Slash,
             #[token("%")] Percent,
+            #[token("~")] Tilde,
 
             // Seen by the lexer only.
             #[token("\n")] Newline,
@@ -83,6 +84,8 @@ macro_rules! tokens {
             Quantity,
             /// A name before `->`.
             From,
+            /// The dot before the name of an internal action.
+            Internal,
             /// Text that could not be read; the diagnostic has been made.
             Error,
 
@@ -143,17 +146,17 @@ tokens! {
     True "true" Hard "expression",
     False "false" Hard "expression",
     Not "not" Hard "expression",
-    And "and" Hard "expression",
-    Or "or" Hard "expression, list of events",
-    If "if" Hard "expression, stimulus",
-    Else "else" Hard "expression, stimulus",
+    And "and" Hard "expression, plan",
+    Or "or" Hard "expression, list of events, plan",
+    If "if" Hard "expression, stimulus, plan",
+    Else "else" Hard "expression, stimulus, plan",
     FromWord "from" Hard "event",
     To "to" Hard "event, signal",
     By "by" Hard "stimulus, suite, world",
     In "in" Hard "stimulus, world",
     Plays "plays" Hard "agent, automaton",
     When "when" Hard "plan, edge, cross, world",
-    On "on" Hard "plan, edge, world",
+    On "on" Hard "belief, plan, edge, world",
     Do "do" Hard "edge",
     Emit "emit" Hard "stimulus, world",
     Within "within" Hard "plan, requirement, test",
@@ -163,7 +166,10 @@ tokens! {
     Hold "hold" Soft "stimulus",
     Belief "belief" Soft "agent",
     Goal "goal" Soft "agent",
-    Plan "plan" Soft "agent",
+    Plan "plan" Soft "agent, suite",
+    Rule "rule" Soft "agent",
+    For "for" Soft "plan",
+    Fork "fork" Soft "plan",
     Wait "wait" Soft "plan, test",
     Clock "clock" Soft "automaton",
     Init "init" Soft "automaton",
@@ -172,12 +178,12 @@ tokens! {
     Location "location" Soft "automaton, suite",
     Invariant "invariant" Soft "automaton",
     Select "select" Soft "edge",
-    After "after" Soft "requirement",
+    After "after" Soft "requirement, suite",
     Causes "causes" Soft "requirement",
     Forbids "forbids" Soft "requirement",
     Until "until" Soft "requirement",
     Never "never" Soft "requirement",
-    While "while" Soft "requirement",
+    While "while" Soft "requirement, plan",
     Globally "globally" Soft "requirement",
     At "at" Soft "assumption, world",
     Most "most" Soft "assumption",
@@ -194,6 +200,8 @@ tokens! {
     AnyWord "any" Soft "suite",
     Per "per" Soft "suite",
     Explore "explore" Soft "suite",
+    Stop "stop" Soft "suite",
+    Minimise "minimise" Soft "suite",
     Tests "tests" Soft "suite",
     Horizon "horizon" Soft "suite",
     Patience "patience" Soft "suite",
@@ -280,6 +288,10 @@ impl Kind {
                     | Self::Any
                     | Self::True
                     | Self::False
+                    | Self::Str
+                    | Self::LBracket
+                    | Self::Tilde
+                    | Self::Internal
                     | Self::Error
             )
     }
@@ -326,12 +338,13 @@ impl Kind {
                 | Self::Gt
                 | Self::Ge
                 | Self::If
+                | Self::Tilde
         )
     }
 
     /// What follows belongs to what is before, also on a new line.
     pub(crate) fn continues(self) -> bool {
-        (self.is_operator() && !matches!(self, Self::Bang | Self::BangBang | Self::If))
+        (self.is_operator() && !matches!(self, Self::Bang | Self::BangBang | Self::If | Self::Tilde))
             || matches!(
                 self,
                 Self::Comma

@@ -14,10 +14,16 @@ impl Marker<'_> {
     pub(super) fn agent_member(&mut self, member: &AgentMember) {
         self.start(member.span.start);
         match &member.kind {
-            AgentMemberKind::Belief { name, params, initial } => {
+            AgentMemberKind::Belief { name, params, annotations, initial, .. } => {
                 self.params(name.span.end, params);
-                self.calls(initial);
+                annotations.iter().for_each(|p| self.param(p));
+                initial.iter().for_each(|l| self.literal(l));
             }
+            AgentMemberKind::Rule { head, body } => {
+                self.literal(head);
+                self.maybe(body.as_ref());
+            }
+            AgentMemberKind::GoalType { name, params } => self.params(name.span.end, params),
             AgentMemberKind::Goal(call) => self.call(call),
             AgentMemberKind::Plan(plan) => self.plan(plan),
             AgentMemberKind::Allow(_) | AgentMemberKind::Error => {}
@@ -26,7 +32,7 @@ impl Marker<'_> {
 
     pub(super) fn plan(&mut self, plan: &Plan) {
         self.set(plan.trigger.span.start, |m| m.prefix = true);
-        self.call(&plan.trigger.call);
+        self.literal(&plan.trigger.literal);
         self.maybe(plan.context.as_ref());
         let header = plan.context.as_ref().map_or(plan.trigger.span.end, |c| c.span.end);
         self.block(header, BlockKind::Steps);
@@ -39,18 +45,38 @@ impl Marker<'_> {
             m.prefix = true;
         });
         match &step.kind {
-            StepKind::Do(call)
-            | StepKind::Achieve(call)
-            | StepKind::Spawn(call)
-            | StepKind::Query(call)
-            | StepKind::Add(call)
-            | StepKind::Remove(call)
-            | StepKind::Replace(call) => self.call(call),
+            StepKind::Do(call) | StepKind::Spawn(call) | StepKind::Internal(call) => self.call(call),
+            StepKind::Achieve { call, within } => {
+                self.call(call);
+                self.maybe(within.as_ref());
+            }
+            StepKind::Query(literal)
+            | StepKind::Add(literal)
+            | StepKind::Remove(literal)
+            | StepKind::Replace(literal) => self.literal(literal),
+            StepKind::Test(expr) | StepKind::Wait(expr) => self.expr(expr),
+            StepKind::Unify { left, right } => {
+                self.expr(left);
+                self.expr(right);
+            }
             StepKind::Await { events, within } => {
                 self.calls(events);
                 self.maybe(within.as_ref());
             }
-            StepKind::Wait(expr) => self.expr(expr),
+            StepKind::If { condition, then, otherwise } => {
+                self.expr(condition);
+                self.block(condition.span.end, BlockKind::Steps);
+                then.iter().chain(otherwise).for_each(|s| self.step(s));
+            }
+            StepKind::While { condition, body } | StepKind::For { condition, body } => {
+                self.expr(condition);
+                self.block(condition.span.end, BlockKind::Steps);
+                body.iter().for_each(|s| self.step(s));
+            }
+            StepKind::Fork { branches, .. } => {
+                self.block(step.span.start, BlockKind::Steps);
+                branches.iter().flatten().for_each(|s| self.step(s));
+            }
             StepKind::Error => {}
         }
     }
@@ -114,12 +140,15 @@ impl Marker<'_> {
     pub(super) fn suite_member(&mut self, kind: &SuiteMemberKind) {
         match kind {
             SuiteMemberKind::Tests(expr)
+            | SuiteMemberKind::StopAfter(expr)
             | SuiteMemberKind::Horizon(expr)
             | SuiteMemberKind::Patience(expr) => self.expr(expr),
             SuiteMemberKind::Await(events) => self.calls(events),
+            SuiteMemberKind::Explore(call) => self.call(call),
             SuiteMemberKind::Length(range) | SuiteMemberKind::Pause(range) => self.range(range),
             SuiteMemberKind::Choose { .. }
-            | SuiteMemberKind::Explore(_)
+            | SuiteMemberKind::Minimise
+            | SuiteMemberKind::ReachEach(_)
             | SuiteMemberKind::ReachBins(_)
             | SuiteMemberKind::ReachLocations
             | SuiteMemberKind::ReachEdges

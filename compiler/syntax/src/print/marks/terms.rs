@@ -1,6 +1,6 @@
 //! Calls, parameters, types and expressions.
 
-use crate::ast::{Call, Expr, ExprKind, Param, Range, TypeExpr, UnaryOp};
+use crate::ast::{Call, Expr, ExprKind, Literal, Param, Range, TypeExpr, UnaryOp};
 use crate::print::marks::Marker;
 use crate::token::Kind;
 
@@ -9,6 +9,11 @@ impl Marker<'_> {
         if let Some(args) = &call.args {
             self.args(call.name.span.end, args);
         }
+    }
+
+    pub(super) fn literal(&mut self, literal: &Literal) {
+        self.call(&literal.call);
+        literal.annotations.iter().for_each(|a| self.expr(a));
     }
 
     pub(super) fn calls(&mut self, calls: &[Call]) {
@@ -33,6 +38,7 @@ impl Marker<'_> {
         match ty {
             TypeExpr::Named(_) | TypeExpr::Error => {}
             TypeExpr::Range(lo, hi) => self.range_of(lo, Some(hi), false),
+            TypeExpr::List(of) => self.ty(of),
             TypeExpr::Array(of, size) => {
                 self.ty(of);
                 self.expr(size);
@@ -68,6 +74,7 @@ impl Marker<'_> {
             | ExprKind::Float(_)
             | ExprKind::Quantity { .. }
             | ExprKind::Any
+            | ExprKind::Text(_)
             | ExprKind::Path(_)
             | ExprKind::Error => {}
             ExprKind::Call { callee, args } => self.args(callee.span.end, args),
@@ -92,6 +99,23 @@ impl Marker<'_> {
                 self.expr(otherwise);
             }
             ExprKind::Tuple(parts) => parts.iter().for_each(|p| self.expr(p)),
+            ExprKind::List { items, rest } => {
+                items.iter().for_each(|i| self.expr(i));
+                self.maybe(rest.as_deref());
+            }
+            ExprKind::Strong(of) => {
+                self.sign(expr.span.start);
+                self.expr(of);
+            }
+            ExprKind::Annotated { of, annotations } => {
+                self.expr(of);
+                annotations.iter().for_each(|a| self.expr(a));
+            }
+            ExprKind::Internal(call) => self.call(call),
+            ExprKind::Unify { left, right } => {
+                self.expr(left);
+                self.expr(right);
+            }
         }
     }
 
@@ -124,6 +148,12 @@ fn small(expr: &Expr) -> bool {
         | ExprKind::Binary { .. }
         | ExprKind::If { .. }
         | ExprKind::Tuple(_)
+        | ExprKind::Text(_)
+        | ExprKind::List { .. }
+        | ExprKind::Strong(_)
+        | ExprKind::Annotated { .. }
+        | ExprKind::Internal(_)
+        | ExprKind::Unify { .. }
         | ExprKind::Error => false,
     }
 }
