@@ -1,58 +1,195 @@
-//! The belief base: ground facts by name, oldest first, each at most once.
+//! The belief base: ground facts by name, oldest first, each at most once, with their annotations.
 
 use hrdsl_ir::{
     Param, Type, Value,
-    bdi::{Agent, BeliefId, Fact},
+    bdi::{Agent, Annotation, BeliefId, Fact, source_self},
+    list::same,
 };
+use rustc_hash::FxHashMap;
+use smallvec::{SmallVec, smallvec};
 
-use crate::{event::Ground, unify::same};
+use crate::event::Ground;
 
-/// The facts of one name, as rows of one flat table.
+/// What is said about a fact.
+pub type Annotations = SmallVec<[(Annotation, Value); 1]>;
+
+/// From this many rows on, those with a given first argument are found through a table.
+const INDEXED: usize = 32;
+
+/// The facts of one name, as rows of one flat table. A row that is removed stays, dead, until half of them are and
+/// another comes: rows keep their places until then.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rows {
     arity: usize,
-    len: usize,
+    live: usize,
     values: Vec<Value>,
+    /// By row; a dead one has none.
+    annotations: Vec<Annotations>,
+    /// The rows before this one are dead.
+    start: usize,
+    /// Rows by [`hash`] of the first argument, upwards, dead ones too; made when there are many.
+    index: Option<FxHashMap<u64, Vec<u32>>>,
+}
+
+/// Equal for values that match.
+fn hash(value: Value) -> u64 {
+    match value {
+        Value::Int(_) | Value::Float(_) => {
+            let x = value.as_f64().unwrap_or(0.0);
+            if x == 0.0 { 1 } else { x.to_bits() }
+        }
+        // Lists of whole numbers and of floats may match.
+        Value::List(list) => 2 + list.len() as u64,
+        Value::Bool(_) | Value::Symbol(_) | Value::Text(_) => value.key().1 ^ 0x5bd1,
+    }
+}
+
+/// Goes through live rows, upwards.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Cursor {
+    All(usize),
+    /// A place in the index's list.
+    Keyed(u64, usize),
 }
 
 impl Rows {
-    /// The row of this index, which must be less than their number.
-    fn row(&self, index: usize) -> &[Value] {
+    /// The row of this index, which must be one that a cursor gave.
+    pub fn row(&self, index: usize) -> &[Value] {
         &self.values[index * self.arity..(index + 1) * self.arity]
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &[Value]> {
-        (0..self.len).map(|index| self.row(index))
+    pub fn annotations(&self, index: usize) -> &Annotations {
+        &self.annotations[index]
+    }
+
+    pub fn len(&self) -> usize {
+        self.live
+    }
+
+    /// From the oldest row; if the first argument is known, perhaps only rows that have it.
+    pub fn cursor(&self, first: Option<Value>) -> Cursor {
+        match (&self.index, first) {
+            (Some(_), Some(value)) => Cursor::Keyed(hash(value), 0),
+            _ => Cursor::All(self.start),
+        }
+    }
+
+    /// The next live row.
+    pub fn next(&self, cursor: &mut Cursor) -> Option<usize> {
+        match cursor {
+            Cursor::All(at) => {
+                while *at < self.annotations.len() {
+                    let row = *at;
+                    *at += 1;
+                    if !self.annotations[row].is_empty() {
+                        return Some(row);
+                    }
+                }
+                None
+            }
+            Cursor::Keyed(key, at) => {
+                let rows = self.index.as_ref()?.get(key)?;
+                while let Some(row) = rows.get(*at) {
+                    *at += 1;
+                    if !self.annotations[*row as usize].is_empty() {
+                        return Some(*row as usize);
+                    }
+                }
+                None
+            }
+        }
+    }
+
+    /// The live rows.
+    pub fn iter(&self) -> impl Iterator<Item = usize> {
+        let mut cursor = Cursor::All(self.start);
+        std::iter::from_fn(move || self.next(&mut cursor))
     }
 
     fn position(&self, fact: &[Value]) -> Option<usize> {
-        self.iter().position(|row| row.iter().zip(fact).all(|(a, b)| same(*a, *b)))
+        let mut cursor = self.cursor(fact.first().copied());
+        while let Some(row) = self.next(&mut cursor) {
+            if self.row(row).iter().zip(fact).all(|(a, b)| same(*a, *b)) {
+                return Some(row);
+            }
+        }
+        None
     }
 
-    /// Adds the fact as the youngest; `false` if it is there already.
-    pub fn insert(&mut self, fact: &[Value]) -> bool {
-        if self.position(fact).is_some() {
+    /// Adds the fact as the youngest, or its annotations to the fact that is held; gives the annotations that are new.
+    pub fn insert(&mut self, fact: &[Value], annotations: Annotations) -> Annotations {
+        let Some(row) = self.position(fact) else {
+            if self.annotations.len() > 2 * self.live + INDEXED {
+                self.compact();
+            }
+            let row = self.annotations.len() as u32;
+            self.values.extend_from_slice(fact);
+            self.annotations.push(annotations.clone());
+            self.live += 1;
+            if let (Some(index), Some(first)) = (&mut self.index, fact.first()) {
+                index.entry(hash(*first)).or_default().push(row);
+            } else if self.live > INDEXED && self.arity > 0 {
+                self.make_index();
+            }
+            return annotations;
+        };
+        let held = &mut self.annotations[row];
+        let mut new = Annotations::new();
+        for (what, value) in annotations {
+            if !held.iter().any(|(w, v)| *w == what && same(*v, value)) {
+                held.push((what, value));
+                new.push((what, value));
+            }
+        }
+        new
+    }
+
+    /// Takes a source away from a row; the fact leaves when that was the last one.
+    pub fn withdraw(&mut self, row: usize, source: Value) -> bool {
+        let held = &mut self.annotations[row];
+        held.retain(|(what, value)| *what != Annotation::Source || !same(*value, source));
+        if held.iter().any(|(what, _)| *what == Annotation::Source) {
             return false;
         }
-        self.values.extend_from_slice(fact);
-        self.len += 1;
+        self.remove(row);
         true
     }
 
-    pub fn remove(&mut self, index: usize) -> Ground {
-        self.len -= 1;
-        self.values.drain(index * self.arity..(index + 1) * self.arity).collect()
+    pub fn remove(&mut self, row: usize) {
+        self.annotations[row].clear();
+        self.live -= 1;
+        while self.start < self.annotations.len() && self.annotations[self.start].is_empty() {
+            self.start += 1;
+        }
     }
 
-    /// Leaves this fact alone; gives the facts that were removed, oldest first, and whether it was added.
-    pub fn replace(&mut self, fact: &[Value]) -> (Vec<Ground>, bool) {
+    fn compact(&mut self) {
+        let mut values = Vec::with_capacity(self.live * self.arity);
+        let mut annotations = Vec::with_capacity(self.live);
+        for row in 0..self.annotations.len() {
+            if !self.annotations[row].is_empty() {
+                values.extend_from_slice(self.row(row));
+                annotations.push(std::mem::take(&mut self.annotations[row]));
+            }
+        }
+        (self.values, self.annotations, self.start) = (values, annotations, 0);
+        if self.index.is_some() {
+            self.make_index();
+        }
+    }
+
+    fn make_index(&mut self) {
+        let mut index: FxHashMap<u64, Vec<u32>> = FxHashMap::default();
+        for row in self.iter() {
+            index.entry(hash(self.row(row)[0])).or_default().push(row as u32);
+        }
+        self.index = Some(index);
+    }
+
+    /// The fact's row, if it is held, and all other facts.
+    pub fn others(&self, fact: &[Value]) -> SmallVec<[usize; 4]> {
         let kept = self.position(fact);
-        let removed = (0..self.len).filter(|i| Some(*i) != kept).map(|i| Ground::from_slice(self.row(i)));
-        let removed = removed.collect();
-        self.values.clear();
-        self.values.extend_from_slice(fact);
-        self.len = 1;
-        (removed, kept.is_none())
+        self.iter().filter(|row| Some(*row) != kept).collect()
     }
 }
 
@@ -77,12 +214,38 @@ impl BeliefBase {
         &mut self.rows[belief.0 as usize]
     }
 
+    pub fn all(&self) -> &[Rows] {
+        &self.rows
+    }
+
     /// All facts, by the order of their declarations, then oldest first.
     pub fn facts(&self) -> impl Iterator<Item = Fact> {
         (0u16..).zip(&self.rows).flat_map(|(id, rows)| {
-            rows.iter().map(move |row| Fact { belief: BeliefId(id), args: row.to_vec() })
+            rows.iter().map(move |row| Fact {
+                belief: BeliefId(id),
+                args: rows.row(row).to_vec(),
+                annotations: rows.annotations(row).to_vec(),
+            })
         })
     }
+}
+
+/// `[source(self)]`
+pub(crate) fn own() -> Annotations {
+    from(Value::Symbol(source_self()))
+}
+
+/// `[source(S)]`
+pub(crate) fn from(source: Value) -> Annotations {
+    smallvec![(Annotation::Source, source)]
+}
+
+/// With `source(self)`, if no source is among them.
+pub(crate) fn sourced(mut annotations: Annotations) -> Annotations {
+    if !annotations.iter().any(|(what, _)| *what == Annotation::Source) {
+        annotations.insert(0, (Annotation::Source, Value::Symbol(source_self())));
+    }
+    annotations
 }
 
 /// The arguments as the parameters' types have them, an integer made a float where one is due; `None` if their number,
@@ -105,50 +268,60 @@ pub(crate) fn typed(params: &[Param], mut args: Ground) -> Option<Ground> {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::{Enumeration, Symbol, Unit};
+    use proptest::prelude::*;
 
     use super::*;
 
     fn rows(arity: usize, facts: &[&[i64]]) -> Rows {
         let mut rows = Rows { arity, ..Rows::default() };
         for fact in facts {
-            rows.insert(&fact.iter().map(|n| Value::Int(*n)).collect::<Vec<_>>());
+            rows.insert(&values(fact), own());
         }
         rows
     }
 
+    fn values(fact: &[i64]) -> Vec<Value> {
+        fact.iter().map(|n| Value::Int(*n)).collect()
+    }
+
     fn ints(rows: &Rows) -> Vec<Vec<i64>> {
-        rows.iter().map(|r| r.iter().filter_map(|v| v.as_int()).collect()).collect()
+        rows.iter().map(|r| rows.row(r).iter().filter_map(|v| v.as_int()).collect()).collect()
+    }
+
+    fn told(by: &str) -> Annotations {
+        from(Value::Symbol(Symbol::intern(by)))
     }
 
     #[test]
     fn facts_are_held_once_in_the_order_they_came() {
         let mut r = rows(2, &[&[3, 1], &[1, 2], &[3, 1]]);
         assert_eq!(ints(&r), [[3, 1], [1, 2]]);
-        assert!(!r.insert(&[Value::Int(1), Value::Int(2)]));
-        assert_eq!(r.remove(0).as_slice(), [Value::Int(3), Value::Int(1)]);
-        assert!(r.insert(&[Value::Int(3), Value::Int(1)]));
+        assert!(r.insert(&values(&[1, 2]), own()).is_empty());
+        r.remove(0);
+        assert_eq!(r.insert(&values(&[3, 1]), own()), own());
         assert_eq!(ints(&r), [[1, 2], [3, 1]]);
     }
 
     #[test]
     fn a_fact_without_arguments_is_held_or_not() {
         let mut r = rows(0, &[]);
-        assert!(r.insert(&[]));
-        assert!(!r.insert(&[]));
-        assert_eq!(r.len, 1);
+        assert!(!r.insert(&[], own()).is_empty());
+        assert!(r.insert(&[], own()).is_empty());
+        assert_eq!(r.len(), 1);
         r.remove(0);
-        assert_eq!(r.len, 0);
+        assert_eq!((r.len(), r.iter().count()), (0, 0));
     }
 
     #[test]
-    fn replacing_tells_the_net_change() {
-        let mut r = rows(1, &[&[1], &[2], &[3]]);
-        let (removed, added) = r.replace(&[Value::Int(2)]);
-        assert_eq!((removed.len(), added), (2, false));
-        assert_eq!(ints(&r), [[2]]);
-        let (removed, added) = r.replace(&[Value::Int(4)]);
-        assert_eq!((removed[0].as_slice(), added), (&[Value::Int(2)][..], true));
-        assert_eq!(r.replace(&[Value::Int(4)]), (vec![], false));
+    fn a_fact_leaves_with_its_last_source() {
+        let mut r = rows(1, &[&[1]]);
+        assert_eq!(r.insert(&values(&[1]), told("Robot")), told("Robot"));
+        assert!(r.insert(&values(&[1]), told("Robot")).is_empty());
+        assert_eq!(r.annotations(0).len(), 2);
+        assert!(!r.withdraw(0, Value::Symbol(source_self())));
+        assert!(!r.withdraw(0, Value::Symbol(source_self())));
+        assert!(r.withdraw(0, Value::Symbol(Symbol::intern("Robot"))));
+        assert_eq!(r.len(), 0);
     }
 
     #[test]
@@ -170,6 +343,35 @@ mod tests {
         let arg = |name| Ground::from_slice(&[Value::Symbol(Symbol::intern(name))]);
         assert_eq!(typed(&params, arg("left")), Some(arg("left")));
         assert_eq!(typed(&params, arg("middle")), None);
-        assert_eq!(typed(&params, Ground::from_slice(&[Value::Int(0)])), None);
+    }
+
+    proptest! {
+        /// Against a plain list, past the sizes where tables are made and dead rows swept away.
+        #[test]
+        fn rows_are_a_list_of_different_facts(ops in prop::collection::vec((any::<bool>(), 0i64..60, 0i64..3), 0..400)) {
+            let mut rows = rows(2, &[]);
+            let mut list: Vec<Vec<i64>> = vec![];
+            for (add, a, b) in ops {
+                let fact = vec![a, b];
+                let at = list.iter().position(|f| *f == fact);
+                if add {
+                    prop_assert_eq!(rows.insert(&values(&fact), own()).is_empty(), at.is_some());
+                    if at.is_none() { list.push(fact); }
+                } else {
+                    let row = rows.position(&values(&fact));
+                    prop_assert_eq!(row.is_some(), at.is_some());
+                    if let (Some(row), Some(at)) = (row, at) { rows.remove(row); list.remove(at); }
+                }
+                prop_assert_eq!(rows.len(), list.len());
+            }
+            prop_assert_eq!(&ints(&rows), &list);
+            let mut cursor = rows.cursor(Some(Value::Float(7.0)));
+            let mut found = vec![];
+            while let Some(row) = rows.next(&mut cursor) {
+                if same(rows.row(row)[0], Value::Int(7)) { found.push(rows.row(row)[1].as_int().unwrap()); }
+            }
+            let expected: Vec<i64> = list.iter().filter(|f| f[0] == 7).map(|f| f[1]).collect();
+            prop_assert_eq!(found, expected);
+        }
     }
 }

@@ -5,8 +5,13 @@ use std::fmt;
 
 use hrdsl_ir::{
     EventId, Expr, Program,
-    bdi::{Agent, AgentId, BeliefId, Context, GoalId, Plan, StepKind, Term, TriggerOn},
+    bdi::{
+        Agent, AgentId, Annotation, Assertion, BeliefId, ContentId, Context, GoalId, Internal, Literal, Plan,
+        Rule, Step, StepKind, Term, TriggerOn, each_step,
+    },
 };
+
+use crate::code::compile;
 
 /// Why an agent cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +24,9 @@ pub enum Malformed {
         label: String,
         what: &'static str,
     },
+    Rule {
+        index: usize,
+    },
     InitialGoal {
         index: usize,
     },
@@ -30,6 +38,7 @@ impl fmt::Display for Malformed {
             Malformed::NoSuchAgent => f.write_str("no such agent"),
             Malformed::TooLong => f.write_str("too many plans, or too long a plan"),
             Malformed::Plan { label, what } => write!(f, "plan {label}: undeclared or ill-formed {what}"),
+            Malformed::Rule { index } => write!(f, "rule {index} is ill-formed"),
             Malformed::InitialGoal { index } => write!(f, "initial goal {index} is ill-formed"),
         }
     }
@@ -41,12 +50,15 @@ impl std::error::Error for Malformed {}
 pub(crate) fn agent(program: &Program, id: AgentId) -> Result<&Agent, Malformed> {
     let agent = program.agents.get(id.0 as usize).ok_or(Malformed::NoSuchAgent)?;
     let limit = usize::from(u16::MAX);
-    if agent.plans.len() > limit || agent.plans.iter().any(|p| p.body.len() > limit) {
+    if agent.plans.len() >= limit || agent.plans.iter().any(|p| compile(&p.body).is_none()) {
         return Err(Malformed::TooLong);
     }
     let check = Check { program, agent };
     for plan in &agent.plans {
         check.plan(plan).map_err(|what| Malformed::Plan { label: plan.label.clone(), what })?;
+    }
+    if let Some(index) = agent.rules.iter().position(|r| !check.rule(r)) {
+        return Err(Malformed::Rule { index });
     }
     let bad = agent.initial_goals.iter().position(|(goal, args)| !check.goal(*goal, args.len()));
     bad.map_or(Ok(agent), |index| Err(Malformed::InitialGoal { index }))
@@ -77,53 +89,144 @@ impl Check<'_> {
     fn plan(&self, plan: &Plan) -> Result<(), &'static str> {
         let args = plan.trigger.args.len();
         let trigger = match plan.trigger.on {
-            TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) | TriggerOn::TestAdded(b) => {
-                self.belief(b, args)
-            }
+            TriggerOn::BeliefAdded(b)
+            | TriggerOn::BeliefRemoved(b)
+            | TriggerOn::TestAdded(b)
+            | TriggerOn::TestFailed(b) => self.belief(b, args),
             TriggerOn::GoalAdded(g) | TriggerOn::GoalFailed(g) => self.goal(g, args),
             TriggerOn::Perceived(e) => self.event(e, args),
         };
         let vars = plan.vars.len();
-        sound(trigger && terms(&plan.trigger.args, vars), "trigger")?;
+        let annotations = plan.trigger.annotations.iter().all(|(_, t)| term(t, vars));
+        sound(trigger && annotations && terms(&plan.trigger.args, vars), "trigger")?;
         sound(self.context(&plan.context, vars), "context")?;
-        plan.body.iter().try_for_each(|step| sound(self.step(&step.kind, vars), "step"))
+        self.steps(&plan.body, vars)
+    }
+
+    fn rule(&self, rule: &Rule) -> bool {
+        let vars = rule.vars.len();
+        self.belief(rule.belief, rule.args.len()) && terms(&rule.args, vars) && self.context(&rule.body, vars)
+    }
+
+    fn literal(&self, literal: &Literal, vars: usize) -> bool {
+        let annotations = literal.annotations.iter();
+        self.belief(literal.belief, literal.args.len())
+            && terms(&literal.args, vars)
+            && annotations.into_iter().all(|(what, t)| self.annotation(literal.belief, *what) && term(t, vars))
+    }
+
+    fn annotation(&self, belief: BeliefId, what: Annotation) -> bool {
+        match what {
+            Annotation::Source => true,
+            Annotation::Declared(at) => {
+                let declared = self.agent.beliefs.get(usize::from(belief.0)).map(|b| b.annotations.len());
+                declared.is_some_and(|n| usize::from(at) < n)
+            }
+        }
+    }
+
+    fn assertion(&self, assertion: &Assertion, vars: usize) -> bool {
+        let mut annotations = assertion.annotations.iter();
+        self.belief(assertion.belief, assertion.args.len())
+            && exprs(&assertion.args, vars)
+            && annotations.all(|(what, e)| self.annotation(assertion.belief, *what) && variables(e, vars))
     }
 
     fn context(&self, context: &Context, vars: usize) -> bool {
         match context {
             Context::True => true,
-            Context::Belief { belief, args } => self.belief(*belief, args.len()) && terms(args, vars),
+            Context::Belief(literal) => self.literal(literal, vars),
             Context::Not(inner) => self.context(inner, vars),
             Context::And(all) | Context::Or(all) => all.iter().all(|c| self.context(c, vars)),
             Context::Test(expr) => variables(expr, vars),
+            Context::Unify(t, expr) => term(t, vars) && variables(expr, vars),
+            Context::Internal(internal) => self.internal(internal, vars),
         }
     }
 
+    fn internal(&self, internal: &Internal, vars: usize) -> bool {
+        match internal {
+            Internal::FindAll { template, formula, out, .. } => {
+                variables(template, vars) && self.context(formula, vars) && term(out, vars)
+            }
+            Internal::Count { formula, out } => self.context(formula, vars) && term(out, vars),
+            Internal::Member { element, list } => term(element, vars) && variables(list, vars),
+            Internal::Apply { args, out, .. } => exprs(args, vars) && term(out, vars),
+            Internal::Holds { args, .. } => exprs(args, vars),
+            Internal::Intend { goal, args }
+            | Internal::Desire { goal, args }
+            | Internal::Suspended { goal, args } => self.goal(*goal, args.len()) && terms(args, vars),
+            Internal::Random { from, out } => {
+                from.iter().all(|e| variables(e, vars)) && term(out, vars)
+            }
+            Internal::Shuffle { list, out } => variables(list, vars) && term(out, vars),
+            Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => term(out, vars),
+        }
+    }
+
+    fn steps(&self, steps: &[Step], vars: usize) -> Result<(), &'static str> {
+        let mut all = true;
+        each_step(steps, &mut |step| all = all && self.step(&step.kind, vars));
+        sound(all, "step")
+    }
+
+    /// A step by itself; those in its blocks are seen to one by one.
     fn step(&self, step: &StepKind, vars: usize) -> bool {
-        let exprs = |args: &[Expr]| args.iter().all(|e| variables(e, vars));
+        let maybe = |e: &Option<Expr>| e.iter().all(|e| variables(e, vars));
+        let content = |id: ContentId| usize::from(id.0) < self.program.contents.len();
         match step {
-            StepKind::Do { event, args } => self.event(*event, args.len()) && exprs(args),
-            StepKind::Achieve { goal, args } | StepKind::Spawn { goal, args } => {
-                self.goal(*goal, args.len()) && exprs(args)
+            StepKind::Do { event, args } => self.event(*event, args.len()) && exprs(args, vars),
+            StepKind::Achieve { goal, args, within } => {
+                self.goal(*goal, args.len()) && exprs(args, vars) && maybe(within)
             }
-            StepKind::Query { belief, args } | StepKind::Remove { belief, args } => {
-                self.belief(*belief, args.len()) && terms(args, vars)
+            StepKind::Spawn { goal, args } => self.goal(*goal, args.len()) && exprs(args, vars),
+            StepKind::Query(l) | StepKind::Remove(l) | StepKind::Abolish(l) => self.literal(l, vars),
+            StepKind::Add(a) | StepKind::Replace(a) => self.assertion(a, vars),
+            StepKind::Await { events, within } => {
+                events.iter().all(|e| self.event(e.event, e.args.len())) && maybe(within)
             }
-            StepKind::Add { belief, args } | StepKind::Replace { belief, args } => {
-                self.belief(*belief, args.len()) && exprs(args)
-            }
-            StepKind::Await { events, .. } => events.iter().all(|e| self.event(e.event, e.args.len())),
             StepKind::Wait { seconds } => variables(seconds, vars),
+            StepKind::Test(condition)
+            | StepKind::If { condition, .. }
+            | StepKind::While { condition, .. }
+            | StepKind::For { condition, .. } => self.context(condition, vars),
+            StepKind::Fork { branches, .. } => !branches.is_empty(),
+            StepKind::Send { to, content: c, args, .. } => content(*c) && maybe(to) && terms(args, vars),
+            StepKind::Ask { to, content: c, args, within } => {
+                content(*c) && variables(to, vars) && terms(args, vars) && maybe(within)
+            }
+            StepKind::AskAll { to, template, content: c, args, out, within } => {
+                content(*c)
+                    && variables(to, vars)
+                    && variables(template, vars)
+                    && terms(args, vars)
+                    && term(out, vars)
+                    && maybe(within)
+            }
+            StepKind::Print { args } => exprs(args, vars),
+            StepKind::Control { goal, .. } => {
+                goal.iter().all(|(g, args)| self.goal(*g, args.len()) && terms(args, vars))
+            }
+            StepKind::Fail => true,
         }
     }
 }
 
+fn exprs(all: &[Expr], vars: usize) -> bool {
+    all.iter().all(|e| variables(e, vars))
+}
+
 fn terms(terms: &[Term], vars: usize) -> bool {
-    terms.iter().all(|term| match term {
+    terms.iter().all(|t| term(t, vars))
+}
+
+fn term(of: &Term, vars: usize) -> bool {
+    match of {
         Term::Any => true,
         Term::Var(var) => usize::from(*var) < vars,
         Term::Expr(expr) => variables(expr, vars),
-    })
+        Term::List(items, rest) => terms(items, vars) && rest.iter().all(|t| term(t, vars)),
+    }
 }
 
 fn variables(expr: &Expr, vars: usize) -> bool {

@@ -1,258 +1,252 @@
 //! The reasoning cycle: one event, then one step of one intention.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::{
+    collections::{BTreeSet, VecDeque},
+    sync::Arc,
+};
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Span, Value,
-    bdi::{Agent, AgentId, BeliefId, Fact, TriggerOn},
+    bdi::{AgentId, BeliefId, Fact, TriggerOn, source_percept},
+    list::same,
 };
 
 use crate::{
-    Action, ActionToken, Cause, LogEntry, Logged, Malformed,
-    belief::{BeliefBase, typed},
+    Action, ActionToken, Cause, Detail, Failure, LogEntry, Logged, Malformed, Measured,
+    belief::{Annotations, BeliefBase, from, sourced, typed},
     check,
-    event::{Args, Event, Ground},
+    dice::Dice,
+    event::{Args, Event, Ground, Incoming, Mail, Speech},
     intention::{Pool, State, Timer},
-    log::{Describe, Log},
+    log::Log,
+    mind::{Me, Mind, Peers},
     plan::Library,
-    select::Selector,
+    query::Solver,
+    repeat::Repetition,
 };
 
-/// Cycles at one instant after which an agent is taken to be in a livelock, unless
-/// [`Machine::set_cycle_limit`] says otherwise.
+/// Cycles of one agent at one instant after which the run is taken to be endless.
 pub const CYCLE_LIMIT: u64 = 1_000_000;
 
 /// Plans of one intention that may wait for each other.
-const MAX_HEIGHT: usize = 100_000;
+const MAX_HEIGHT: usize = 10_000_000;
 
-/// How an agent stands.
+/// How an agent, or all agents of a run, stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It has something to reason about: it is to be [`run`](Machine::run).
+    /// It has something to reason about: it is to be run.
     Ready,
     /// All its intentions wait: for a time, an event, or the end of an action.
     Waiting,
     /// It has no intention left; only an event can start it again.
     Idle,
-    /// It did not come to rest within the bounded number of cycles at one instant, and stays so.
+    /// At one instant its state repeated, and so it would for ever.
     Livelock,
-    /// The program cannot be run: see [`Machine::fault`].
+    /// It did not come to rest within the bounded number of cycles at one instant.
+    Endless,
+    /// The program cannot be run.
     Malformed,
 }
 
 /// One running agent.
-///
-/// After each batch of [`perceive`](Self::perceive) and [`stimulus_done`](Self::stimulus_done) the harness calls
-/// [`run`](Self::run) at the same time; it calls `run` at [`next_wake`](Self::next_wake) at the latest. Times never go back.
 #[derive(Debug)]
-pub struct Machine<'p> {
-    pub(crate) program: &'p Program,
-    pub(crate) agent: Option<&'p Agent>,
-    pub(crate) library: Library<'p>,
-    pub(crate) beliefs: BeliefBase,
-    pub(crate) pool: Pool<'p>,
-    pub(crate) selector: Selector,
-    pub(crate) log: Log,
-    pub(crate) now: Nanos,
-    /// Counts timers and actions.
-    pub(crate) serial: u64,
-    pub(crate) timers: BTreeSet<Timer>,
+pub(crate) struct Machine<'p> {
+    pub mind: Mind<'p>,
+    pub solver: Solver<'p>,
+    pub dice: Dice,
+    pub log: Log,
+    pub measured: Option<Box<Measured>>,
+    /// Counts timers, actions and questions.
+    pub serial: u64,
+    pub timers: BTreeSet<Timer>,
     /// The intentions that `await`, in the order in which they began to.
-    pub(crate) awaiting: Vec<u32>,
-    events: VecDeque<Event>,
-    inbox: VecDeque<(EventId, Ground)>,
-    ready: VecDeque<u32>,
+    pub awaiting: Vec<u32>,
+    pub inbox: VecDeque<Incoming>,
+    pub outbox: Vec<Mail>,
+    pub actions: Vec<Action>,
+    pub ready: VecDeque<u32>,
     /// Cycles at the instant `now`.
-    cycles: u64,
-    cycle_limit: u64,
-    livelock: bool,
-    fault: Option<Malformed>,
+    pub cycles: u64,
+    pub cycle_limit: u64,
+    pub repetition: Repetition,
+    /// It will never run again.
+    pub halted: Option<Status>,
+    pub fault: Option<Malformed>,
 }
 
 impl<'p> Machine<'p> {
     /// The agent at time 0: its initial beliefs, then the chosen facts, then its initial goals, each giving an event.
     /// A fact that does not fit its declaration is left out and logged; a program that cannot be run gives a machine
     /// that does nothing, with [`Status::Malformed`].
-    #[must_use]
-    pub fn new(program: &'p Program, agent: AgentId, chosen: &[Fact]) -> Self {
-        let checked = check::agent(program, agent);
+    pub fn new(
+        program: &'p Program,
+        id: AgentId,
+        chosen: &[Fact],
+        place: u16,
+        peers: &Arc<Peers>,
+        seed: u64,
+        detail: Detail,
+    ) -> Self {
+        let checked = check::agent(program, id);
+        let agent = checked.as_ref().ok().copied();
+        let me = Me { name: peers.agents[usize::from(place)].0, place, id, peers: Arc::clone(peers) };
         let mut machine = Self {
-            program,
-            agent: checked.as_ref().ok().copied(),
-            library: Library::default(),
-            beliefs: BeliefBase::default(),
-            pool: Pool::default(),
-            selector: Selector::default(),
-            log: Log { detailed: true, ..Log::default() },
-            now: 0,
+            mind: Mind {
+                program,
+                agent,
+                library: agent.map_or_else(Library::default, |a| Library::new(program, id, a)),
+                beliefs: agent.map_or_else(BeliefBase::default, BeliefBase::new),
+                pool: Pool::default(),
+                events: VecDeque::new(),
+                now: 0,
+                me,
+            },
+            solver: Solver::default(),
+            dice: Dice::new(seed, u64::from(place) + 1),
+            log: Log { detail, ..Log::default() },
+            measured: None,
             serial: 0,
             timers: BTreeSet::new(),
             awaiting: Vec::new(),
-            events: VecDeque::new(),
             inbox: VecDeque::new(),
+            outbox: Vec::new(),
+            actions: Vec::new(),
             ready: VecDeque::new(),
             cycles: 0,
             cycle_limit: CYCLE_LIMIT,
-            livelock: false,
+            repetition: Repetition::default(),
+            halted: None,
             fault: None,
         };
         match checked {
-            Ok(agent) => machine.start(agent, chosen),
-            Err(fault) => machine.fault = Some(fault),
+            Ok(_) => machine.start(chosen),
+            Err(fault) => (machine.fault, machine.halted) = (Some(fault), Some(Status::Malformed)),
         }
         machine
     }
 
-    fn start(&mut self, agent: &'p Agent, chosen: &[Fact]) {
-        self.library = Library::new(self.program, agent);
-        self.beliefs = BeliefBase::new(agent);
-        self.log.selections = vec![0; agent.plans.len()];
+    fn start(&mut self, chosen: &[Fact]) {
+        let Some(agent) = self.mind.agent else { return };
         for fact in agent.initial_beliefs.iter().chain(chosen) {
-            let declared = agent.beliefs.get(fact.belief.0 as usize);
+            let declared = agent.beliefs.get(usize::from(fact.belief.0));
             match declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
-                Some(args) => self.believe(fact.belief, &args),
-                None => self.log.enter(0, 0, Logged::Refused { belief: fact.belief }),
+                Some(args) => {
+                    let annotations = sourced(Annotations::from_slice(&fact.annotations));
+                    self.believe(fact.belief, &args, annotations);
+                }
+                None => self.enter(0, Logged::Refused { belief: fact.belief, args: fact.args.clone() }),
             }
         }
         for (goal, args) in &agent.initial_goals {
             let args = args.iter().map(|v| Some(*v)).collect();
-            self.post(TriggerOn::GoalAdded(*goal), args, None, agent.origin);
+            self.post(Event {
+                on: TriggerOn::GoalAdded(*goal),
+                args,
+                annotations: Annotations::new(),
+                of: None,
+                origin: agent.origin,
+                by: None,
+                reply: None,
+            });
         }
     }
 
-    /// An event of another actor reaches the agent: it resumes every `await` that it matches and triggers the plans
-    /// that are relevant to it, when the agent is next [`run`](Self::run).
-    pub fn perceive(&mut self, event: EventId, args: &[Value], now: Nanos) {
-        self.advance(now);
-        self.inbox.push_back((event, Ground::from_slice(args)));
+    // ── From outside ──
+
+    pub fn perceive(&mut self, event: EventId, args: &[Value]) {
+        self.repetition.forget();
+        self.inbox.push_back(Incoming::Perceived { event, args: Ground::from_slice(args) });
     }
 
-    /// The action is finished, and its intention goes on when the agent is next [`run`](Self::run). A token that is
-    /// not of an action in progress has no effect.
-    pub fn stimulus_done(&mut self, token: ActionToken, now: Nanos) {
-        self.advance(now);
+    pub fn receive(&mut self, from: u16, speech: Speech) {
+        self.repetition.forget();
+        self.inbox.push_back(Incoming::Heard { from, speech });
+    }
+
+    /// The action is finished. A token that is not of an action in progress has no effect.
+    pub fn action_done(&mut self, token: ActionToken) {
+        self.repetition.forget();
         let (place, serial) = token.parts();
-        let acting = self.pool.get(place).map(|i| i.state);
+        let acting = self.mind.pool.get(place).map(|i| i.state);
         if matches!(acting, Some(State::Acting(current)) if current == serial) {
             self.resume(place);
         }
     }
 
-    /// Runs reasoning cycles until everything waits or is done, taking in what was perceived, then what is due by now;
-    /// an event that comes together with the end of an `await` wins. Appends what the agent does to `out`.
-    pub fn run(&mut self, now: Nanos, out: &mut Vec<Action>) {
-        self.settle(now, out);
-        while !self.halted() && self.expire() {
-            self.settle(now, out);
-        }
-    }
-
-    /// As [`run`](Self::run), but nothing that is due by now expires yet: for a harness in which other actors may still
-    /// make events at this instant.
-    pub fn settle(&mut self, now: Nanos, out: &mut Vec<Action>) {
-        self.advance(now);
-        while !self.halted() {
-            if self.events.is_empty() && self.ready.is_empty() {
-                let Some((event, args)) = self.inbox.pop_front() else { return };
-                self.take_in(event, &args);
+    /// Runs reasoning cycles until everything waits or is done, taking in what was perceived and heard.
+    pub fn settle(&mut self) {
+        while self.halted.is_none() {
+            if self.mind.events.is_empty() && self.ready.is_empty() {
+                let Some(incoming) = self.inbox.pop_front() else { return };
+                self.take_in(incoming);
                 continue;
             }
             if self.cycles >= self.cycle_limit {
-                self.livelock = true;
-                self.log.enter(self.now, 0, Logged::Livelock);
+                self.halted = Some(Status::Endless);
+                self.enter(0, Logged::Endless);
                 return;
             }
             self.cycles += 1;
-            self.cycle(out);
+            if self.repeats() {
+                self.halted = Some(Status::Livelock);
+                self.enter(0, Logged::Livelock);
+                return;
+            }
+            self.cycle();
         }
     }
 
-    /// The earliest time at which a `wait` or an `await` is over.
-    #[must_use]
-    pub fn next_wake(&self) -> Option<Nanos> {
-        if self.halted() { None } else { self.timers.first().map(|t| t.due) }
+    /// Whether the state is one that it was in, at this instant and with nothing from outside since.
+    fn repeats(&mut self) -> bool {
+        let mut repetition = std::mem::take(&mut self.repetition);
+        let repeats = repetition.seen(self.cycles, self);
+        self.repetition = repetition;
+        repeats
     }
 
-    #[must_use]
+    /// Time has passed to `now`.
+    pub fn advance(&mut self, now: Nanos) {
+        if now > self.mind.now {
+            self.mind.now = now;
+            self.cycles = 0;
+            self.repetition.forget();
+        }
+    }
+
+    pub fn next_wake(&self) -> Option<Nanos> {
+        if self.halted.is_some() { None } else { self.timers.first().map(|t| t.due) }
+    }
+
+    pub fn has_work(&self) -> bool {
+        let queued = !(self.mind.events.is_empty() && self.ready.is_empty() && self.inbox.is_empty());
+        self.halted.is_none() && queued
+    }
+
     pub fn status(&self) -> Status {
-        if self.fault.is_some() {
-            Status::Malformed
-        } else if self.livelock {
-            Status::Livelock
-        } else if !(self.events.is_empty() && self.ready.is_empty() && self.inbox.is_empty()) {
+        if let Some(halted) = self.halted {
+            halted
+        } else if self.has_work() {
             Status::Ready
-        } else if self.pool.is_empty() {
+        } else if self.mind.pool.is_empty() {
             Status::Idle
         } else {
             Status::Waiting
         }
     }
 
-    /// Why the program cannot be run.
-    #[must_use]
-    pub fn fault(&self) -> Option<&Malformed> {
-        self.fault.as_ref()
-    }
+    // ── The cycle ──
 
-    /// What was decided so far, or since [`take_log`](Self::take_log).
-    #[must_use]
-    pub fn log(&self) -> &[LogEntry] {
-        &self.log.entries
-    }
-
-    /// Hands the log over and begins a new one, for a run that must not grow.
-    pub fn take_log(&mut self) -> Vec<LogEntry> {
-        std::mem::take(&mut self.log.entries)
-    }
-
-    /// Whether selections are logged; otherwise failures only. They are, unless this says no.
-    pub fn log_selections(&mut self, yes: bool) {
-        self.log.detailed = yes;
-    }
-
-    /// How often each plan was selected, by its place in the agent's plan library.
-    #[must_use]
-    pub fn selections(&self) -> &[u64] {
-        &self.log.selections
-    }
-
-    /// An entry of this agent's log in a line of text, with names.
-    #[must_use]
-    pub fn describe(&self, entry: &LogEntry) -> String {
-        self.agent
-            .map_or_else(String::new, |agent| Describe { agent, events: &self.program.events }.entry(entry))
-    }
-
-    /// All that the agent believes now: by the order of declarations, then oldest first.
-    pub fn beliefs(&self) -> impl Iterator<Item = Fact> {
-        self.beliefs.facts()
-    }
-
-    /// How many plans the highest intention holds.
-    #[must_use]
-    pub fn height(&self) -> usize {
-        self.pool.height()
-    }
-
-    /// How many cycles at one instant are taken for a livelock ([`CYCLE_LIMIT`]).
-    pub fn set_cycle_limit(&mut self, cycles: u64) {
-        self.cycle_limit = cycles;
-    }
-
-    fn halted(&self) -> bool {
-        self.livelock || self.fault.is_some()
-    }
-
-    fn advance(&mut self, now: Nanos) {
-        if now > self.now {
-            self.now = now;
-            self.cycles = 0;
+    fn take_in(&mut self, incoming: Incoming) {
+        match incoming {
+            Incoming::Perceived { event, args } => self.notice(event, &args),
+            Incoming::Heard { from, speech } => self.hear(from, speech),
         }
     }
 
-    fn take_in(&mut self, event: EventId, args: &[Value]) {
+    fn notice(&mut self, event: EventId, args: &[Value]) {
+        self.entry(0, || Logged::Perceived { event, args: args.to_vec() });
         for place in std::mem::take(&mut self.awaiting) {
-            let State::Awaiting { events, timer } = self.pool.at(place).state else { continue };
+            let State::Awaiting { events, timer } = self.mind.pool.see(place).state else { continue };
             if !events.iter().any(|pattern| pattern.matches(event, args)) {
                 self.awaiting.push(place);
                 continue;
@@ -262,136 +256,243 @@ impl<'p> Machine<'p> {
             }
             self.resume(place);
         }
-        self.announce(TriggerOn::Perceived(event), args);
+        for belief in self.mind.library.percepts(event).to_vec() {
+            self.sense(belief, args);
+        }
+        self.announce(TriggerOn::Perceived(event), args, Annotations::new());
+    }
+
+    /// A belief that holds the arguments of the latest event.
+    fn sense(&mut self, belief: BeliefId, args: &[Value]) {
+        let percept = Value::Symbol(source_percept());
+        let rows = self.mind.beliefs.of(belief);
+        let is_this = |row: usize| rows.row(row).iter().zip(args).all(|(a, b)| same(*a, *b));
+        let old: Vec<usize> = rows.iter().filter(|row| !is_this(*row)).collect();
+        for row in old {
+            let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+            if self.mind.beliefs.of_mut(belief).withdraw(row, percept) {
+                self.left(belief, &fact);
+            }
+        }
+        self.believe(belief, args, from(percept));
     }
 
     /// Ends what is due; `false` if nothing is.
-    fn expire(&mut self) -> bool {
+    pub fn expire(&mut self) -> bool {
         let mut any = false;
-        while let Some(timer) = self.timers.first().copied().filter(|t| t.due <= self.now) {
+        while self.halted.is_none()
+            && let Some(timer) = self.timers.first().copied().filter(|t| t.due <= self.mind.now)
+        {
             any = true;
             self.timers.remove(&timer);
-            match self.pool.at(timer.of).state {
+            let intention = self.mind.pool.at(timer.of);
+            if let Some(at) = intention.deadlines.iter().position(|d| d.timer == timer) {
+                let height = intention.deadlines[at].height;
+                self.miss(timer.of, height);
+                continue;
+            }
+            match intention.state {
                 State::Awaiting { .. } => {
                     self.awaiting.retain(|place| *place != timer.of);
                     self.fail(timer.of, Cause::TimedOut);
                 }
-                // INVARIANT: only these two have timers.
-                State::Sleeping | State::Free | State::Ready | State::Posted | State::Acting(_) => {
-                    self.resume(timer.of);
-                }
+                State::Asking { .. } => self.fail(timer.of, Cause::TimedOut),
+                // INVARIANT: only these have timers.
+                State::Sleeping(_)
+                | State::Free
+                | State::Ready
+                | State::Held
+                | State::Posted
+                | State::Acting(_)
+                | State::Forked { .. } => self.resume(timer.of),
             }
         }
         any
     }
 
-    fn cycle(&mut self, out: &mut Vec<Action>) {
-        if let Some(event) = self.events.pop_front() {
+    fn cycle(&mut self) {
+        if let Some(event) = self.mind.events.pop_front() {
             self.deliberate(&event);
         }
         if let Some(place) = self.ready.pop_front() {
-            self.step(place, out);
+            self.step(place);
         }
     }
 
     /// Finds a plan for an event and puts it on the event's intention, or on one of its own.
     fn deliberate(&mut self, event: &Event) {
-        let plan = self.select(event.on, &event.args, event.of);
+        let plan = self.select(event, event.of);
         match (plan, event.on) {
             (Some(plan), _) => {
-                let place = event.of.unwrap_or_else(|| self.pool.adopt());
-                self.enter(place, plan, event.on, &event.args);
+                let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
+                if event.of.is_none() {
+                    self.mind.pool.at(place).reply = event.reply;
+                }
+                self.begin(place, plan, event);
             }
             (None, TriggerOn::GoalAdded(goal)) => {
-                let place = event.of.unwrap_or_else(|| self.pool.adopt());
+                let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
                 self.fail_to_adopt(place, goal, event);
             }
-            (None, TriggerOn::TestAdded(belief)) => {
-                if let Some(place) = event.of {
-                    self.fail(place, Cause::NoAnswer(belief));
-                }
-            }
+            (None, TriggerOn::TestAdded(belief)) => match (event.of, event.reply) {
+                (Some(place), _) => self.fail(place, Cause::NoAnswer(belief)),
+                (None, Some(reply)) => self.answer_nothing(reply),
+                (None, None) => {}
+            },
             (
                 None,
                 TriggerOn::BeliefAdded(_)
                 | TriggerOn::BeliefRemoved(_)
                 | TriggerOn::Perceived(_)
+                | TriggerOn::TestFailed(_)
                 | TriggerOn::GoalFailed(_),
             ) => {
-                let what = Logged::Unhandled { on: event.on, args: event.args.clone() };
-                self.log.enter(self.now, 0, what);
+                self.entry(0, || Logged::Unhandled { on: event.on, args: event.args.clone() });
             }
         }
-    }
-
-    /// The first applicable plan; what went wrong on the way is logged.
-    pub(crate) fn select(&mut self, on: TriggerOn, args: &Args, of: Option<u32>) -> Option<u16> {
-        let plan = self.selector.select(&self.library, &self.beliefs, on, args);
-        for (plan, error) in std::mem::take(&mut self.selector.faults) {
-            let number = of.map_or(0, |place| self.pool.at(place).number);
-            let origin = self.library.plan(plan).origin;
-            self.log.enter(self.now, number, Logged::Fault { plan, error, origin });
-        }
-        plan
     }
 
     /// Puts the plan just selected on top of an intention.
-    pub(crate) fn enter(&mut self, place: u32, plan: u16, on: TriggerOn, args: &Args) {
-        let intention = self.pool.at(place);
-        let is_goal = matches!(on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
+    pub fn begin(&mut self, place: u32, plan: u16, event: &Event) {
+        let intention = self.mind.pool.at(place);
+        let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
+        let height = intention.frames.len();
+        let mut early = None;
         if let Some(top) = intention.frames.last().filter(|_| is_goal) {
-            let finished = usize::from(top.next) == self.library.plan(top.plan).body.len();
-            if finished && self.library.leaves_early(top.plan) {
-                intention.pop();
+            let finished = usize::from(top.next) == self.mind.library.code(top.plan).len();
+            let timed = intention.deadlines.last().is_some_and(|d| d.height as usize == height);
+            if finished && !timed && !top.branch && self.mind.library.leaves_early(top.plan) {
+                early = Some(*top);
             }
         }
-        self.log.selections[plan as usize] += 1;
-        if self.log.detailed {
-            let what = Logged::Selected { on, args: args.clone(), plan };
-            self.log.enter(self.now, intention.number, what);
+        if let Some(frame) = early {
+            self.leave(place);
+            self.measure(|m| m.completed[usize::from(frame.plan)] += 1);
         }
-        intention.push(plan, args, &self.selector.slots);
-        if intention.frames.len() > MAX_HEIGHT {
+        self.put(place, plan, event, early.map(|f| [f.plan, f.under[0]]));
+        if self.mind.pool.see(place).frames.len() > MAX_HEIGHT {
             self.fail(place, Cause::TooDeep);
         } else {
             self.resume(place);
         }
     }
 
-    /// The intention's turn comes again.
-    pub(crate) fn make_ready(&mut self, place: u32) {
-        self.pool.at(place).state = State::Ready;
-        self.ready.push_back(place);
+    /// The frame of a plan whose variables the solver holds.
+    pub fn put(&mut self, place: u32, plan: u16, event: &Event, under: Option<[u16; 2]>) {
+        let selected = self.mind.library.plan(plan);
+        let first = crate::code::settle(self.mind.library.code(plan), 0);
+        let vars = &self.solver.slots[..selected.vars.len()];
+        let intention = self.mind.pool.at(place);
+        let fresh = intention.frames.is_empty() && event.of.is_none();
+        intention.push(plan, first, &event.args, vars);
+        intention.atomic += u32::from(selected.atomic);
+        let number = intention.number;
+        if let (Some(under), Some(top)) = (under, intention.frames.last_mut()) {
+            top.under = under;
+        }
+        if let Some(measured) = &mut self.measured {
+            let under = intention.frames.last().map_or([crate::intention::NO_PLAN; 2], |f| f.under);
+            measured.begin(plan, event.by, under);
+        }
+        if self.log.detail >= Detail::Steps {
+            let (on, args, vars) = (event.on, event.args.clone(), vars.to_vec());
+            self.enter(number, Logged::Selected { on, args, plan, vars, fresh });
+        }
     }
 
-    /// Posts an event of a goal or test for an intention, or for a new one.
-    pub(crate) fn post(&mut self, on: TriggerOn, args: Args, of: Option<u32>, origin: Span) {
-        if let Some(place) = of {
-            self.pool.at(place).state = State::Posted;
+    /// The intention's turn comes again.
+    pub fn make_ready(&mut self, place: u32) {
+        let intention = self.mind.pool.at(place);
+        if intention.suspended {
+            intention.state = State::Held;
+            return;
         }
-        self.events.push_back(Event { on, args, of, origin });
+        intention.state = State::Ready;
+        if intention.atomic > 0 {
+            self.ready.push_front(place);
+        } else {
+            self.ready.push_back(place);
+        }
+    }
+
+    /// Posts an event, perhaps for an intention that waits for its plan.
+    pub fn post(&mut self, event: Event) {
+        let mut urgent = false;
+        if let Some(place) = event.of {
+            let intention = self.mind.pool.at(place);
+            intention.state = State::Posted;
+            urgent = intention.atomic > 0;
+        }
+        if urgent {
+            self.mind.events.push_front(event);
+        } else {
+            self.mind.events.push_back(event);
+        }
     }
 
     /// Posts an event that matters only if a plan is relevant to it.
-    pub(crate) fn announce(&mut self, on: TriggerOn, args: &[Value]) {
-        if !self.library.relevant(on).is_empty() {
-            self.post(on, args.iter().map(|v| Some(*v)).collect(), None, self.agent_origin());
+    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Annotations) {
+        if !self.mind.library.relevant(on).is_empty() {
+            let args: Args = args.iter().map(|v| Some(*v)).collect();
+            let origin = self.agent_origin();
+            self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
         }
     }
 
     /// Adds a belief.
-    pub(crate) fn believe(&mut self, belief: BeliefId, args: &[Value]) {
-        if self.beliefs.of_mut(belief).insert(args) {
-            self.announce(TriggerOn::BeliefAdded(belief), args);
+    pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: Annotations) {
+        let new = self.mind.beliefs.of_mut(belief).insert(args, annotations);
+        if new.is_empty() {
+            return;
         }
+        self.entry(0, || Logged::Added { belief, args: args.to_vec(), annotations: new.clone() });
+        self.announce(TriggerOn::BeliefAdded(belief), args, new);
     }
 
-    pub(crate) fn next_serial(&mut self) -> u64 {
+    /// A belief has left the base.
+    pub fn left(&mut self, belief: BeliefId, args: &[Value]) {
+        self.entry(0, || Logged::Left { belief, args: args.to_vec() });
+        self.announce(TriggerOn::BeliefRemoved(belief), args, Annotations::new());
+    }
+
+    pub fn next_serial(&mut self) -> u64 {
         self.serial += 1;
         self.serial
     }
 
-    pub(crate) fn agent_origin(&self) -> Span {
-        self.agent.map_or_else(Span::default, |a| a.origin)
+    pub fn agent_origin(&self) -> Span {
+        self.mind.agent.map_or_else(Span::default, |a| a.origin)
+    }
+
+    // ── Log and measure ──
+
+    pub fn enter(&mut self, intention: u32, what: Logged) {
+        let (time, round, cycle) = (self.mind.now, self.log.round, self.cycles);
+        self.log.entries.push(LogEntry { time, round, cycle, intention, what });
+    }
+
+    /// Enters what is only wanted in detail.
+    pub fn entry(&mut self, intention: u32, what: impl FnOnce() -> Logged) {
+        if self.log.detail >= Detail::Steps {
+            self.enter(intention, what());
+        }
+    }
+
+    pub fn entry_of(&mut self, place: u32, what: impl FnOnce() -> Logged) {
+        if self.log.detail >= Detail::Steps {
+            let number = self.mind.pool.see(place).number;
+            self.enter(number, what());
+        }
+    }
+
+    pub fn measure(&mut self, f: impl FnOnce(&mut Measured)) {
+        if let Some(measured) = &mut self.measured {
+            f(measured);
+        }
+    }
+
+    pub fn enter_failure(&mut self, place: u32, failure: Failure) {
+        let number = self.mind.pool.see(place).number;
+        self.enter(number, Logged::Failed(failure));
     }
 }

@@ -1,7 +1,12 @@
-//! What goes in and out of an agent: the events that it reasons about and the actions that it does.
+//! What goes in and out of an agent: the events that it reasons about, the actions that it does, the messages it sends.
 
-use hrdsl_ir::{EventId, Span, Value, bdi::TriggerOn};
+use hrdsl_ir::{
+    EventId, Span, Value,
+    bdi::{ContentId, Performative, TriggerOn},
+};
 use smallvec::SmallVec;
+
+use crate::belief::Annotations;
 
 /// The arguments of an event; `None` is an argument that a test goal leaves open.
 pub type Args = SmallVec<[Option<Value>; 4]>;
@@ -25,7 +30,7 @@ impl ActionToken {
 }
 
 /// A stimulus, or a plain event, that the agent does now. Its intention goes on when the harness calls
-/// [`Machine::stimulus_done`](crate::Machine::stimulus_done) with the token.
+/// [`Society::stimulus_done`](crate::Society::stimulus_done) with the token.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Action {
     pub token: ActionToken,
@@ -39,8 +44,49 @@ pub struct Action {
 pub(crate) struct Event {
     pub on: TriggerOn,
     pub args: Args,
+    /// Of a belief those that are new, or were; of a goal who asked for it, if that was another agent.
+    pub annotations: Annotations,
     /// The intention that waits for the event's plan; `None`: the plan becomes an intention of its own.
     pub of: Option<u32>,
     /// What posted a goal: a step, or the agent.
     pub origin: Span,
+    /// The plan and the site of the step that posted a goal.
+    pub by: Option<(u16, u16)>,
+    /// Who asked, and waits for the answer of this test goal.
+    pub reply: Option<Reply>,
+}
+
+/// To whom an answer goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reply {
+    pub to: u16,
+    pub content: ContentId,
+    /// The question's number, if the asker waits; else the answer is told.
+    pub question: Option<u64>,
+}
+
+/// What an agent says to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Speech {
+    /// Any performative that needs no answer waited for.
+    Say { performative: Performative, content: ContentId, args: Args },
+    /// `.ask`, `.ask_all`: the asker waits for the answer to its question of this number.
+    Ask { question: u64, content: ContentId, args: Args, all: bool },
+    /// The answers to a question: none, one, or of `.ask_all` any number.
+    Answer { question: u64, answers: Vec<Args> },
+}
+
+/// A message on its way.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mail {
+    /// The agent's place in the society.
+    pub to: u16,
+    pub speech: Speech,
+}
+
+/// What waits to be taken in.
+#[derive(Clone, Debug)]
+pub(crate) enum Incoming {
+    Perceived { event: EventId, args: Ground },
+    Heard { from: u16, speech: Speech },
 }

@@ -1,21 +1,31 @@
 //! Intentions: stacks of partly executed plans.
 
 use hrdsl_ir::{EventPattern, Nanos};
+use smallvec::SmallVec;
 
-use crate::unify::Slot;
+use crate::{event::Reply, unify::Slot};
 
 /// A plan that is being executed. Its trigger's arguments and its variables lie next to each other on the
 /// intention's stack of slots.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub plan: u16,
-    /// The next step of the plan's body.
+    /// The next line of the plan's code.
     pub next: u16,
+    /// The line of the step begun last; [`NO_LINE`] before the first.
+    pub at: u16,
     /// Where the arguments start.
     pub args: u32,
     /// Where the arguments end and the variables start.
     pub vars: u32,
+    /// The plans that lay below when it came, the nearest first; [`NO_PLAN`] if there was none.
+    pub under: [u16; 2],
+    /// A branch of a `fork`: the goal is its parent's.
+    pub branch: bool,
 }
+
+pub(crate) const NO_PLAN: u16 = u16::MAX;
+pub(crate) const NO_LINE: u16 = u16::MAX;
 
 /// What an intention is doing.
 #[derive(Clone, Copy, Debug)]
@@ -24,14 +34,20 @@ pub(crate) enum State<'p> {
     Free,
     /// Its turn comes.
     Ready,
+    /// Its turn would come, but it is suspended.
+    Held,
     /// It waits for the plan of an event in the queue.
     Posted,
     /// It waits for the end of the action with this serial number.
     Acting(u32),
     /// `wait`
-    Sleeping,
+    Sleeping(Timer),
     /// `await`, with its timer if it is bounded.
     Awaiting { events: &'p [EventPattern], timer: Option<Timer> },
+    /// It waits for the answer to the question of this number.
+    Asking { question: u64, timer: Option<Timer> },
+    /// It waits for its branches: for all, or for the first. So many are not finished.
+    Forked { left: u32, all: bool },
 }
 
 /// When something is due; of two that are due together the one set first comes first.
@@ -43,38 +59,78 @@ pub(crate) struct Timer {
     pub of: u32,
 }
 
+/// A goal that must be achieved in time: that of the frame at this height.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline {
+    pub height: u32,
+    pub timer: Timer,
+}
+
+/// A `while` or `for` that is being executed.
+#[derive(Clone, Debug)]
+pub(crate) struct Loop {
+    /// The number of frames up to its own.
+    pub height: u32,
+    /// The variables that are open again each time.
+    pub open: SmallVec<[u16; 4]>,
+    /// Of `for`: their values, answer by answer, and how many answers were used.
+    pub answers: Vec<Slot>,
+    pub used: usize,
+}
+
 #[derive(Debug)]
 pub(crate) struct Intention<'p> {
     /// Counted from 1 in the order of adoption.
     pub number: u32,
     pub state: State<'p>,
+    pub suspended: bool,
+    /// How many of its plans are atomic.
+    pub atomic: u32,
     pub frames: Vec<Frame>,
     pub slots: Vec<Slot>,
+    pub loops: Vec<Loop>,
+    pub deadlines: Vec<Deadline>,
+    /// Of a branch: the intention that forked.
+    pub parent: Option<u32>,
+    pub children: SmallVec<[u32; 2]>,
+    /// Who waits for the answer of the lowest plan, a test goal's.
+    pub reply: Option<Reply>,
 }
 
 impl Intention<'_> {
     /// Puts a plan on top.
-    pub fn push(&mut self, plan: u16, args: &[Slot], vars: &[Slot]) {
+    pub fn push(&mut self, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
         let start = self.slots.len() as u32;
-        self.frames.push(Frame { plan, next: 0, args: start, vars: start + args.len() as u32 });
+        let vars_at = start + args.len() as u32;
+        let below = self.frames.last();
+        let under = below.map_or([NO_PLAN; 2], |f| [f.plan, f.under[0]]);
+        self.frames.push(Frame { plan, next, at: NO_LINE, args: start, vars: vars_at, under, branch: false });
         self.slots.extend_from_slice(args);
         self.slots.extend_from_slice(vars);
     }
 
-    /// Takes the top plan off, with its slots.
-    pub fn pop(&mut self) {
-        if let Some(frame) = self.frames.pop() {
-            self.slots.truncate(frame.args as usize);
+    /// Takes the top plan off, with its slots, loops and what they hold.
+    pub fn pop(&mut self) -> Option<Frame> {
+        let frame = self.frames.pop()?;
+        self.slots.truncate(frame.args as usize);
+        while self.loops.last().is_some_and(|l| l.height as usize > self.frames.len()) {
+            self.loops.pop();
         }
+        Some(frame)
     }
 
-    /// The arguments of the top plan's trigger.
+    /// The arguments of a frame's trigger.
     pub fn args(&self, frame: Frame) -> &[Slot] {
         &self.slots[frame.args as usize..frame.vars as usize]
     }
 
     /// The top plan's variables.
-    pub fn vars(&mut self) -> &mut [Slot] {
+    pub fn vars(&self) -> &[Slot] {
+        let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);
+        &self.slots[start..]
+    }
+
+    pub fn vars_mut(&mut self) -> &mut [Slot] {
         let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);
         &mut self.slots[start..]
     }
@@ -98,15 +154,31 @@ impl<'p> Pool<'p> {
             (intention.number, intention.state) = (number, State::Ready);
             return place;
         }
-        self.all.push(Intention { number, state: State::Ready, frames: Vec::new(), slots: Vec::new() });
+        self.all.push(Intention {
+            number,
+            state: State::Ready,
+            suspended: false,
+            atomic: 0,
+            frames: Vec::new(),
+            slots: Vec::new(),
+            loops: Vec::new(),
+            deadlines: Vec::new(),
+            parent: None,
+            children: SmallVec::new(),
+            reply: None,
+        });
         self.all.len() as u32 - 1
     }
 
     pub fn release(&mut self, place: u32) {
         let intention = self.at(place);
-        intention.state = State::Free;
+        (intention.state, intention.suspended, intention.atomic) = (State::Free, false, 0);
         intention.frames.clear();
         intention.slots.clear();
+        intention.loops.clear();
+        intention.deadlines.clear();
+        intention.children.clear();
+        (intention.parent, intention.reply) = (None, None);
         self.free.push(place);
     }
 
@@ -115,12 +187,33 @@ impl<'p> Pool<'p> {
         &mut self.all[place as usize]
     }
 
+    /// The same, to be read.
+    pub fn see(&self, place: u32) -> &Intention<'p> {
+        &self.all[place as usize]
+    }
+
     pub fn get(&self, place: u32) -> Option<&Intention<'p>> {
         self.all.get(place as usize)
     }
 
+    /// Those in use, by place.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, &Intention<'p>)> {
+        (0u32..).zip(&self.all).filter(|(_, i)| !matches!(i.state, State::Free))
+    }
+
+    /// The places in use, in the order of adoption.
+    pub fn in_order(&self) -> Vec<u32> {
+        let mut places: Vec<(u32, u32)> = self.iter().map(|(place, i)| (i.number, place)).collect();
+        places.sort_unstable();
+        places.into_iter().map(|(_, place)| place).collect()
+    }
+
     pub fn is_empty(&self) -> bool {
         self.free.len() == self.all.len()
+    }
+
+    pub fn in_use(&self) -> usize {
+        self.all.len() - self.free.len()
     }
 
     /// The height of the highest stack.

@@ -2,41 +2,52 @@
 //!
 //! The language is Rao's AgentSpeak(L) (1996); the reasoning cycle is that of Jason (Bordini, Hübner, Wooldridge,
 //! *Programming Multi-Agent Systems in AgentSpeak using Jason*, 2007), with every choice fixed: events are taken first in,
-//! first out; the first applicable plan in source order is selected; intentions take turns.
+//! first out; the first applicable plan in source order is selected; intentions take turns. `spec/agents-semantics.md`
+//! says it to the letter, and where it departs from Jason.
 //!
 //! # Steps
 //!
 //! 1. [`choose::factors`] and [`choose::explore`] choose the sets of beliefs that agents start with;
-//! 2. [`Machine::new`] makes a running agent from its program and the chosen beliefs;
-//! 3. [`Machine::perceive`] and [`Machine::stimulus_done`] tell it what happened;
-//! 4. [`Machine::run`] lets it reason until it waits, and says what it does;
-//! 5. [`Machine::log`] and [`Machine::selections`] say why.
+//! 2. [`Society::new`] makes the running agents from their programs and the chosen beliefs;
+//! 3. [`Society::perceive`] and [`Society::stimulus_done`] tell them what happened;
+//! 4. [`Society::run`] lets them reason, in rounds, until all wait, and says what they do;
+//! 5. [`Society::log`] says why, [`Society::measured`] what that took of the programs, and [`coverage`] what it leaves out.
 //!
-//! # Where this departs from Jason
+//! # The engine, by the way of an event
 //!
-//! - A belief that a plan's body adds or removes gives an event of its own, for an intention of its own (Jason's `++b`).
-//! - An event that no plan is relevant to never enters the queue, so that it takes no cycle.
-//! - A message is taken in when everything before it has settled, not one in each cycle: two events that are delivered
-//!   together cannot overtake an `await` that the first one leads to.
-//! - A failure is handled at once, in the step that fails, by the first *applicable* failure plan from the innermost
-//!   goal outwards; a failure plan that fails passes the failure on to the goal below.
-//! - A plan whose body is finished leaves its intention before its last sub-goal's plan enters, unless a failure plan
-//!   could still need it.
+//! `society` (rounds, messages delivered) → `cycle` (one agent: inbox, events, ready intentions) → `select` (a plan for an
+//! event) → `query` (answers of a formula in `belief`s and rules, with `unify`) → `step` (a line of `code`; `control`,
+//! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks; `log`, `show` and
+//! `measure` tell.
 
 mod belief;
 mod check;
 pub mod choose;
+mod code;
+mod control;
 mod cycle;
+mod dice;
 mod event;
 mod intention;
 mod log;
+mod mail;
+mod measure;
+mod mind;
 mod plan;
+mod query;
 mod recover;
+mod repeat;
 mod select;
+pub mod show;
+mod society;
 mod step;
 mod unify;
 
+pub use belief::Annotations;
 pub use check::Malformed;
-pub use cycle::{CYCLE_LIMIT, Machine, Status};
+pub use cycle::{CYCLE_LIMIT, Status};
 pub use event::{Action, ActionToken, Args};
-pub use log::{Cause, Failure, LogEntry, Logged, PlanIndex};
+pub use log::{Cause, Detail, Failure, LogEntry, Logged, Outcome, PlanIndex, Verdict};
+pub use measure::Measured;
+pub use query::Fault;
+pub use society::Society;

@@ -1,46 +1,105 @@
-//! What an agent decided and why, for the provenance of tests and the coverage of models.
+//! What an agent decided, entry by entry.
 
 use std::fmt;
 
 use hrdsl_ir::{
-    Nanos, Span,
-    bdi::{Agent, BeliefId, GoalId, TriggerOn},
+    EventId, Nanos, Span, Value,
+    bdi::{Annotation, BeliefId, ContentId, GoalId, Performative, TriggerOn},
     expr::EvalError,
 };
 
-use crate::event::Args;
+use crate::{belief::Annotations, event::Args, query::Fault, unify::Slot};
 
-/// Index into [`Agent::plans`].
+/// Index into the agent's plan library.
 pub type PlanIndex = u16;
 
-/// One decision.
+/// How much is entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Detail {
+    /// Failures, faults and warnings.
+    #[default]
+    Failures,
+    /// Also what is selected, done, believed, heard.
+    Steps,
+    /// Also each plan that was tried, and why it was not chosen.
+    Reasons,
+}
+
+/// One entry of the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogEntry {
     pub time: Nanos,
-    /// Intentions are counted from 1 in the order of adoption; 0: none.
+    /// Counted over the run: what agents do in one round comes in their order.
+    pub round: u64,
+    /// Cycles at this instant.
+    pub cycle: u64,
+    /// The number of the intention that it is about; 0: none.
     pub intention: u32,
     pub what: Logged,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Logged {
-    /// The plan was selected for the event.
-    Selected { on: TriggerOn, args: Args, plan: PlanIndex },
-    /// Plans are relevant to the event, but none is applicable; the event is ignored.
+    /// A plan was selected; `fresh`: it began an intention.
+    Selected { on: TriggerOn, args: Args, plan: PlanIndex, vars: Vec<Slot>, fresh: bool },
+    /// A plan was tried.
+    Tried { on: TriggerOn, args: Args, plan: PlanIndex, verdict: Verdict },
+    /// An event for which there are plans, but none is applicable.
     Unhandled { on: TriggerOn, args: Args },
-    /// The plan could not be selected since an expression of its trigger or context has no value.
-    Fault { plan: PlanIndex, error: EvalError, origin: Span },
-    /// A step or a goal failed.
+    /// A plan could not be tried.
+    Fault { plan: PlanIndex, fault: Fault, origin: Span },
+    /// A step is done: with the variables before it.
+    Step { plan: PlanIndex, line: u16, vars: Vec<Slot>, outcome: Outcome },
     Failed(Failure),
-    /// No failure plan took care of the failure: the intention is gone.
-    Dropped(Failure),
-    /// A belief that the agent was to start with does not fit its declaration.
-    Refused { belief: BeliefId },
-    /// The agent did not come to rest within the bounded number of cycles at one instant.
+    /// A failure that no plan handled: the intention is gone.
+    Abandoned(Failure),
+    /// The intention is done.
+    Finished,
+    /// An internal action, or the end of another branch, removed the intention.
+    Dropped,
+    /// With the annotations that are new.
+    Added { belief: BeliefId, args: Vec<Value>, annotations: Annotations },
+    Left { belief: BeliefId, args: Vec<Value> },
+    /// A removal that removed nothing: the fact is held from these sources.
+    StillHeld { belief: BeliefId, args: Vec<Value>, from: Vec<Value> },
+    /// A fact that does not fit its declaration was left out.
+    Refused { belief: BeliefId, args: Vec<Value> },
+    Perceived { event: EventId, args: Vec<Value> },
+    Heard { from: u16, performative: Performative, content: ContentId, args: Args },
+    /// A question of another agent that waits for the answer.
+    Asked { from: u16, content: ContentId, args: Args, all: bool },
+    Answered { from: u16, answers: Vec<Args> },
+    Printed(String),
+    /// At one instant the state repeats.
     Livelock,
+    /// Too many cycles at one instant.
+    Endless,
 }
 
-/// A failure and where it happened.
+/// What became of a step, if that is not plain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Done,
+    /// `if`, `while`
+    Holds(bool),
+    /// `for`
+    Answers(usize),
+    /// `fork`
+    Branches(usize),
+}
+
+/// Why a plan was chosen or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The trigger's arguments or annotations do not match.
+    Unlike,
+    /// The context has no answer; the farthest part of it that the search came to, when it is a conjunction.
+    False { part: usize },
+    Faulty(Fault),
+    Applicable,
+}
+
+/// Where and why something failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// The innermost goal that failed; none: the intention handles an event and has no goal.
@@ -61,16 +120,45 @@ pub enum Cause {
     NoApplicablePlan,
     /// The belief base and the plans for the test goal have no answer.
     NoAnswer(BeliefId),
-    /// An `await` was over before an event matched.
+    /// A condition of a step has no answer.
+    NoMatch,
+    /// An `await` was over before an event matched, an `.ask` before the answer came.
     TimedOut,
+    /// A goal was not achieved in time.
+    Deadline,
     /// An expression has no value.
     NoValue(EvalError),
+    /// A query went too far.
+    Query(Fault),
     /// A value is not of the type, or not in the range, that a belief or event declares.
     OutOfRange,
-    /// A `wait` for a negative time, or for what is not a time.
+    /// A `wait` or deadline of a negative time, or of what is not a time.
     BadWait,
     /// More plans than an intention can hold wait for each other.
     TooDeep,
+    /// A message to an agent that is not in the run.
+    NoSuchAgent,
+    /// A message about what the other agent does not have.
+    NoSuchContent,
+    /// The other agent has no answer.
+    NegativeAnswer,
+    /// `.fail`, `.fail_goal`
+    Told,
+}
+
+impl From<EvalError> for Cause {
+    fn from(error: EvalError) -> Self {
+        Cause::NoValue(error)
+    }
+}
+
+impl From<Fault> for Cause {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::NoValue(error) => Cause::NoValue(error),
+            Fault::TooDeep | Fault::TooLong => Cause::Query(fault),
+        }
+    }
 }
 
 impl fmt::Display for Cause {
@@ -79,98 +167,32 @@ impl fmt::Display for Cause {
             Cause::NoRelevantPlan => f.write_str("no plan is relevant"),
             Cause::NoApplicablePlan => f.write_str("no plan is applicable"),
             Cause::NoAnswer(_) => f.write_str("no belief answers"),
+            Cause::NoMatch => f.write_str("the condition has no answer"),
             Cause::TimedOut => f.write_str("the time is over"),
+            Cause::Deadline => f.write_str("the deadline is over"),
             Cause::NoValue(error) => error.fmt(f),
+            Cause::Query(fault) => fault.fmt(f),
             Cause::OutOfRange => f.write_str("value out of range"),
             Cause::BadWait => f.write_str("not a time to wait"),
             Cause::TooDeep => f.write_str("too many nested goals"),
+            Cause::NoSuchAgent => f.write_str("no such agent in this run"),
+            Cause::NoSuchContent => f.write_str("the agent has nothing of this name"),
+            Cause::NegativeAnswer => f.write_str("the agent has no answer"),
+            Cause::Told => f.write_str("the plan says so"),
         }
     }
 }
 
-/// The log, and how often each plan was selected.
+/// The entries so far.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     pub entries: Vec<LogEntry>,
-    pub selections: Vec<u64>,
-    /// Whether selections are entered, or counted only.
-    pub detailed: bool,
+    pub detail: Detail,
+    pub round: u64,
 }
 
-impl Log {
-    pub fn enter(&mut self, time: Nanos, intention: u32, what: Logged) {
-        self.entries.push(LogEntry { time, intention, what });
-    }
-}
-
-/// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
-pub(crate) fn literal<T: fmt::Display>(name: &str, args: impl IntoIterator<Item = T>) -> String {
-    let args: Vec<String> = args.into_iter().map(|a| a.to_string()).collect();
-    if args.is_empty() { name.to_owned() } else { format!("{name}({})", args.join(", ")) }
-}
-
-fn open(args: &Args) -> impl Iterator<Item = String> {
-    args.iter().map(|arg| arg.map_or_else(|| "_".to_owned(), |v| v.to_string()))
-}
-
-/// Makes entries readable.
-pub(crate) struct Describe<'a> {
-    pub agent: &'a Agent,
-    pub events: &'a [hrdsl_ir::Event],
-}
-
-impl Describe<'_> {
-    pub fn entry(&self, entry: &LogEntry) -> String {
-        let what = match &entry.what {
-            Logged::Selected { on, args, plan } => format!("{} by {}", self.on(*on, args), self.plan(*plan)),
-            Logged::Unhandled { on, args } => format!("{} ignored", self.on(*on, args)),
-            Logged::Fault { plan, error, .. } => format!("{} not tried: {error}", self.plan(*plan)),
-            Logged::Failed(failure) => format!("failed {}", self.failure(failure)),
-            Logged::Dropped(failure) => format!("dropped {}", self.failure(failure)),
-            Logged::Refused { belief } => format!("refused {}", self.belief(*belief)),
-            Logged::Livelock => "livelock".to_owned(),
-        };
-        if entry.intention == 0 { what } else { format!("#{} {what}", entry.intention) }
-    }
-
-    fn plan(&self, index: PlanIndex) -> &str {
-        self.agent.plans.get(index as usize).map_or("?", |p| &p.label)
-    }
-
-    fn belief(&self, id: BeliefId) -> &str {
-        self.agent.beliefs.get(id.0 as usize).map_or("?", |b| &b.name)
-    }
-
-    fn goal(&self, id: GoalId) -> &str {
-        self.agent.goals.get(id.0 as usize).map_or("?", |g| &g.name)
-    }
-
-    fn on(&self, on: TriggerOn, args: &Args) -> String {
-        let (sign, name) = match on {
-            TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
-            TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
-            TriggerOn::GoalAdded(g) => ("+!", self.goal(g)),
-            TriggerOn::GoalFailed(g) => ("-!", self.goal(g)),
-            TriggerOn::TestAdded(b) => ("+?", self.belief(b)),
-            TriggerOn::Perceived(e) => ("on ", self.events.get(e.0 as usize).map_or("?", |e| &e.name)),
-        };
-        format!("{sign}{}", literal(name, open(args)))
-    }
-
-    fn failure(&self, failure: &Failure) -> String {
-        let goal = failure.goal.as_ref().map(|(g, args)| format!("!{} ", literal(self.goal(*g), open(args))));
-        let plan = failure.plan.map(|p| format!("in {}", self.plan(p)));
-        let place = goal.unwrap_or_default() + &plan.unwrap_or_default();
-        let belief = match failure.cause {
-            Cause::NoAnswer(belief) => format!(" {}", self.belief(belief)),
-            Cause::NoRelevantPlan
-            | Cause::NoApplicablePlan
-            | Cause::TimedOut
-            | Cause::NoValue(_)
-            | Cause::OutOfRange
-            | Cause::BadWait
-            | Cause::TooDeep => String::new(),
-        };
-        format!("{}: {}{belief}", place.trim_end(), failure.cause)
-    }
+/// The sources among annotations.
+pub(crate) fn sources(annotations: &Annotations) -> Vec<Value> {
+    let sources = annotations.iter().filter(|(what, _)| *what == Annotation::Source);
+    sources.map(|(_, value)| *value).collect()
 }

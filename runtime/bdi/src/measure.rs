@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::bdi::{Agent, ContentId, Context, Performative, TriggerOn};
 
+use crate::intention::NO_PLAN;
+
 /// Counts of one agent. Plans are counted by their place in the plan library; steps by their *site*: their place in the
 /// plan's body when all steps, those within blocks too, are counted from 0 in the order of the text
 /// ([`each_step`](hrdsl_ir::bdi::each_step)).
@@ -50,6 +52,17 @@ impl Measured {
             blocked: agent.plans.iter().map(|p| vec![0; parts(&p.context)]).collect(),
             faults: vec![0; plans],
             ..Self::default()
+        }
+    }
+
+    /// A plan was selected, for a goal that the step `by` of another posted, above these plans.
+    pub(crate) fn begin(&mut self, plan: u16, by: Option<(u16, u16)>, under: [u16; 2]) {
+        self.selected[usize::from(plan)] += 1;
+        if let Some((from, site)) = by {
+            *self.edges.entry((from, site, plan)).or_default() += 1;
+        }
+        if !under.contains(&NO_PLAN) {
+            *self.paths.entry([under[1], under[0], plan]).or_default() += 1;
         }
     }
 

@@ -1,10 +1,15 @@
-//! The plan library: which plans are relevant to a trigger, and which may leave early.
+//! The plan library: which plans are relevant to a trigger, which may leave early, and the rules.
 
 use hrdsl_ir::{
-    Program,
-    bdi::{Agent, Plan, TriggerOn},
+    EventId, Program,
+    bdi::{
+        Agent, AgentId, BeliefId, Context, GoalId, Internal, Performative, Plan, Rule, StepKind, Subject,
+        TriggerOn, each_step,
+    },
 };
 use smallvec::SmallVec;
+
+use crate::code::{Line, compile};
 
 /// An agent's plans, indexed by what triggers them.
 #[derive(Debug, Default)]
@@ -14,46 +19,65 @@ pub(crate) struct Library<'p> {
     goals: usize,
     /// The relevant plans in source order, by [`place`](Self::place).
     relevant: Vec<SmallVec<[u16; 4]>>,
+    code: Vec<Vec<Line<'p>>>,
     /// Whether the plan's frame may be dropped as soon as its body is finished, even below a sub-goal.
     leaves_early: Vec<bool>,
+    /// By belief.
+    rules: Vec<Vec<&'p Rule>>,
+    /// The beliefs that hold the arguments of an event, by event.
+    percepts: Vec<SmallVec<[BeliefId; 1]>>,
 }
 
 impl<'p> Library<'p> {
-    pub fn new(program: &Program, agent: &'p Agent) -> Self {
+    pub fn new(program: &Program, id: AgentId, agent: &'p Agent) -> Self {
         let (beliefs, goals) = (agent.beliefs.len(), agent.goals.len());
         let mut library = Self { plans: &agent.plans, beliefs, goals, ..Self::default() };
-        library.relevant.resize(3 * beliefs + 2 * goals + program.events.len(), SmallVec::new());
+        library.relevant.resize(4 * beliefs + 2 * goals + program.events.len(), SmallVec::new());
         for (index, plan) in (0u16..).zip(&agent.plans) {
             let place = library.place(plan.trigger.on);
             if let Some(plans) = library.relevant.get_mut(place) {
                 plans.push(index);
             }
         }
-        library.leaves_early = agent
-            .plans
-            .iter()
-            .map(|plan| match plan.trigger.on {
-                // The failure of a later sub-goal would have to find this goal.
-                TriggerOn::GoalAdded(goal) => library.relevant(TriggerOn::GoalFailed(goal)).is_empty(),
-                // Its end carries the answer.
-                TriggerOn::TestAdded(_) => false,
-                TriggerOn::GoalFailed(_)
-                | TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::Perceived(_) => true,
-            })
-            .collect();
+        library.code = agent.plans.iter().map(|p| compile(&p.body).unwrap_or_default()).collect();
+        library.rules.resize(beliefs, Vec::new());
+        for rule in &agent.rules {
+            library.rules[usize::from(rule.belief.0)].push(rule);
+        }
+        library.percepts.resize(program.events.len(), SmallVec::new());
+        for (belief, declared) in (0u16..).zip(&agent.beliefs) {
+            if let Some(event) = declared.percept {
+                library.percepts[usize::from(event.0)].push(BeliefId(belief));
+            }
+        }
+        let named = named_goals(program, id, agent);
+        library.leaves_early = agent.plans.iter().map(|p| library.may_leave_early(p, &named)).collect();
         library
     }
 
+    fn may_leave_early(&self, plan: &Plan, named: &[bool]) -> bool {
+        match plan.trigger.on {
+            // The failure of a later sub-goal, or whoever names the goal, would have to find it.
+            TriggerOn::GoalAdded(goal) => {
+                self.relevant(TriggerOn::GoalFailed(goal)).is_empty() && !named[usize::from(goal.0)]
+            }
+            TriggerOn::GoalFailed(goal) => !named[usize::from(goal.0)],
+            // Its end carries the answer.
+            TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_) => false,
+            TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => true,
+        }
+    }
+
     fn place(&self, on: TriggerOn) -> usize {
+        let goals = 4 * self.beliefs;
         match on {
-            TriggerOn::BeliefAdded(b) => b.0 as usize,
-            TriggerOn::BeliefRemoved(b) => self.beliefs + b.0 as usize,
-            TriggerOn::TestAdded(b) => 2 * self.beliefs + b.0 as usize,
-            TriggerOn::GoalAdded(g) => 3 * self.beliefs + g.0 as usize,
-            TriggerOn::GoalFailed(g) => 3 * self.beliefs + self.goals + g.0 as usize,
-            TriggerOn::Perceived(e) => 3 * self.beliefs + 2 * self.goals + e.0 as usize,
+            TriggerOn::BeliefAdded(b) => usize::from(b.0),
+            TriggerOn::BeliefRemoved(b) => self.beliefs + usize::from(b.0),
+            TriggerOn::TestAdded(b) => 2 * self.beliefs + usize::from(b.0),
+            TriggerOn::TestFailed(b) => 3 * self.beliefs + usize::from(b.0),
+            TriggerOn::GoalAdded(g) => goals + usize::from(g.0),
+            TriggerOn::GoalFailed(g) => goals + self.goals + usize::from(g.0),
+            TriggerOn::Perceived(e) => goals + 2 * self.goals + usize::from(e.0),
         }
     }
 
@@ -64,10 +88,79 @@ impl<'p> Library<'p> {
 
     /// The plan of this index, which must be one of the library's.
     pub fn plan(&self, index: u16) -> &'p Plan {
-        &self.plans[index as usize]
+        &self.plans[usize::from(index)]
+    }
+
+    pub fn code(&self, index: u16) -> &[Line<'p>] {
+        &self.code[usize::from(index)]
     }
 
     pub fn leaves_early(&self, index: u16) -> bool {
-        self.leaves_early[index as usize]
+        self.leaves_early[usize::from(index)]
+    }
+
+    pub fn rules(&self, belief: BeliefId) -> &[&'p Rule] {
+        &self.rules[usize::from(belief.0)]
+    }
+
+    pub fn percepts(&self, event: EventId) -> &[BeliefId] {
+        self.percepts.get(usize::from(event.0)).map_or(&[], |p| p.as_slice())
+    }
+}
+
+/// By goal: an internal action asks for it or changes it, or another agent may take it back.
+fn named_goals(program: &Program, id: AgentId, agent: &Agent) -> Vec<bool> {
+    let mut named = vec![false; agent.goals.len()];
+    for plan in &agent.plans {
+        in_context(&plan.context, &mut named);
+        each_step(&plan.body, &mut |step| match &step.kind {
+            StepKind::Control { goal: Some((goal, _)), .. } => name(*goal, &mut named),
+            StepKind::Test(condition)
+            | StepKind::If { condition, .. }
+            | StepKind::While { condition, .. }
+            | StepKind::For { condition, .. } => in_context(condition, &mut named),
+            _ => {}
+        });
+    }
+    agent.rules.iter().for_each(|rule| in_context(&rule.body, &mut named));
+    let all = program.agents.iter().flat_map(|a| &a.plans);
+    for plan in all {
+        each_step(&plan.body, &mut |step| {
+            if let StepKind::Send { performative: Performative::Unachieve, content, .. } = &step.kind
+                && let Some(content) = program.contents.get(usize::from(content.0))
+                && let Some(Some(Subject::Goal(goal))) = content.of.get(usize::from(id.0))
+            {
+                name(*goal, &mut named);
+            }
+        });
+    }
+    named
+}
+
+fn name(goal: GoalId, named: &mut [bool]) {
+    if let Some(named) = named.get_mut(usize::from(goal.0)) {
+        *named = true;
+    }
+}
+
+fn in_context(context: &Context, named: &mut [bool]) {
+    match context {
+        Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
+        Context::Not(inner) => in_context(inner, named),
+        Context::And(all) | Context::Or(all) => all.iter().for_each(|c| in_context(c, named)),
+        Context::Internal(internal) => match &**internal {
+            Internal::Intend { goal, .. }
+            | Internal::Desire { goal, .. }
+            | Internal::Suspended { goal, .. } => name(*goal, named),
+            Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => in_context(formula, named),
+            Internal::Member { .. }
+            | Internal::Apply { .. }
+            | Internal::Holds { .. }
+            | Internal::Random { .. }
+            | Internal::Shuffle { .. }
+            | Internal::Time { .. }
+            | Internal::MyName { .. }
+            | Internal::AllNames { .. } => {}
+        },
     }
 }

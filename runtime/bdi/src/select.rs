@@ -1,203 +1,111 @@
-//! Selection of a plan: the first relevant one whose context has an answer in the belief base.
+//! Selection of a plan: the first relevant one whose context has an answer.
 
-use hrdsl_ir::{
-    Value,
-    bdi::{Context, TriggerOn},
-    expr::EvalError,
-};
+use hrdsl_ir::bdi::{Plan, TriggerOn};
 
 use crate::{
-    belief::BeliefBase,
-    plan::Library,
-    unify::{Slot, Trail, eval, undo, unify_all, well_bound},
+    Detail, Logged, Verdict,
+    belief::{Annotations, own},
+    cycle::Machine,
+    event::Event,
+    query::{Fault, Solver},
+    unify::{undo, unify, unify_all, well_bound},
 };
 
-/// Space for a selection, kept between selections.
-#[derive(Debug, Default)]
-pub(crate) struct Selector {
-    /// The variables of the selected plan.
-    pub slots: Vec<Slot>,
-    pub trail: Trail,
-    /// Plans that could not be tried because an expression had no value.
-    pub faults: Vec<(u16, EvalError)>,
-}
-
-impl Selector {
-    /// The first applicable plan, its variables bound in `slots`.
-    pub fn select(
-        &mut self,
-        library: &Library,
-        beliefs: &BeliefBase,
-        on: TriggerOn,
-        args: &[Option<Value>],
-    ) -> Option<u16> {
-        for &index in library.relevant(on) {
-            let plan = library.plan(index);
-            self.slots.clear();
-            self.slots.resize(plan.vars.len(), None);
-            self.trail.clear();
-            let mut search = Search { beliefs, slots: &mut self.slots, trail: &mut self.trail };
-            let applicable = well_bound(&plan.trigger.args, search.slots)
-                .and_then(|()| {
-                    unify_all(&plan.trigger.args, args.iter().copied(), search.slots, search.trail)
-                })
-                .and_then(|relevant| Ok(relevant && search.solve(&plan.context, None)?));
-            match applicable {
-                Ok(true) => return Some(index),
-                Ok(false) => {}
-                Err(error) => self.faults.push((index, error)),
+impl<'p> Machine<'p> {
+    /// The first applicable plan; its variables are in the solver. What went wrong on the way is logged.
+    pub fn select(&mut self, event: &Event, of: Option<u32>) -> Option<u16> {
+        let number = of.map_or(0, |place| self.mind.pool.see(place).number);
+        let mut selected = None;
+        let mut applicable = 0;
+        let mut vars = Vec::new();
+        for at in 0..self.mind.library.relevant(event.on).len() {
+            let index = self.mind.library.relevant(event.on)[at];
+            let verdict = self.attempt(index, event);
+            if let Verdict::Faulty(fault) = verdict {
+                let origin = self.mind.library.plan(index).origin;
+                self.enter(number, Logged::Fault { plan: index, fault, origin });
             }
-        }
-        None
-    }
-}
-
-/// A depth-first search for the first answer of a context.
-struct Search<'a> {
-    beliefs: &'a BeliefBase,
-    slots: &'a mut [Slot],
-    trail: &'a mut Trail,
-}
-
-/// What is left to solve: the rest of a conjunction, then what follows that.
-struct Rest<'c> {
-    all: &'c [Context],
-    next: Option<&'c Rest<'c>>,
-}
-
-impl Search<'_> {
-    /// Solves the formula and then the rest. On success the bindings of the first answer stay; otherwise none do.
-    fn solve(&mut self, context: &Context, rest: Option<&Rest>) -> Result<bool, EvalError> {
-        match context {
-            Context::True => self.go_on(rest),
-            Context::Belief { belief, args } => {
-                well_bound(args, self.slots)?;
-                let beliefs = self.beliefs;
-                for row in beliefs.of(*belief).iter() {
-                    let mark = self.trail.len();
-                    let row = row.iter().map(|v| Some(*v));
-                    if unify_all(args, row, self.slots, self.trail)? && self.go_on(rest)? {
-                        return Ok(true);
+            if self.log.detail >= Detail::Reasons && selected.is_none() {
+                let (on, args) = (event.on, event.args.clone());
+                self.enter(number, Logged::Tried { on, args, plan: index, verdict });
+            }
+            self.measure_attempt(index, verdict);
+            if verdict == Verdict::Applicable {
+                applicable += 1;
+                if selected.is_none() {
+                    selected = Some(index);
+                    if self.measured.is_none() {
+                        return selected;
                     }
-                    undo(self.slots, self.trail, mark);
-                }
-                Ok(false)
-            }
-            Context::Not(inner) => {
-                let mark = self.trail.len();
-                let holds = self.solve(inner, None)?;
-                undo(self.slots, self.trail, mark);
-                if holds { Ok(false) } else { self.go_on(rest) }
-            }
-            Context::And(all) => self.go_on(Some(&Rest { all, next: rest })),
-            Context::Or(any) => {
-                for choice in any {
-                    let mark = self.trail.len();
-                    if self.solve(choice, rest)? {
-                        return Ok(true);
-                    }
-                    undo(self.slots, self.trail, mark);
-                }
-                Ok(false)
-            }
-            Context::Test(expr) => match eval(expr, self.slots)? {
-                Value::Bool(true) => self.go_on(rest),
-                Value::Bool(false) => Ok(false),
-                Value::Int(_) | Value::Float(_) | Value::Symbol(_) => Err(EvalError::Type),
-            },
-        }
-    }
-
-    fn go_on(&mut self, rest: Option<&Rest>) -> Result<bool, EvalError> {
-        let Some(rest) = rest else { return Ok(true) };
-        match rest.all.split_first() {
-            Some((first, all)) => self.solve(first, Some(&Rest { all, next: rest.next })),
-            None => self.go_on(rest.next),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use hrdsl_ir::{
-        ActorId, Param, Span, Type,
-        bdi::{Agent, Belief, BeliefId, Term},
-    };
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const VARS: usize = 3;
-
-    /// Three beliefs of two arguments.
-    fn base(facts: &[(u16, i64, i64)]) -> BeliefBase {
-        let param = Param { name: "p".into(), ty: Type::Int { lo: 0, hi: 2 } };
-        let belief = Belief { name: "b".into(), params: vec![param; 2], origin: Span::default() };
-        let mut base = BeliefBase::new(&Agent {
-            name: String::new(),
-            actor: ActorId(0),
-            beliefs: vec![belief; 3],
-            goals: vec![],
-            initial_beliefs: vec![],
-            initial_goals: vec![],
-            plans: vec![],
-            origin: Span::default(),
-        });
-        for (b, x, y) in facts {
-            base.of_mut(BeliefId(*b)).insert(&[Value::Int(*x), Value::Int(*y)]);
-        }
-        base
-    }
-
-    /// The answer by definition: of all choices of a row for each literal, in lexicographic order, the first that
-    /// agrees on the variables.
-    fn first_answer(base: &BeliefBase, literals: &[(u16, [u16; 2])]) -> Option<Vec<Slot>> {
-        let mut answers: Vec<Vec<Slot>> = vec![vec![None; VARS]];
-        for (belief, vars) in literals {
-            let mut longer = vec![];
-            for answer in &answers {
-                for row in base.of(BeliefId(*belief)).iter() {
-                    let mut next = answer.clone();
-                    let agrees = vars.iter().zip(row).all(|(v, value)| {
-                        let slot = &mut next[usize::from(*v)];
-                        *slot.get_or_insert(*value) == *value
-                    });
-                    if agrees {
-                        longer.push(next);
-                    }
+                    vars.clone_from(&self.solver.slots);
                 }
             }
-            answers = longer;
         }
-        answers.into_iter().next()
+        if let Some(measured) = &mut self.measured {
+            measured.applicable.entry(event.on).or_default()[applicable.min(2)] += 1;
+        }
+        // The plans after it were tried to be counted.
+        self.solver.slots = vars;
+        selected
     }
 
-    proptest! {
-        #[test]
-        fn the_search_finds_the_first_answer_and_leaves_nothing_else(
-            facts in prop::collection::vec((0u16..3, 0i64..3, 0i64..3), 0..15),
-            literals in prop::collection::vec((0u16..3, [0u16..3, 0u16..3]), 0..5),
-            split in 0usize..5,
-        ) {
-            let base = base(&facts);
-            let literal = |(belief, vars): &(u16, [u16; 2])| Context::Belief {
-                belief: BeliefId(*belief),
-                args: vars.map(Term::Var).to_vec(),
-            };
-            let (left, right) = literals.split_at(split.min(literals.len()));
-            let both = |l: &[(u16, [u16; 2])]| Context::And(l.iter().map(literal).collect());
-            // Nested, so that tracking back crosses formulas.
-            let context = Context::And(vec![Context::Or(vec![both(left)]), both(right)]);
-            let (mut slots, mut trail) = (vec![None; VARS], Trail::new());
-            let mut search = Search { beliefs: &base, slots: &mut slots, trail: &mut trail };
-            let found = search.solve(&context, None).unwrap();
-            let expected = first_answer(&base, &literals);
-            prop_assert_eq!(found, expected.is_some());
-            prop_assert_eq!(slots, expected.unwrap_or(vec![None; VARS]));
-            let (mut slots, mut trail) = (vec![None; VARS], Trail::new());
-            let mut search = Search { beliefs: &base, slots: &mut slots, trail: &mut trail };
-            prop_assert_eq!(search.solve(&Context::Not(Box::new(context)), None).unwrap(), !found);
-            prop_assert_eq!(slots, vec![None; VARS]);
+    fn attempt(&mut self, index: u16, event: &Event) -> Verdict {
+        let plan: &'p Plan = self.mind.library.plan(index);
+        self.solver.open(plan.vars.len());
+        let Solver { slots, trail, .. } = &mut self.solver;
+        let likes = well_bound(&plan.trigger.args, slots)
+            .and_then(|()| unify_all(&plan.trigger.args, event.args.iter().copied(), 0, slots, trail));
+        match likes {
+            Err(error) => return Verdict::Faulty(Fault::NoValue(error)),
+            Ok(false) => return Verdict::Unlike,
+            Ok(true) => {}
+        }
+        if !plan.trigger.annotations.is_empty() {
+            let own = own();
+            let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
+            let held = if is_goal && event.annotations.is_empty() { &own } else { &event.annotations };
+            match self.annotated(plan, held) {
+                Err(fault) => return Verdict::Faulty(fault),
+                Ok(false) => return Verdict::Unlike,
+                Ok(true) => {}
+            }
+        }
+        match self.solver.solve(&self.mind, &mut self.dice, &plan.context) {
+            Ok(true) => Verdict::Applicable,
+            Ok(false) => Verdict::False { part: self.solver.farthest },
+            Err(fault) => Verdict::Faulty(fault),
+        }
+    }
+
+    /// Each annotation of the trigger takes the first of the event's that it matches.
+    fn annotated(&mut self, plan: &Plan, held: &Annotations) -> Result<bool, Fault> {
+        let Solver { slots, trail, .. } = &mut self.solver;
+        'terms: for (what, term) in &plan.trigger.annotations {
+            for (held, value) in held {
+                let mark = trail.len();
+                if held == what && unify(term, *value, 0, slots, trail)? {
+                    continue 'terms;
+                }
+                undo(slots, trail, mark);
+            }
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    fn measure_attempt(&mut self, index: u16, verdict: Verdict) {
+        let Some(measured) = &mut self.measured else { return };
+        let at = usize::from(index);
+        match verdict {
+            Verdict::Unlike => measured.unmatched[at] += 1,
+            Verdict::False { part } => {
+                measured.contexts[at][0] += 1;
+                if let Some(blocked) = measured.blocked[at].get_mut(part) {
+                    *blocked += 1;
+                }
+            }
+            Verdict::Faulty(_) => measured.faults[at] += 1,
+            Verdict::Applicable => measured.contexts[at][1] += 1,
         }
     }
 }

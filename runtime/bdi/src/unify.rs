@@ -1,31 +1,36 @@
 //! Matching of terms against values: variables are bound if they are open, compared if not.
 
-use hrdsl_ir::{Expr, Value, bdi::Term, expr::EvalError};
+use hrdsl_ir::{
+    Expr, List, Value,
+    bdi::Term,
+    expr::{BinaryOp, EvalError, binary},
+    list::same,
+};
 
-use crate::belief::Rows;
-
-/// A variable of a plan: its value, once bound.
+/// A variable: its value, once bound.
 pub(crate) type Slot = Option<Value>;
 
-/// The variables bound since a choice, so that backtracking can open them again.
-pub(crate) type Trail = Vec<u16>;
-
-/// Whether two values match: bit for bit; an integer matches the float that equals it, as `==` has it.
-pub(crate) fn same(a: Value, b: Value) -> bool {
-    match (a, b) {
-        (Value::Int(n), Value::Float(x)) | (Value::Float(x), Value::Int(n)) => n as f64 == x,
-        (Value::Symbol(a), Value::Symbol(b)) => a == b,
-        (Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_), _) => a.key() == b.key(),
-    }
-}
+/// The variables bound since a choice, by their place on the stack of slots, so that backtracking can open them again.
+pub(crate) type Trail = Vec<u32>;
 
 /// The expression's value in these variables.
 pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
-    let var = |i: u16| slots.get(i as usize).copied().flatten();
     match expr {
         Expr::Const(value) => Ok(*value),
-        Expr::Var(i) => var(*i).ok_or(EvalError::Unbound(*i)),
-        Expr::Unary(..) | Expr::Binary(..) | Expr::If(..) | Expr::Call(..) => expr.eval(&var),
+        Expr::Var(i) => slots.get(usize::from(*i)).copied().flatten().ok_or(EvalError::Unbound(*i)),
+        Expr::Binary(op, a, b) if !matches!(op, BinaryOp::And | BinaryOp::Or) => {
+            let (a, b) = (eval(a, slots)?, eval(b, slots)?);
+            match (op, a, b) {
+                (BinaryOp::Add, Value::Int(a), Value::Int(b)) => {
+                    a.checked_add(b).map(Value::Int).ok_or(EvalError::Overflow)
+                }
+                (BinaryOp::Lt, Value::Int(a), Value::Int(b)) => Ok(Value::Bool(a < b)),
+                _ => binary(*op, a, b),
+            }
+        }
+        Expr::Binary(..) | Expr::Unary(..) | Expr::If(..) | Expr::Call(..) | Expr::List(..) => {
+            expr.eval(&|i| slots.get(usize::from(i)).copied().flatten())
+        }
     }
 }
 
@@ -36,24 +41,42 @@ pub(crate) fn undo(slots: &mut [Slot], trail: &mut Trail, mark: usize) {
     }
 }
 
-/// Matches one term; what it binds is on the trail.
+/// Matches one term, whose variables start at `base` on the stack; what it binds is on the trail.
 pub(crate) fn unify(
     term: &Term,
     value: Value,
+    base: usize,
     slots: &mut [Slot],
     trail: &mut Trail,
 ) -> Result<bool, EvalError> {
     match term {
         Term::Any => Ok(true),
-        Term::Var(var) => match slots[*var as usize] {
-            Some(bound) => Ok(same(bound, value)),
-            None => {
-                slots[*var as usize] = Some(value);
-                trail.push(*var);
-                Ok(true)
+        Term::Var(var) => {
+            let at = base + usize::from(*var);
+            match slots[at] {
+                Some(bound) => Ok(same(bound, value)),
+                None => {
+                    slots[at] = Some(value);
+                    trail.push(at as u32);
+                    Ok(true)
+                }
             }
-        },
-        Term::Expr(expr) => Ok(same(eval(expr, slots)?, value)),
+        }
+        Term::Expr(expr) => Ok(same(eval(expr, &slots[base..])?, value)),
+        Term::List(items, rest) => {
+            let Value::List(mut list) = value else { return Ok(false) };
+            for item in items {
+                let Some((head, tail)) = list.split() else { return Ok(false) };
+                if !unify(item, head, base, slots, trail)? {
+                    return Ok(false);
+                }
+                list = tail;
+            }
+            match rest {
+                Some(rest) => unify(rest, Value::List(list), base, slots, trail),
+                None => Ok(list.is_empty()),
+            }
+        }
     }
 }
 
@@ -61,7 +84,8 @@ pub(crate) fn unify(
 /// nothing is bound.
 pub(crate) fn unify_all(
     terms: &[Term],
-    values: impl ExactSizeIterator<Item = Option<Value>>,
+    values: impl ExactSizeIterator<Item = Slot>,
+    base: usize,
     slots: &mut [Slot],
     trail: &mut Trail,
 ) -> Result<bool, EvalError> {
@@ -71,13 +95,30 @@ pub(crate) fn unify_all(
     let mark = trail.len();
     for (term, value) in terms.iter().zip(values) {
         let Some(value) = value else { continue };
-        let matches = unify(term, value, slots, trail);
+        let matches = unify(term, value, base, slots, trail);
         if matches != Ok(true) {
             undo(slots, trail, mark);
             return matches;
         }
     }
     Ok(true)
+}
+
+/// The value of a term, if all its variables have one: `None` for `_` and what is open.
+pub(crate) fn known(term: &Term, slots: &[Slot]) -> Slot {
+    match term {
+        Term::Any => None,
+        Term::Var(var) => slots[usize::from(*var)],
+        Term::Expr(expr) => eval(expr, slots).ok(),
+        Term::List(items, rest) => {
+            let items: Option<Vec<Value>> = items.iter().map(|i| known(i, slots)).collect();
+            let rest = match rest {
+                None => List::EMPTY,
+                Some(rest) => known(rest, slots)?.as_list()?,
+            };
+            Some(Value::List(items?.into_iter().rev().fold(rest, |rest, head| List::cons(head, rest))))
+        }
+    }
 }
 
 /// Refuses a literal that computes with a variable which is neither bound nor bound by an earlier term of the literal:
@@ -88,7 +129,7 @@ pub(crate) fn well_bound(terms: &[Term], slots: &[Slot]) -> Result<(), EvalError
         let mut fault = None;
         expr.each_var(&mut |var| {
             let bound = slots.get(var as usize).is_some_and(Option::is_some);
-            if !bound && !terms[..at].contains(&Term::Var(var)) {
+            if !bound && !terms[..at].iter().any(|t| binds(t, var)) {
                 fault = fault.or(Some(var));
             }
         });
@@ -99,128 +140,107 @@ pub(crate) fn well_bound(terms: &[Term], slots: &[Slot]) -> Result<(), EvalError
     Ok(())
 }
 
-/// The first row, from the oldest, that the terms match; its bindings stay.
-pub(crate) fn first_match(
-    rows: &Rows,
-    terms: &[Term],
-    slots: &mut [Slot],
-    trail: &mut Trail,
-) -> Result<Option<usize>, EvalError> {
-    well_bound(terms, slots)?;
-    for (index, row) in rows.iter().enumerate() {
-        if unify_all(terms, row.iter().map(|v| Some(*v)), slots, trail)? {
-            return Ok(Some(index));
+/// Whether matching the term gives the variable a value.
+fn binds(term: &Term, var: u16) -> bool {
+    match term {
+        Term::Var(v) => *v == var,
+        Term::List(items, rest) => {
+            items.iter().any(|t| binds(t, var)) || rest.as_ref().is_some_and(|t| binds(t, var))
         }
+        Term::Any | Term::Expr(_) => false,
     }
-    Ok(None)
 }
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{Symbol, expr::BinaryOp};
+    use hrdsl_ir::{Symbol, Text};
     use proptest::prelude::*;
 
     use super::*;
 
     fn value() -> impl Strategy<Value = Value> {
-        prop_oneof![
+        let scalar = prop_oneof![
             any::<bool>().prop_map(Value::Bool),
             (-2i64..3).prop_map(Value::Int),
             (-2i8..3).prop_map(|n| Value::Float(f64::from(n) / 2.0)),
             prop::sample::select(vec!["slow", "fast"]).prop_map(|s| Value::Symbol(Symbol::intern(s))),
-        ]
+            prop::sample::select(vec!["a", "b"]).prop_map(|s| Value::Text(Text::new(s))),
+        ];
+        scalar.prop_recursive(2, 8, 3, |inner| {
+            prop::collection::vec(inner, 0..3).prop_map(|v| Value::List(List::of(&v)))
+        })
     }
 
     fn term() -> impl Strategy<Value = Term> {
-        prop_oneof![
+        let leaf = prop_oneof![
             Just(Term::Any),
             (0u16..3).prop_map(Term::Var),
             value().prop_map(|v| Term::Expr(Expr::Const(v))),
-        ]
+        ];
+        leaf.prop_recursive(2, 6, 3, |inner| {
+            (prop::collection::vec(inner.clone(), 0..3), prop::option::of(inner))
+                .prop_map(|(items, rest)| Term::List(items, rest.map(Box::new)))
+        })
     }
 
-    /// What a term stands for once its variables are bound.
-    fn instance(term: &Term, slots: &[Slot]) -> Option<Value> {
+    /// The meaning of a match, without a trail: a substitution is extended or there is none.
+    fn matches(term: &Term, value: Value, mut theta: Vec<Slot>) -> Option<Vec<Slot>> {
         match term {
-            Term::Any => None,
-            Term::Var(v) => slots[*v as usize],
-            Term::Expr(e) => eval(e, slots).ok(),
+            Term::Any => Some(theta),
+            Term::Var(v) => match theta[usize::from(*v)] {
+                Some(known) => same(known, value).then_some(theta),
+                None => {
+                    theta[usize::from(*v)] = Some(value);
+                    Some(theta)
+                }
+            },
+            Term::Expr(e) => same(e.eval(&|_| None).ok()?, value).then_some(theta),
+            Term::List(items, rest) => {
+                let all: Vec<Value> = value.as_list()?.iter().collect();
+                if all.len() < items.len() || (rest.is_none() && all.len() > items.len()) {
+                    return None;
+                }
+                let (first, others) = all.split_at(items.len());
+                let theta =
+                    items.iter().zip(first).try_fold(theta, |theta, (t, v)| matches(t, *v, theta))?;
+                match rest {
+                    Some(rest) => matches(rest, Value::List(List::of(others)), theta),
+                    None => Some(theta),
+                }
+            }
         }
     }
 
     proptest! {
         #[test]
-        fn matching_is_an_equivalence_on_small_values(a in value(), b in value(), c in value()) {
-            prop_assert!(same(a, a));
-            prop_assert_eq!(same(a, b), same(b, a));
-            prop_assert!(!(same(a, b) && same(b, c)) || same(a, c));
-        }
-
-        #[test]
-        fn a_match_makes_the_terms_equal_to_the_values(
-            pairs in prop::collection::vec((term(), value()), 0..5),
-            start in prop::collection::vec(prop::option::of(value()), 3),
+        fn a_match_extends_the_substitution_and_a_mismatch_leaves_nothing(
+            terms in prop::collection::vec(term(), 0..4),
+            values in prop::collection::vec(value(), 4),
+            bound in prop::collection::vec(prop::option::of(value()), 3),
         ) {
-            let (terms, values): (Vec<Term>, Vec<Value>) = pairs.into_iter().unzip();
-            let (mut slots, mut trail) = (start.clone(), Trail::new());
-            let found = unify_all(&terms, values.iter().map(|v| Some(*v)), &mut slots, &mut trail).unwrap();
-            if found {
-                for (term, value) in terms.iter().zip(&values) {
-                    prop_assert!(instance(term, &slots).is_none_or(|i| same(i, *value)));
-                }
-                for (before, after) in start.iter().zip(&slots) {
-                    prop_assert!(before.is_none() || before == after, "a bound variable changed");
-                }
-            } else {
-                prop_assert_eq!(&slots, &start);
-                prop_assert!(trail.is_empty());
-            }
-        }
-
-        /// Completeness: whatever assignment makes the terms equal to the values, matching finds one, and where a
-        /// variable occurs, the same one.
-        #[test]
-        fn a_match_is_found_if_there_is_one(
-            terms in prop::collection::vec(term(), 0..5),
-            assignment in prop::collection::vec(value(), 3),
-            known in prop::collection::vec(any::<bool>(), 3),
-        ) {
-            let full: Vec<Slot> = assignment.iter().map(|v| Some(*v)).collect();
-            let values: Vec<Value> =
-                terms.iter().map(|t| instance(t, &full).unwrap_or(Value::Bool(true))).collect();
-            let mut slots: Vec<Slot> =
-                full.iter().zip(&known).map(|(v, k)| if *k { *v } else { None }).collect();
-            let mut trail = Trail::new();
-            prop_assert!(
-                unify_all(&terms, values.iter().map(|v| Some(*v)), &mut slots, &mut trail).unwrap()
-            );
-            for (slot, v) in slots.iter().zip(&assignment) {
-                prop_assert!(slot.is_none_or(|s| same(s, *v)));
-            }
-        }
-
-        #[test]
-        fn undoing_opens_exactly_what_was_bound(
-            pairs in prop::collection::vec((term(), value()), 0..5),
-            start in prop::collection::vec(prop::option::of(value()), 3),
-        ) {
-            let (mut slots, mut trail) = (start.clone(), Trail::new());
-            for (term, value) in &pairs {
-                unify(term, *value, &mut slots, &mut trail).unwrap();
-            }
+            let expected = terms.iter().zip(&values).try_fold(bound.clone(), |theta, (t, v)| matches(t, *v, theta));
+            let (mut slots, mut trail) = (bound.clone(), Trail::new());
+            let n = terms.len();
+            let given = values[..n].iter().map(|v| Some(*v));
+            let found = unify_all(&terms, given, 0, &mut slots, &mut trail).unwrap();
+            prop_assert_eq!(found, expected.is_some());
+            prop_assert_eq!(&slots, &expected.unwrap_or(bound.clone()));
             undo(&mut slots, &mut trail, 0);
-            prop_assert_eq!(slots, start);
+            prop_assert_eq!(slots, bound);
         }
-    }
 
-    #[test]
-    fn an_earlier_term_may_bind_what_a_later_one_computes_with() {
-        let next = Term::Expr(Expr::binary(BinaryOp::Add, Expr::Var(0), Expr::int(1)));
-        let row = |a, b| [Some(Value::Int(a)), Some(Value::Int(b))].into_iter();
-        let terms = [Term::Var(0), next.clone()];
-        assert_eq!(well_bound(&terms, &[None]), Ok(()));
-        assert_eq!(unify_all(&terms, row(3, 4), &mut [None], &mut Trail::new()), Ok(true));
-        assert_eq!(unify_all(&terms, row(3, 5), &mut [None], &mut Trail::new()), Ok(false));
-        assert_eq!(well_bound(&[next, Term::Var(0)], &[None]), Err(EvalError::Unbound(0)));
+        #[test]
+        fn what_is_known_matches_itself(t in term(), bound in prop::collection::vec(value(), 3)) {
+            let mut slots: Vec<Slot> = bound.into_iter().map(Some).collect();
+            if let Some(v) = known(&t, &slots) {
+                prop_assert!(unify(&t, v, 0, &mut slots, &mut Trail::new()).unwrap());
+            }
+        }
+
+        #[test]
+        fn matching_is_symmetric(a in value(), b in value()) {
+            prop_assert_eq!(same(a, b), same(b, a));
+            prop_assert!(same(a, a));
+        }
     }
 }

@@ -57,13 +57,13 @@ pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> E
             let rows: Vec<Row> = (0..wanted as u128).map(|index| row_at(&sizes, index)).collect();
             (rows, (wanted as u128) < space)
         }
-        Explore::Pairwise if space == 0 => (Vec::new(), false),
-        Explore::Pairwise => {
+        Explore::Wise(_) if space == 0 => (Vec::new(), false),
+        Explore::Wise(_) => {
             let rows = pairwise(&sizes, MAX_SETS, &mut rng);
             let cut = rows.len() == MAX_SETS;
             (fill(rows, &sizes, space, wanted, &mut rng), cut)
         }
-        Explore::Random => (fill(Vec::new(), &sizes, space, wanted, &mut rng), false),
+        Explore::Random | Explore::Learn => (fill(Vec::new(), &sizes, space, wanted, &mut rng), false),
     };
     Explored { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
 }

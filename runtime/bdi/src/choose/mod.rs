@@ -14,7 +14,7 @@ use hrdsl_ir::{
     suite::{Choice, ChoiceKind},
 };
 
-use crate::log::literal;
+use crate::show::call as literal;
 pub use explore::{BeliefSet, Explored, MAX_SETS, explore};
 
 /// Alternatives of all factors together.
@@ -102,7 +102,7 @@ struct Spanned<'a> {
 
 impl Spanned<'_> {
     fn held(&self, args: &[Value]) -> Alternative {
-        let fact = Fact { belief: self.choice.belief, args: args.to_vec() };
+        let fact = Fact { belief: self.choice.belief, args: args.to_vec(), annotations: Vec::new() };
         Alternative { text: self.owner.clone() + &literal(&self.belief.name, args), facts: vec![fact] }
     }
 
@@ -147,7 +147,7 @@ fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
             Type::Bool => 2,
             Type::Int { lo, hi } => i128::from(hi) - i128::from(lo) + 1,
             Type::Enum(e) => i128::try_from(e.values().len()).unwrap_or(i128::MAX),
-            Type::Float(_) => return Err(ChooseError::Infinite { belief: name, param: param_name }),
+            Type::Float(_) | Type::Text | Type::List(_) => return Err(ChooseError::Infinite { belief: name, param: param_name }),
         };
         if size <= 0 {
             return Err(ChooseError::Empty { belief: name, param: param_name });

@@ -1,0 +1,263 @@
+//! Plans as lines of code: blocks become jumps.
+
+use hrdsl_ir::{
+    Expr, Span,
+    bdi::{Context, Internal, Step, StepKind, Term},
+};
+
+/// What one line does.
+#[derive(Clone, Debug)]
+pub(crate) enum Op<'p> {
+    /// A step without blocks.
+    Plain(&'p StepKind),
+    /// `if`: to the line if the condition has no answer
+    Branch { condition: &'p Context, otherwise: u16 },
+    Jump(u16),
+    /// `while`, before the first time: these variables are open again each time, if they are now
+    Enter(Box<[u16]>),
+    /// `while`: to the line behind if the condition has no answer
+    While { condition: &'p Context, end: u16 },
+    /// `for`: all answers are taken
+    For { condition: &'p Context, variables: Box<[u16]> },
+    /// The next answer, or to the line behind.
+    Next { end: u16 },
+    /// Where branches begin, and where it goes on.
+    Fork { branches: Box<[u16]>, all: bool, end: u16 },
+    /// The end of a branch.
+    Join,
+}
+
+/// One line of a plan's body.
+#[derive(Clone, Debug)]
+pub(crate) struct Line<'p> {
+    pub op: Op<'p>,
+    /// The place of the step in the body, with the steps of its blocks counted through.
+    pub site: u16,
+    pub origin: Span,
+}
+
+/// The body as lines; `None` if there are more than can be counted.
+pub(crate) fn compile(body: &[Step]) -> Option<Vec<Line<'_>>> {
+    let mut code = Code { lines: Vec::new(), site: 0 };
+    code.steps(body);
+    (code.lines.len() < usize::from(u16::MAX)).then_some(code.lines)
+}
+
+struct Code<'p> {
+    lines: Vec<Line<'p>>,
+    site: u16,
+}
+
+impl<'p> Code<'p> {
+    fn here(&self) -> u16 {
+        u16::try_from(self.lines.len()).unwrap_or(u16::MAX)
+    }
+
+    fn line(&mut self, op: Op<'p>, site: u16, origin: Span) -> usize {
+        self.lines.push(Line { op, site, origin });
+        self.lines.len() - 1
+    }
+
+    fn steps(&mut self, steps: &'p [Step]) {
+        steps.iter().for_each(|step| self.step(step));
+    }
+
+    fn step(&mut self, step: &'p Step) {
+        let (site, origin) = (self.site, step.origin);
+        self.site = self.site.saturating_add(1);
+        match &step.kind {
+            StepKind::If { condition, then, otherwise } => {
+                let test = self.line(Op::Branch { condition, otherwise: 0 }, site, origin);
+                self.steps(then);
+                let skip = (!otherwise.is_empty()).then(|| self.line(Op::Jump(0), site, origin));
+                self.lines[test].op = Op::Branch { condition, otherwise: self.here() };
+                self.steps(otherwise);
+                if let Some(skip) = skip {
+                    self.lines[skip].op = Op::Jump(self.here());
+                }
+            }
+            StepKind::While { condition, body } => {
+                self.line(Op::Enter(variables(condition, body)), site, origin);
+                let test = self.line(Op::While { condition, end: 0 }, site, origin);
+                self.steps(body);
+                self.line(Op::Jump(test as u16), site, origin);
+                self.lines[test].op = Op::While { condition, end: self.here() };
+            }
+            StepKind::For { condition, body } => {
+                let variables = variables(condition, body);
+                self.line(Op::For { condition, variables }, site, origin);
+                let next = self.line(Op::Next { end: 0 }, site, origin);
+                self.steps(body);
+                self.line(Op::Jump(next as u16), site, origin);
+                self.lines[next].op = Op::Next { end: self.here() };
+            }
+            StepKind::Fork { branches, all } => {
+                let fork = self.line(Op::Join, site, origin);
+                let mut starts = Vec::new();
+                for branch in branches {
+                    starts.push(self.here());
+                    self.steps(branch);
+                    self.line(Op::Join, site, origin);
+                }
+                let end = self.here();
+                self.lines[fork].op = Op::Fork { branches: starts.into(), all: *all, end };
+            }
+            StepKind::Do { .. }
+            | StepKind::Achieve { .. }
+            | StepKind::Spawn { .. }
+            | StepKind::Query(_)
+            | StepKind::Test(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
+            | StepKind::Fail => {
+                self.line(Op::Plain(&step.kind), site, origin);
+            }
+        }
+    }
+}
+
+/// The line that is executed next at this one: jumps are followed.
+pub(crate) fn settle(code: &[Line], mut at: u16) -> u16 {
+    while let Some(Line { op: Op::Jump(to), .. }) = code.get(usize::from(at)) {
+        at = *to;
+    }
+    at
+}
+
+/// All variables that a loop's condition or body has.
+fn variables(condition: &Context, body: &[Step]) -> Box<[u16]> {
+    let mut found = Vec::new();
+    let mut add = |v: u16| {
+        if !found.contains(&v) {
+            found.push(v);
+        }
+    };
+    each_in_context(condition, &mut add);
+    hrdsl_ir::bdi::each_step(body, &mut |step| each_in_step(&step.kind, &mut add));
+    found.sort_unstable();
+    found.into()
+}
+
+fn each_in_terms(terms: &[Term], f: &mut dyn FnMut(u16)) {
+    terms.iter().for_each(|t| each_in_term(t, f));
+}
+
+/// Calls `f` with each variable of a term.
+pub(crate) fn each_in_term(term: &Term, f: &mut dyn FnMut(u16)) {
+    match term {
+        Term::Any => {}
+        Term::Var(v) => f(*v),
+        Term::Expr(e) => e.each_var(f),
+        Term::List(items, rest) => {
+            each_in_terms(items, f);
+            rest.iter().for_each(|r| each_in_term(r, f));
+        }
+    }
+}
+
+/// Calls `f` with each variable of a formula, also of those that are open outside.
+pub(crate) fn each_in_context(context: &Context, f: &mut dyn FnMut(u16)) {
+    match context {
+        Context::True => {}
+        Context::Belief(literal) => {
+            each_in_terms(&literal.args, f);
+            literal.annotations.iter().for_each(|(_, t)| each_in_term(t, f));
+        }
+        Context::Not(inner) => each_in_context(inner, f),
+        Context::And(all) | Context::Or(all) => all.iter().for_each(|c| each_in_context(c, f)),
+        Context::Test(e) => e.each_var(f),
+        Context::Unify(term, e) => {
+            each_in_term(term, f);
+            e.each_var(f);
+        }
+        Context::Internal(internal) => each_in_internal(internal, f),
+    }
+}
+
+fn each_in_internal(internal: &Internal, f: &mut dyn FnMut(u16)) {
+    match internal {
+        Internal::FindAll { template, formula, out, .. } => {
+            template.each_var(f);
+            each_in_context(formula, f);
+            each_in_term(out, f);
+        }
+        Internal::Count { formula, out } => {
+            each_in_context(formula, f);
+            each_in_term(out, f);
+        }
+        Internal::Member { element, list } => {
+            each_in_term(element, f);
+            list.each_var(f);
+        }
+        Internal::Apply { args, out, .. } => {
+            args.iter().for_each(|a| a.each_var(f));
+            each_in_term(out, f);
+        }
+        Internal::Holds { args, .. } => args.iter().for_each(|a| a.each_var(f)),
+        Internal::Intend { args, .. } | Internal::Desire { args, .. } | Internal::Suspended { args, .. } => {
+            each_in_terms(args, f);
+        }
+        Internal::Random { from, out } => {
+            from.iter().for_each(|e| e.each_var(f));
+            each_in_term(out, f);
+        }
+        Internal::Shuffle { list, out } => {
+            list.each_var(f);
+            each_in_term(out, f);
+        }
+        Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => each_in_term(out, f),
+    }
+}
+
+/// Calls `f` with each variable of a step, but not of the steps in its blocks.
+pub(crate) fn each_in_step(step: &StepKind, f: &mut dyn FnMut(u16)) {
+    let exprs = |all: &[Expr], f: &mut dyn FnMut(u16)| all.iter().for_each(|e| e.each_var(f));
+    match step {
+        StepKind::Do { args, .. } | StepKind::Spawn { args, .. } | StepKind::Print { args } => exprs(args, f),
+        StepKind::Achieve { args, within, .. } => {
+            exprs(args, f);
+            within.iter().for_each(|e| e.each_var(f));
+        }
+        StepKind::Query(literal) | StepKind::Remove(literal) | StepKind::Abolish(literal) => {
+            each_in_terms(&literal.args, f);
+            literal.annotations.iter().for_each(|(_, t)| each_in_term(t, f));
+        }
+        StepKind::Add(assertion) | StepKind::Replace(assertion) => {
+            exprs(&assertion.args, f);
+            assertion.annotations.iter().for_each(|(_, e)| e.each_var(f));
+        }
+        StepKind::Test(condition)
+        | StepKind::If { condition, .. }
+        | StepKind::While { condition, .. }
+        | StepKind::For { condition, .. } => each_in_context(condition, f),
+        StepKind::Await { within, .. } => within.iter().for_each(|e| e.each_var(f)),
+        StepKind::Wait { seconds } => seconds.each_var(f),
+        StepKind::Send { to, args, .. } => {
+            to.iter().for_each(|e| e.each_var(f));
+            each_in_terms(args, f);
+        }
+        StepKind::Ask { to, args, within, .. } => {
+            to.each_var(f);
+            each_in_terms(args, f);
+            within.iter().for_each(|e| e.each_var(f));
+        }
+        StepKind::AskAll { to, template, args, out, within, .. } => {
+            to.each_var(f);
+            template.each_var(f);
+            each_in_terms(args, f);
+            each_in_term(out, f);
+            within.iter().for_each(|e| e.each_var(f));
+        }
+        StepKind::Control { goal, .. } => goal.iter().for_each(|(_, args)| each_in_terms(args, f)),
+        StepKind::Fork { .. } | StepKind::Fail => {}
+    }
+}

@@ -1,0 +1,280 @@
+//! Messages between agents: speech acts sent, and what they do to who hears them.
+
+use hrdsl_ir::{
+    Expr, List, Symbol, Value,
+    bdi::{BeliefId, ContentId, Control, GoalId, Literal, Performative, StepKind, Subject, Term, TriggerOn},
+};
+
+use crate::{
+    Cause, Logged,
+    belief::{Annotations, from as told_by},
+    code::Op,
+    cycle::Machine,
+    event::{Args, Event, Ground, Mail, Reply, Speech},
+    intention::State,
+    mind::agree,
+    query::{Fault, Solver},
+    step::{Flow, Here},
+    unify::{Slot, Trail, eval, known, unify, unify_all},
+};
+
+/// Whether the performative is about a goal.
+fn is_of_goal(performative: Performative) -> bool {
+    match performative {
+        Performative::Achieve | Performative::Unachieve => true,
+        Performative::Tell | Performative::Untell | Performative::AskOne | Performative::AskAll => false,
+    }
+}
+
+impl<'p> Machine<'p> {
+    /// What the content is to the agent at this place.
+    fn subject(&self, content: ContentId, place: u16) -> Option<Subject> {
+        let (_, id) = self.mind.me.peers.agents.get(usize::from(place))?;
+        let content = self.mind.program.contents.get(usize::from(content.0))?;
+        content.of.get(usize::from(id.0)).copied().flatten()
+    }
+
+    fn belief(&self, content: ContentId) -> Option<BeliefId> {
+        match self.subject(content, self.mind.me.place)? {
+            Subject::Belief(belief) => Some(belief),
+            Subject::Goal(_) => None,
+        }
+    }
+
+    fn goal(&self, content: ContentId) -> Option<GoalId> {
+        match self.subject(content, self.mind.me.place)? {
+            Subject::Goal(goal) => Some(goal),
+            Subject::Belief(_) => None,
+        }
+    }
+
+    fn receiver(&self, place: u32, to: &Expr) -> Result<u16, Cause> {
+        let name = eval(to, self.mind.pool.see(place).vars())?.as_symbol();
+        name.and_then(|n| self.mind.me.peers.place(n)).ok_or(Cause::NoSuchAgent)
+    }
+
+    pub fn say(&mut self, to: u16, speech: Speech) {
+        self.outbox.push(Mail { to, speech });
+    }
+
+    // ── Sending ──
+
+    pub fn send(
+        &mut self,
+        here: Here,
+        to: Option<&Expr>,
+        performative: Performative,
+        content: ContentId,
+        args: &[Term],
+    ) -> Result<Flow, Cause> {
+        let slots = self.mind.pool.see(here.place).vars();
+        let args: Args = args.iter().map(|t| known(t, slots)).collect();
+        let suits = |subject: Option<Subject>| match subject {
+            Some(Subject::Goal(_)) => is_of_goal(performative),
+            Some(Subject::Belief(_)) => !is_of_goal(performative),
+            None => false,
+        };
+        let receivers: Vec<u16> = match to {
+            Some(to) => {
+                let to = self.receiver(here.place, to)?;
+                if !suits(self.subject(content, to)) {
+                    return Err(Cause::NoSuchContent);
+                }
+                vec![to]
+            }
+            None => {
+                let all = 0..self.mind.me.peers.agents.len() as u16;
+                all.filter(|p| *p != self.mind.me.place && suits(self.subject(content, *p))).collect()
+            }
+        };
+        for to in receivers {
+            self.say(to, Speech::Say { performative, content, args: args.clone() });
+        }
+        self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
+        Ok(Flow::Next)
+    }
+
+    pub fn ask(
+        &mut self,
+        here: Here,
+        to: &Expr,
+        content: ContentId,
+        args: &[Term],
+        within: Option<&Expr>,
+        all: bool,
+    ) -> Result<Flow, Cause> {
+        let to = self.receiver(here.place, to)?;
+        if !matches!(self.subject(content, to), Some(Subject::Belief(_))) {
+            return Err(Cause::NoSuchContent);
+        }
+        let time = within.map(|e| self.time(here.place, e)).transpose()?;
+        let slots = self.mind.pool.see(here.place).vars();
+        let args: Args = args.iter().map(|t| known(t, slots)).collect();
+        let question = self.next_serial();
+        let timer = time.map(|t| self.set_timer(here.place, t));
+        self.mind.pool.at(here.place).state = State::Asking { question, timer };
+        self.say(to, Speech::Ask { question, content, args, all });
+        self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
+        Ok(Flow::Suspended)
+    }
+
+    // ── Hearing ──
+
+    pub fn hear(&mut self, from: u16, speech: Speech) {
+        match speech {
+            Speech::Say { performative, content, args } => {
+                let heard = args.clone();
+                self.entry(0, || Logged::Heard { from, performative, content, args: heard });
+                self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
+                self.obey(from, performative, content, args);
+            }
+            Speech::Ask { question, content, args, all } => {
+                let asked = args.clone();
+                self.entry(0, || Logged::Asked { from, content, args: asked, all });
+                let performative = if all { Performative::AskAll } else { Performative::AskOne };
+                self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
+                self.reply(from, content, args, Some(question), all);
+            }
+            Speech::Answer { question, answers } => {
+                let given = answers.clone();
+                self.entry(0, || Logged::Answered { from, answers: given });
+                self.learn(question, &answers);
+            }
+        }
+    }
+
+    fn obey(&mut self, from: u16, performative: Performative, content: ContentId, args: Args) {
+        let name = Value::Symbol(self.name_of(from));
+        match performative {
+            Performative::Tell => {
+                let Some(belief) = self.belief(content) else { return };
+                let ground: Option<Ground> = args.iter().copied().collect();
+                match ground.clone().and_then(|g| self.declared(belief, g)) {
+                    Some(args) => self.believe(belief, &args, told_by(name)),
+                    None => {
+                        let args = ground.unwrap_or_default().into_vec();
+                        self.enter(0, Logged::Refused { belief, args });
+                    }
+                }
+            }
+            Performative::Untell => {
+                let Some(belief) = self.belief(content) else { return };
+                let rows = self.mind.beliefs.of(belief);
+                let matches = |row: &usize| {
+                    let values: Vec<Slot> = rows.row(*row).iter().map(|v| Some(*v)).collect();
+                    agree(&values, &args)
+                };
+                for row in rows.iter().filter(matches).collect::<Vec<_>>() {
+                    let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+                    if self.mind.beliefs.of_mut(belief).withdraw(row, name) {
+                        self.left(belief, &fact);
+                    }
+                }
+            }
+            Performative::Achieve => {
+                let Some(goal) = self.goal(content) else { return };
+                let (on, origin) = (TriggerOn::GoalAdded(goal), self.agent_origin());
+                let annotations: Annotations = told_by(name);
+                self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
+            }
+            Performative::Unachieve => {
+                if let Some(goal) = self.goal(content) {
+                    self.control_goal(Control::DropDesire, goal, &args);
+                }
+            }
+            Performative::AskOne => self.reply(from, content, args, None, false),
+            Performative::AskAll => self.reply(from, content, args, None, true),
+        }
+    }
+
+    fn name_of(&self, place: u16) -> Symbol {
+        self.mind.me.peers.agents[usize::from(place)].0
+    }
+
+    /// Answers a question from what is believed; a single answer also by the plans for the test goal.
+    fn reply(&mut self, to: u16, content: ContentId, args: Args, question: Option<u64>, all: bool) {
+        let reply = Reply { to, content, question };
+        let Some(belief) = self.belief(content) else { return self.answer_nothing(reply) };
+        let found = self.answers_to(belief, &args, all).unwrap_or_default();
+        let on = TriggerOn::TestAdded(belief);
+        if found.is_empty() && !all && !self.mind.library.relevant(on).is_empty() {
+            let (origin, annotations) = (self.agent_origin(), Annotations::new());
+            let reply = Some(reply);
+            self.post(Event { on, args, annotations, of: None, origin, by: None, reply });
+        } else if let Some(question) = question {
+            self.say(to, Speech::Answer { question, answers: found });
+        } else {
+            found.into_iter().for_each(|args| self.tell_back(reply, args));
+        }
+    }
+
+    fn tell_back(&mut self, reply: Reply, args: Args) {
+        let Reply { to, content, .. } = reply;
+        self.say(to, Speech::Say { performative: Performative::Tell, content, args });
+    }
+
+    /// The plan for a test goal that another agent asked for has this answer.
+    pub fn answer(&mut self, reply: Reply, answer: &Args) {
+        match reply.question {
+            Some(question) => self.say(reply.to, Speech::Answer { question, answers: vec![answer.clone()] }),
+            None if answer.iter().all(Option::is_some) => self.tell_back(reply, answer.clone()),
+            None => {}
+        }
+    }
+
+    /// The first fact that follows, or all.
+    fn answers_to(&mut self, belief: BeliefId, args: &Args, all: bool) -> Result<Vec<Args>, Fault> {
+        let terms = (0..args.len() as u16).map(Term::Var).collect();
+        let literal = Literal { belief, args: terms, annotations: Vec::new() };
+        let mut solver = Solver::default();
+        solver.with(args);
+        let mut found = Vec::new();
+        let mut more = solver.answer(&self.mind, &mut self.dice, &literal)?;
+        while more {
+            found.push(Args::from_slice(&solver.slots[..args.len()]));
+            more = all && solver.again(&self.mind, &mut self.dice)?;
+        }
+        Ok(found)
+    }
+
+    /// The answer to a question comes.
+    fn learn(&mut self, question: u64, answers: &[Args]) {
+        let asks = |state: State| matches!(state, State::Asking { question: q, .. } if q == question);
+        let Some(place) = self.mind.pool.iter().find(|(_, i)| asks(i.state)).map(|(p, _)| p) else { return };
+        self.detach(place);
+        match self.take_answers(place, answers) {
+            Ok(()) => self.resume(place),
+            Err(cause) => self.fail(place, cause),
+        }
+    }
+
+    fn take_answers(&mut self, place: u32, answers: &[Args]) -> Result<(), Cause> {
+        let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(()) };
+        let line = self.mind.library.code(top.plan).get(usize::from(top.at));
+        let Some(Op::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
+        let step: &'p StepKind = step;
+        match step {
+            StepKind::Ask { args, .. } => {
+                let answer = answers.first().ok_or(Cause::NegativeAnswer)?;
+                let vars = self.mind.pool.at(place).vars_mut();
+                let fits = unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?;
+                if fits { Ok(()) } else { Err(Cause::NegativeAnswer) }
+            }
+            StepKind::AskAll { template, args, out, .. } => {
+                let vars = self.mind.pool.see(place).vars();
+                let mut all = Vec::new();
+                for answer in answers {
+                    let mut own = vars.to_vec();
+                    if unify_all(args, answer.iter().copied(), 0, &mut own, &mut Trail::new())? {
+                        all.push(eval(template, &own)?);
+                    }
+                }
+                let vars = self.mind.pool.at(place).vars_mut();
+                let fits = unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?;
+                if fits { Ok(()) } else { Err(Cause::NoMatch) }
+            }
+            // INVARIANT: only these two ask.
+            _ => Ok(()),
+        }
+    }
+}

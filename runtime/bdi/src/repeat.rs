@@ -1,0 +1,225 @@
+//! Livelocks: a state that comes again, with nothing from outside between, comes for ever.
+//!
+//! In the manner of Brent's cycle detection (*BIT* 20, 1980): the state is kept at cycles that are powers of two, and for
+//! a sixteenth of the way to the next one each state is compared with it. So a cycle of length p is found at 32 · p
+//! cycles at the latest, and the comparison costs little. States are compared whole; a cheap fingerprint is compared first.
+
+use hrdsl_ir::{Value, bdi::Annotation};
+
+use crate::{
+    belief::Annotations,
+    cycle::Machine,
+    event::{Event, Incoming, Speech},
+    intention::{Intention, State, Timer},
+    unify::Slot,
+};
+
+/// The first cycle at which a state is kept.
+const FIRST: u64 = 64;
+
+/// A state that was kept, and until which cycle it is compared.
+#[derive(Debug, Default)]
+pub(crate) struct Repetition {
+    kept: Option<(u64, Vec<u64>)>,
+    until: u64,
+}
+
+/// What has a state that can repeat.
+pub(crate) trait Repeats {
+    /// Different for different states, most often.
+    fn fingerprint(&self) -> u64;
+    /// The whole state, but for counters and the log; times count from now.
+    fn state(&self) -> Vec<u64>;
+}
+
+impl Repetition {
+    /// Something came from outside, or time has passed.
+    pub fn forget(&mut self) {
+        self.kept = None;
+    }
+
+    /// Whether the state at this cycle is the one that was kept.
+    pub fn seen(&mut self, cycle: u64, of: &impl Repeats) -> bool {
+        if let Some((fingerprint, state)) = &self.kept {
+            if cycle > self.until {
+                self.kept = None;
+            } else if *fingerprint == of.fingerprint() && *state == of.state() {
+                return true;
+            }
+        }
+        if cycle >= FIRST && cycle.is_power_of_two() {
+            self.kept = Some((of.fingerprint(), of.state()));
+            self.until = cycle + cycle / 16;
+        }
+        false
+    }
+}
+
+fn mix(a: u64, b: u64) -> u64 {
+    (a.rotate_left(5) ^ b).wrapping_mul(0x517c_c1b7_2722_0a95)
+}
+
+fn number(slot: Slot) -> u64 {
+    slot.map_or(7, |v| mix(u64::from(v.key().0), v.key().1))
+}
+
+fn hash(slots: &[Slot]) -> u64 {
+    slots.iter().fold(slots.len() as u64, |h, s| mix(h, number(*s)))
+}
+
+impl Repeats for Machine<'_> {
+    fn fingerprint(&self) -> u64 {
+        let events = self.mind.events.front().map_or(0, |e| hash(&e.args));
+        let top = self.ready.front().map_or(0, |p| {
+            let i = self.mind.pool.see(*p);
+            let next = i.frames.last().map_or(0, |f| u64::from(f.next) << 16 | u64::from(f.plan));
+            mix(mix(hash(i.vars()), i.frames.len() as u64), next)
+        });
+        let counts = [self.mind.events.len(), self.ready.len(), self.mind.pool.in_use(), self.inbox.len()];
+        counts.iter().fold(mix(events, top), |h, n| mix(h, *n as u64))
+    }
+
+    fn state(&self) -> Vec<u64> {
+        let mut out = Vec::new();
+        for rows in self.mind.beliefs.all() {
+            out.push(rows.len() as u64);
+            for row in rows.iter() {
+                rows.row(row).iter().for_each(|v| value(&mut out, *v));
+                annotations(&mut out, rows.annotations(row));
+            }
+        }
+        out.push(self.mind.events.len() as u64);
+        self.mind.events.iter().for_each(|e| event(&mut out, e));
+        out.push(self.inbox.len() as u64);
+        self.inbox.iter().for_each(|i| incoming(&mut out, i));
+        for places in [self.ready.iter().copied().collect::<Vec<_>>(), self.awaiting.clone()] {
+            out.push(places.len() as u64);
+            out.extend(places.into_iter().map(u64::from));
+        }
+        for (place, i) in self.mind.pool.iter() {
+            out.push(u64::from(place));
+            self.intention(&mut out, i);
+        }
+        out.push(self.timers.len() as u64);
+        self.timers.iter().for_each(|t| self.timer(&mut out, t));
+        out.push(self.dice.draws);
+        out
+    }
+}
+
+impl Machine<'_> {
+    fn timer(&self, out: &mut Vec<u64>, timer: &Timer) {
+        out.extend([(timer.due - self.mind.now) as u64, u64::from(timer.of)]);
+    }
+
+    fn intention(&self, out: &mut Vec<u64>, i: &Intention) {
+        let state = match i.state {
+            State::Free => [0, 0],
+            State::Ready => [1, 0],
+            State::Held => [2, 0],
+            State::Posted => [3, 0],
+            State::Acting(serial) => [4, u64::from(serial)],
+            State::Sleeping(_) => [5, 0],
+            State::Awaiting { events, .. } => [6, events.as_ptr().addr() as u64],
+            State::Asking { question, .. } => [7, question],
+            State::Forked { left, all } => [8 + u64::from(all), u64::from(left)],
+        };
+        out.extend(state);
+        out.extend([u64::from(i.suspended), i.frames.len() as u64]);
+        for f in &i.frames {
+            out.push(u64::from(f.plan) << 32 | u64::from(f.next) << 16 | u64::from(f.at));
+            out.push(u64::from(f.args) << 33 | u64::from(f.vars) << 1 | u64::from(f.branch));
+        }
+        i.slots.iter().for_each(|s| slot(out, *s));
+        for l in &i.loops {
+            out.extend([u64::from(l.height), l.used as u64, l.answers.len() as u64]);
+            out.extend(l.open.iter().map(|v| u64::from(*v)));
+            l.answers.iter().for_each(|s| slot(out, *s));
+        }
+        for d in &i.deadlines {
+            out.push(u64::from(d.height));
+            self.timer(out, &d.timer);
+        }
+        out.push(i.parent.map_or(0, |p| u64::from(p) + 1));
+        out.extend(i.children.iter().map(|c| u64::from(*c)));
+        let reply = i.reply.map(|r| [u64::from(r.to), u64::from(r.content.0), r.question.unwrap_or(0)]);
+        out.extend(reply.unwrap_or_default());
+    }
+}
+
+fn value(out: &mut Vec<u64>, v: Value) {
+    let (kind, content) = v.key();
+    out.extend([u64::from(kind), content]);
+}
+
+fn slot(out: &mut Vec<u64>, slot: Slot) {
+    match slot {
+        Some(v) => value(out, v),
+        None => out.extend([99, 0]),
+    }
+}
+
+fn slots(out: &mut Vec<u64>, all: &[Slot]) {
+    out.push(all.len() as u64);
+    all.iter().for_each(|s| slot(out, *s));
+}
+
+fn annotations(out: &mut Vec<u64>, all: &Annotations) {
+    out.push(all.len() as u64);
+    for (what, v) in all {
+        out.push(match what {
+            Annotation::Source => 0,
+            Annotation::Declared(at) => u64::from(*at) + 1,
+        });
+        value(out, *v);
+    }
+}
+
+fn event(out: &mut Vec<u64>, e: &Event) {
+    use hrdsl_ir::bdi::TriggerOn as On;
+    out.extend(match e.on {
+        On::BeliefAdded(b) => [0, b.0],
+        On::BeliefRemoved(b) => [1, b.0],
+        On::GoalAdded(g) => [2, g.0],
+        On::GoalFailed(g) => [3, g.0],
+        On::TestAdded(b) => [4, b.0],
+        On::TestFailed(b) => [5, b.0],
+        On::Perceived(e) => [6, e.0],
+    }.map(u64::from));
+    slots(out, &e.args);
+    annotations(out, &e.annotations);
+    out.push(e.of.map_or(0, |p| u64::from(p) + 1));
+}
+
+fn incoming(out: &mut Vec<u64>, i: &Incoming) {
+    match i {
+        Incoming::Perceived { event, args } => {
+            out.extend([0, u64::from(event.0)]);
+            args.iter().for_each(|v| value(out, *v));
+        }
+        Incoming::Heard { from, speech } => {
+            out.extend([1, u64::from(*from)]);
+            match speech {
+                Speech::Say { performative, content, args } => {
+                    out.extend([*performative as u64, u64::from(content.0)]);
+                    slots(out, args);
+                }
+                Speech::Ask { question, content, args, all } => {
+                    out.extend([10, *question, u64::from(content.0), u64::from(*all)]);
+                    slots(out, args);
+                }
+                Speech::Answer { question, answers } => {
+                    out.extend([11, *question]);
+                    answers.iter().for_each(|a| slots(out, a));
+                }
+            }
+        }
+    }
+}
+
+/// A number for what waits first.
+pub(crate) fn letter(i: &Incoming) -> u64 {
+    let mut out = Vec::new();
+    incoming(&mut out, i);
+    out.into_iter().fold(0, mix)
+}

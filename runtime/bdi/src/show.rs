@@ -1,0 +1,537 @@
+//! Entries of the log as text: what was done, as it is written in the language, with values for variables.
+
+use std::fmt::Display;
+
+use hrdsl_ir::{
+    ArgPattern, EventPattern, Expr, Nanos, Program, Type, Unit, Value,
+    bdi::{
+        Agent, Annotation, Assertion, BeliefId, ContentId, Context, Control, GoalId, Internal, Literal,
+        Performative, StepKind, Term, TriggerOn,
+    },
+    expr::{BinaryOp, Function, UnaryOp},
+    list::ListFunction,
+    value::seconds,
+};
+
+use crate::{
+    Cause, Failure, LogEntry, Logged, Outcome, Verdict,
+    belief::Annotations,
+    code::Op,
+    cycle::Machine,
+    event::Args,
+    mind::Mind,
+    unify::{Slot, eval, known},
+};
+
+/// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
+pub(crate) fn call<T: Display>(name: &str, args: impl IntoIterator<Item = T>) -> String {
+    let args: Vec<String> = args.into_iter().map(|a| a.to_string()).collect();
+    if args.is_empty() { name.to_owned() } else { format!("{name}({})", args.join(", ")) }
+}
+
+/// A time as it is written: `12.5 s`
+#[must_use]
+pub fn time(time: Nanos) -> String {
+    format!("{} s", seconds(time))
+}
+
+fn slot(slot: &Slot) -> String {
+    slot.map_or_else(|| "_".to_owned(), |v| v.to_string())
+}
+
+fn performative(p: Performative) -> &'static str {
+    match p {
+        Performative::Tell => "tell",
+        Performative::Untell => "untell",
+        Performative::Achieve => "achieve",
+        Performative::Unachieve => "unachieve",
+        Performative::AskOne => "askOne",
+        Performative::AskAll => "askAll",
+    }
+}
+
+/// Names of one agent's program, and the values of one plan's variables.
+struct Show<'a> {
+    program: &'a Program,
+    agent: &'a Agent,
+    names: &'a [String],
+    slots: &'a [Slot],
+}
+
+impl Machine<'_> {
+    /// An entry of this agent's log, without time and agent.
+    pub fn describe(&self, entry: &LogEntry) -> String {
+        let Some(agent) = self.mind.agent else { return String::new() };
+        let names = Names { mind: &self.mind, program: self.mind.program, agent };
+        let what = names.entry(entry);
+        let alone = matches!(&entry.what, Logged::Selected { fresh: true, .. });
+        if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
+    }
+}
+
+struct Names<'a, 'p> {
+    mind: &'a Mind<'p>,
+    program: &'p Program,
+    agent: &'p Agent,
+}
+
+impl Names<'_, '_> {
+    fn entry(&self, entry: &LogEntry) -> String {
+        match &entry.what {
+            Logged::Selected { on, args, plan, vars, fresh } => {
+                let begun = if *fresh { format!(" as #{}", entry.intention) } else { String::new() };
+                format!("{} → {}{}{begun}", self.on(*on, args), self.plan(*plan), self.bound(*plan, vars))
+            }
+            Logged::Tried { on, args, plan, verdict } => {
+                format!("{}: {}", self.on(*on, args), self.verdict(*plan, *verdict))
+            }
+            Logged::Unhandled { on, args } => format!("{}: no plan is applicable", self.on(*on, args)),
+            Logged::Fault { plan, fault, .. } => format!("{} not tried: {fault}", self.plan(*plan)),
+            Logged::Step { plan, line, vars, outcome } => self.step(*plan, *line, vars, *outcome),
+            Logged::Failed(failure) => format!("failed {}", self.failure(failure)),
+            Logged::Abandoned(_) => "gone: no plan handles the failure".to_owned(),
+            Logged::Finished => "finished".to_owned(),
+            Logged::Dropped => "dropped".to_owned(),
+            Logged::Added { belief, args, annotations } => {
+                format!("+{}{}", call(self.belief(*belief), args), self.annotations(*belief, annotations))
+            }
+            Logged::Left { belief, args } => format!("-{}", call(self.belief(*belief), args)),
+            Logged::StillHeld { belief, args, from } => {
+                let from: Vec<String> = from.iter().map(ToString::to_string).collect();
+                let fact = call(self.belief(*belief), args);
+                format!("warning: -{fact} takes nothing away, it is held from {}", from.join(", "))
+            }
+            Logged::Refused { belief, args } => {
+                format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
+            }
+            Logged::Perceived { event, args } => {
+                let name = self.program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
+                format!("perceives {}", call(name, args))
+            }
+            Logged::Heard { from, performative: p, content, args } => {
+                let what = call(self.content(*content), args.iter().map(slot));
+                format!("hears {} {what} from {}", performative(*p), self.peer(*from))
+            }
+            Logged::Asked { from, content, args, all } => {
+                let what = call(self.content(*content), args.iter().map(slot));
+                let how = if *all { "all of " } else { "" };
+                format!("is asked {how}{what} by {}", self.peer(*from))
+            }
+            Logged::Answered { from, answers } => {
+                let tuple = |a: &Args| format!("({})", a.iter().map(slot).collect::<Vec<_>>().join(", "));
+                let all: Vec<String> = answers.iter().map(tuple).collect();
+                let all = if all.is_empty() { "nothing".to_owned() } else { all.join(" ") };
+                format!("is answered {all} by {}", self.peer(*from))
+            }
+            Logged::Printed(text) => format!("prints {text}"),
+            Logged::Livelock => "livelock: the state repeats".to_owned(),
+            Logged::Endless => "endless: too many cycles at one instant".to_owned(),
+        }
+    }
+
+    fn plan(&self, index: u16) -> &str {
+        self.agent.plans.get(usize::from(index)).map_or("?", |p| &p.label)
+    }
+
+    fn belief(&self, id: BeliefId) -> &str {
+        self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
+    }
+
+    fn goal(&self, id: GoalId) -> &str {
+        self.agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name)
+    }
+
+    fn content(&self, id: ContentId) -> &str {
+        self.program.contents.get(usize::from(id.0)).map_or("?", |c| &c.name)
+    }
+
+    fn peer(&self, place: u16) -> &'static str {
+        self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
+    }
+
+    fn on(&self, on: TriggerOn, args: &Args) -> String {
+        let (sign, name) = match on {
+            TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
+            TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
+            TriggerOn::GoalAdded(g) => ("+!", self.goal(g)),
+            TriggerOn::GoalFailed(g) => ("-!", self.goal(g)),
+            TriggerOn::TestAdded(b) => ("+?", self.belief(b)),
+            TriggerOn::TestFailed(b) => ("-?", self.belief(b)),
+            TriggerOn::Perceived(e) => {
+                ("on ", self.program.events.get(usize::from(e.0)).map_or("?", |e| e.name.as_str()))
+            }
+        };
+        format!("{sign}{}", call(name, args.iter().map(slot)))
+    }
+
+    /// ` (N = 0, M = 2)`: the variables that have a value.
+    fn bound(&self, plan: u16, vars: &[Slot]) -> String {
+        let Some(plan) = self.agent.plans.get(usize::from(plan)) else { return String::new() };
+        let bound = plan.vars.iter().zip(vars).filter_map(|(name, v)| Some(format!("{name} = {}", (*v)?)));
+        let bound: Vec<String> = bound.collect();
+        if bound.is_empty() { String::new() } else { format!(" ({})", bound.join(", ")) }
+    }
+
+    fn annotations(&self, belief: BeliefId, all: &Annotations) -> String {
+        let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
+        let one = |(what, value): &(Annotation, Value)| match what {
+            Annotation::Source => format!("source({value})"),
+            Annotation::Declared(at) => {
+                format!("{}({value})", declared.get(usize::from(*at)).map_or("?", |p| &p.name))
+            }
+        };
+        let all: Vec<String> = all.iter().map(one).collect();
+        format!("[{}]", all.join(", "))
+    }
+
+    fn verdict(&self, plan: u16, verdict: Verdict) -> String {
+        let label = self.plan(plan);
+        match verdict {
+            Verdict::Unlike => format!("{label} is for other arguments"),
+            Verdict::Faulty(fault) => format!("{label} cannot be tried, {fault}"),
+            Verdict::Applicable => format!("{label} is applicable"),
+            Verdict::False { part } => {
+                let plan = &self.agent.plans[usize::from(plan)];
+                let context = match &plan.context {
+                    Context::And(all) => all.get(part).unwrap_or(&plan.context),
+                    other => other,
+                };
+                let show =
+                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &[] };
+                format!("{label} is not applicable, `{}` has no answer", show.context(context))
+            }
+        }
+    }
+
+    fn failure(&self, failure: &Failure) -> String {
+        let goal = failure.goal.as_ref();
+        let goal = goal.map(|(g, args)| format!("!{} ", call(self.goal(*g), args.iter().map(slot))));
+        let plan = failure.plan.map(|p| format!("in {}", self.plan(p)));
+        let place = goal.unwrap_or_default() + &plan.unwrap_or_default();
+        let belief = match failure.cause {
+            Cause::NoAnswer(belief) => format!(" {}", self.belief(belief)),
+            _ => String::new(),
+        };
+        format!("{}: {}{belief}", place.trim_end(), failure.cause)
+    }
+
+    fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: Outcome) -> String {
+        let code = self.mind.library.code(plan);
+        let names = &self.agent.plans[usize::from(plan)].vars;
+        let show = Show { program: self.program, agent: self.agent, names, slots: vars };
+        match (code.get(usize::from(line)).map(|l| &l.op), outcome) {
+            (Some(Op::Plain(step)), _) => show.step(step),
+            (Some(Op::Branch { .. }), Outcome::Holds(holds)) => format!("if {holds}"),
+            (Some(Op::While { .. }), Outcome::Holds(holds)) => format!("while {holds}"),
+            (_, Outcome::Answers(1)) => "for: 1 answer".to_owned(),
+            (_, Outcome::Answers(n)) => format!("for: {n} answers"),
+            (_, Outcome::Branches(n)) => format!("fork: {n} branches"),
+            _ => "?".to_owned(),
+        }
+    }
+}
+
+/// A formula as it is written in the language.
+#[must_use]
+pub fn context(program: &Program, agent: &Agent, names: &[String], of: &Context) -> String {
+    Show { program, agent, names, slots: &[] }.context(of)
+}
+
+/// A step as it is written in the language; of a block its head.
+#[must_use]
+pub fn step(program: &Program, agent: &Agent, names: &[String], of: &StepKind) -> String {
+    Show { program, agent, names, slots: &[] }.step(of)
+}
+
+impl Show<'_> {
+    fn belief(&self, id: BeliefId) -> &str {
+        self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
+    }
+
+    fn goal(&self, id: GoalId, args: impl IntoIterator<Item = String>) -> String {
+        call(self.agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name), args)
+    }
+
+    fn event(&self, id: hrdsl_ir::EventId, args: impl IntoIterator<Item = String>) -> String {
+        call(self.program.events.get(usize::from(id.0)).map_or("?", |e| &e.name), args)
+    }
+
+    fn content(&self, id: ContentId, args: &[Term]) -> String {
+        let name = self.program.contents.get(usize::from(id.0)).map_or("?", |c| c.name.as_str());
+        call(name, args.iter().map(|t| self.term(t)))
+    }
+
+    fn step(&self, step: &StepKind) -> String {
+        let exprs = |all: &[Expr]| all.iter().map(|e| self.expr(e)).collect::<Vec<_>>();
+        let terms = |all: &[Term]| all.iter().map(|t| self.term(t)).collect::<Vec<_>>();
+        let time = |e: &Expr| self.seconds(e);
+        let within = |e: &Option<Expr>| e.as_ref().map_or(String::new(), |e| format!(" within {}", time(e)));
+        let comma = |e: &Option<Expr>| e.as_ref().map_or(String::new(), |e| format!(", {}", time(e)));
+        match step {
+            StepKind::Do { event, args } => self.event(*event, exprs(args)),
+            StepKind::Achieve { goal, args, within: d } => {
+                format!("!{}{}", self.goal(*goal, exprs(args)), within(d))
+            }
+            StepKind::Spawn { goal, args } => format!("!!{}", self.goal(*goal, exprs(args))),
+            StepKind::Query(literal) => format!("?{}", self.literal(literal)),
+            StepKind::Test(condition @ (Context::Unify(..) | Context::Internal(_))) => {
+                self.context(condition)
+            }
+            StepKind::Test(condition) => format!("?({})", self.context(condition)),
+            StepKind::Add(a) => format!("+{}", self.assertion(a)),
+            StepKind::Remove(literal) => format!("-{}", self.literal(literal)),
+            StepKind::Replace(a) => format!("-+{}", self.assertion(a)),
+            StepKind::Abolish(literal) => format!(".abolish({})", self.literal(literal)),
+            StepKind::Await { events, within: d } => {
+                let events: Vec<String> = events.iter().map(|e| self.pattern(e)).collect();
+                format!("await {}{}", events.join(" | "), within(d))
+            }
+            StepKind::Wait { seconds } => format!("wait {}", time(seconds)),
+            StepKind::If { condition, .. } => format!("if {}", self.context(condition)),
+            StepKind::While { condition, .. } => format!("while {}", self.context(condition)),
+            StepKind::For { condition, .. } => format!("for {}", self.context(condition)),
+            StepKind::Fork { .. } => "fork".to_owned(),
+            StepKind::Send { to: Some(to), performative: p, content, args } => {
+                format!(".send({}, {}, {})", self.expr(to), performative(*p), self.content(*content, args))
+            }
+            StepKind::Send { to: None, performative: p, content, args } => {
+                format!(".broadcast({}, {})", performative(*p), self.content(*content, args))
+            }
+            StepKind::Ask { to, content, args, within } => {
+                format!(".ask({}, {}{})", self.expr(to), self.content(*content, args), comma(within))
+            }
+            StepKind::AskAll { to, template, content, args, out, within } => {
+                let (to, template) = (self.expr(to), self.expr(template));
+                let content = self.content(*content, args);
+                format!(".ask_all({to}, {template}, {content}, {}{})", self.term(out), comma(within))
+            }
+            StepKind::Print { args } => call(".print", exprs(args)),
+            StepKind::Control { what, goal } => {
+                let name = control(*what, goal.is_some());
+                call(name, goal.iter().map(|(g, args)| self.goal(*g, terms(args))))
+            }
+            StepKind::Fail => ".fail".to_owned(),
+        }
+    }
+
+    fn annotated(&self, belief: BeliefId, of: Vec<(Annotation, String)>) -> String {
+        if of.is_empty() {
+            return String::new();
+        }
+        let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
+        let one = |(what, text): (Annotation, String)| match what {
+            Annotation::Source => format!("source({text})"),
+            Annotation::Declared(at) => {
+                format!("{}({text})", declared.get(usize::from(at)).map_or("?", |p| &p.name))
+            }
+        };
+        let all: Vec<String> = of.into_iter().map(one).collect();
+        format!("[{}]", all.join(", "))
+    }
+
+    fn literal(&self, l: &Literal) -> String {
+        let fact = call(self.belief(l.belief), l.args.iter().map(|t| self.term(t)));
+        let annotations = l.annotations.iter().map(|(what, t)| (*what, self.term(t))).collect();
+        fact + &self.annotated(l.belief, annotations)
+    }
+
+    fn assertion(&self, a: &Assertion) -> String {
+        let fact = call(self.belief(a.belief), a.args.iter().map(|e| self.expr(e)));
+        let annotations = a.annotations.iter().map(|(what, e)| (*what, self.expr(e))).collect();
+        fact + &self.annotated(a.belief, annotations)
+    }
+
+    fn pattern(&self, pattern: &EventPattern) -> String {
+        let arg = |a: &ArgPattern| match a {
+            ArgPattern::Any => "_".to_owned(),
+            ArgPattern::Is(v) => v.to_string(),
+        };
+        self.event(pattern.event, pattern.args.iter().map(arg).collect::<Vec<_>>())
+    }
+
+    fn seconds(&self, e: &Expr) -> String {
+        match eval(e, self.slots).ok().and_then(Value::as_f64) {
+            Some(s) => format!("{s} s"),
+            None => self.expr(e),
+        }
+    }
+
+    fn name(&self, var: u16) -> String {
+        self.names.get(usize::from(var)).cloned().unwrap_or_else(|| format!("V{var}"))
+    }
+
+    fn term(&self, term: &Term) -> String {
+        let known = match term {
+            Term::Any => None,
+            Term::Var(v) => self.slots.get(usize::from(*v)).copied().flatten(),
+            Term::Expr(e) => eval(e, self.slots).ok(),
+            Term::List(..) if self.slots.is_empty() => None,
+            Term::List(..) => known(term, self.slots),
+        };
+        match (known, term) {
+            (Some(v), _) => v.to_string(),
+            (None, Term::Any) => "_".to_owned(),
+            (None, Term::Var(v)) => self.name(*v),
+            (None, Term::Expr(e)) => self.expr(e),
+            (None, Term::List(items, rest)) => {
+                let items: Vec<String> = items.iter().map(|t| self.term(t)).collect();
+                let rest = rest.as_ref().map_or(String::new(), |r| format!(" | {}", self.term(r)));
+                format!("[{}{rest}]", items.join(", "))
+            }
+        }
+    }
+
+    fn expr(&self, e: &Expr) -> String {
+        match (eval(e, self.slots), e) {
+            (Ok(v), _) => v.to_string(),
+            (_, Expr::Const(v)) => v.to_string(),
+            (_, Expr::Var(v)) => self.name(*v),
+            (_, Expr::Unary(op, a)) => match op {
+                UnaryOp::Not => format!("not {}", self.operand(a)),
+                UnaryOp::Neg => format!("-{}", self.operand(a)),
+            },
+            (_, Expr::Binary(op, a, b)) => {
+                format!("{} {} {}", self.operand(a), operator(*op), self.operand(b))
+            }
+            (_, Expr::If(c, a, b)) => {
+                format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b))
+            }
+            (_, Expr::Call(f, args)) => call(function(*f), args.iter().map(|a| self.expr(a))),
+            (_, Expr::List(items, rest)) => {
+                let items: Vec<String> = items.iter().map(|i| self.expr(i)).collect();
+                let rest = rest.as_ref().map_or(String::new(), |r| format!(" | {}", self.expr(r)));
+                format!("[{}{rest}]", items.join(", "))
+            }
+        }
+    }
+
+    /// In parentheses, if it is an operation that has no value yet.
+    fn operand(&self, e: &Expr) -> String {
+        let text = self.expr(e);
+        let open = eval(e, self.slots).is_err() && matches!(e, Expr::Binary(..) | Expr::If(..));
+        if open { format!("({text})") } else { text }
+    }
+
+    fn context(&self, context: &Context) -> String {
+        let part = |c: &Context| match c {
+            Context::And(_) | Context::Or(_) => format!("({})", self.context(c)),
+            _ => self.context(c),
+        };
+        let joined = |all: &[Context], by: &str| all.iter().map(part).collect::<Vec<_>>().join(by);
+        match context {
+            Context::True => "true".to_owned(),
+            Context::Belief(literal) => self.literal(literal),
+            Context::Not(inner) => format!("not {}", part(inner)),
+            Context::And(all) => joined(all, " && "),
+            Context::Or(all) => joined(all, " || "),
+            // A comparison is shown as it is compared, not as its outcome.
+            Context::Test(Expr::Binary(op, a, b)) => {
+                format!("{} {} {}", self.operand(a), operator(*op), self.operand(b))
+            }
+            Context::Test(e) => self.expr(e),
+            Context::Unify(term, e) => format!("{} = {}", self.term(term), self.expr(e)),
+            Context::Internal(internal) => self.internal(internal),
+        }
+    }
+
+    fn internal(&self, internal: &Internal) -> String {
+        let args = |all: &[Expr], out: Option<&Term>| -> Vec<String> {
+            let all = all.iter().map(|e| self.expr(e));
+            all.chain(out.map(|t| self.term(t))).collect()
+        };
+        let goal = |g: &GoalId, a: &[Term]| [self.goal(*g, a.iter().map(|t| self.term(t)).collect::<Vec<_>>())];
+        match internal {
+            Internal::FindAll { template, formula, set, out } => {
+                let name = if *set { ".setof" } else { ".findall" };
+                call(name, [self.expr(template), self.context(formula), self.term(out)])
+            }
+            Internal::Count { formula, out } => call(".count", [self.context(formula), self.term(out)]),
+            Internal::Member { element, list } => call(".member", [self.term(element), self.expr(list)]),
+            Internal::Apply { function, args: a, out } => call(list_function(*function), args(a, Some(out))),
+            Internal::Holds { function, args: a } => call(list_function(*function), args(a, None)),
+            Internal::Intend { goal: g, args } => call(".intend", goal(g, args)),
+            Internal::Desire { goal: g, args } => call(".desire", goal(g, args)),
+            Internal::Suspended { goal: g, args } => call(".suspended", goal(g, args)),
+            Internal::Random { from, out } => {
+                let from: Vec<String> = from.iter().map(|e| self.expr(e)).collect();
+                call(".random", from.into_iter().chain([self.term(out)]))
+            }
+            Internal::Shuffle { list, out } => call(".shuffle", [self.expr(list), self.term(out)]),
+            Internal::Time { out } => call(".time", [self.term(out)]),
+            Internal::MyName { out } => call(".my_name", [self.term(out)]),
+            Internal::AllNames { out } => call(".all_names", [self.term(out)]),
+        }
+    }
+}
+
+fn control(what: Control, one: bool) -> &'static str {
+    match (what, one) {
+        (Control::DropIntention, true) => ".drop_intention",
+        (Control::DropIntention, false) => ".drop_all_intentions",
+        (Control::DropDesire, true) => ".drop_desire",
+        (Control::DropDesire, false) => ".drop_all_desires",
+        (Control::DropEvent, true) => ".drop_event",
+        (Control::DropEvent, false) => ".drop_all_events",
+        (Control::SucceedGoal, _) => ".succeed_goal",
+        (Control::FailGoal, _) => ".fail_goal",
+        (Control::Suspend, _) => ".suspend",
+        (Control::Resume, _) => ".resume",
+    }
+}
+
+fn function(f: Function) -> &'static str {
+    match f {
+        Function::Abs => "abs",
+        Function::Min => "min",
+        Function::Max => "max",
+        Function::Norm => "norm",
+    }
+}
+
+fn operator(op: BinaryOp) -> &'static str {
+    match op {
+        BinaryOp::Add => "+",
+        BinaryOp::Sub => "-",
+        BinaryOp::Mul => "*",
+        BinaryOp::Div => "/",
+        BinaryOp::Rem => "%",
+        BinaryOp::Eq => "==",
+        BinaryOp::Ne => "!=",
+        BinaryOp::Lt => "<",
+        BinaryOp::Le => "<=",
+        BinaryOp::Gt => ">",
+        BinaryOp::Ge => ">=",
+        BinaryOp::And => "&&",
+        BinaryOp::Or => "||",
+    }
+}
+
+fn list_function(f: ListFunction) -> &'static str {
+    match f {
+        ListFunction::Length => ".length",
+        ListFunction::Concat => ".concat",
+        ListFunction::Nth => ".nth",
+        ListFunction::Reverse => ".reverse",
+        ListFunction::Sort => ".sort",
+        ListFunction::Min => ".min",
+        ListFunction::Max => ".max",
+        ListFunction::Delete => ".delete",
+        ListFunction::Union => ".union",
+        ListFunction::Intersection => ".intersection",
+        ListFunction::Difference => ".difference",
+        ListFunction::ToText => ".string",
+        ListFunction::Empty => ".empty",
+        ListFunction::Prefix => ".prefix",
+        ListFunction::Suffix => ".suffix",
+        ListFunction::Sublist => ".sublist",
+    }
+}
+
+/// A value of a parameter with its unit, as it is written.
+#[must_use]
+pub fn value(ty: Type, value: Value) -> String {
+    match (ty, value) {
+        (Type::Float(unit), Value::Float(x)) if unit != Unit::None => format!("{x} {}", unit.symbol()),
+        _ => value.to_string(),
+    }
+}

@@ -1,0 +1,337 @@
+//! All agents of a run: they reason in rounds, and hear each other between two rounds.
+//!
+//! In a round each agent settles by itself; so the agents of a round can be run one after the other or at the same time,
+//! with the same outcome.
+
+use std::sync::Arc;
+
+use hrdsl_ir::{
+    ActorId, EventId, Nanos, Program, Value,
+    bdi::{AgentId, Fact},
+};
+use rayon::prelude::*;
+
+use crate::{
+    Action, ActionToken, CYCLE_LIMIT, Detail, LogEntry, Logged, Malformed, Measured, Status,
+    cycle::Machine,
+    mind::Peers,
+    repeat::{Repeats, Repetition},
+};
+
+/// The multi-agent system of a run.
+///
+/// After each batch of [`perceive`](Self::perceive) and [`stimulus_done`](Self::stimulus_done) the harness calls
+/// [`settle`](Self::settle) or [`run`](Self::run) at the same time, and at [`next_wake`](Self::next_wake) at the latest.
+/// Times never go back.
+#[derive(Debug)]
+pub struct Society<'p> {
+    machines: Vec<Machine<'p>>,
+    actors: Vec<Option<ActorId>>,
+    now: Nanos,
+    /// Counted over the run.
+    round: u64,
+    /// Rounds at the instant `now`.
+    rounds: u64,
+    limit: u64,
+    repetition: Repetition,
+    halted: Option<Status>,
+    parallel: bool,
+    /// Agents with work, in their order.
+    active: Vec<u16>,
+}
+
+impl<'p> Society<'p> {
+    /// The agents at time 0, each with its initial beliefs and the facts chosen for it. `seed` is that of `.random`.
+    #[must_use]
+    pub fn new(program: &'p Program, agents: &[(AgentId, Vec<Fact>)], seed: u64) -> Self {
+        Self::with_detail(program, agents, seed, Detail::default())
+    }
+
+    /// The same, with a log of this detail from the beginning on.
+    #[must_use]
+    pub fn with_detail(
+        program: &'p Program,
+        agents: &[(AgentId, Vec<Fact>)],
+        seed: u64,
+        detail: Detail,
+    ) -> Self {
+        let peers = Arc::new(Peers::new(program, agents.iter().map(|(id, _)| *id)));
+        let machine = |(place, (id, chosen)): (u16, &(AgentId, Vec<Fact>))| {
+            Machine::new(program, *id, chosen, place, &peers, seed, detail)
+        };
+        let machines: Vec<Machine> = (0u16..).zip(agents).map(machine).collect();
+        let actor = |(id, _): &(AgentId, Vec<Fact>)| program.agents.get(usize::from(id.0)).map(|a| a.actor);
+        Self {
+            machines,
+            actors: agents.iter().map(actor).collect(),
+            now: 0,
+            round: 0,
+            rounds: 0,
+            limit: CYCLE_LIMIT,
+            repetition: Repetition::default(),
+            halted: None,
+            parallel: false,
+            active: Vec::new(),
+        }
+    }
+
+    /// The actors that the agents play, in their order.
+    pub fn actors(&self) -> impl Iterator<Item = ActorId> {
+        self.actors.iter().copied().flatten()
+    }
+
+    /// The agents, in their order.
+    pub fn agents(&self) -> impl Iterator<Item = AgentId> {
+        self.machines.iter().map(|m| m.mind.me.id)
+    }
+
+    /// Counts what the run takes of each program: see [`measured`](Self::measured).
+    pub fn measure(&mut self) {
+        for machine in &mut self.machines {
+            machine.measured = machine.mind.agent.map(|a| Box::new(Measured::new(a)));
+        }
+    }
+
+    /// Runs the agents of a round on the threads of the current rayon pool. The outcome is the same.
+    pub fn set_parallel(&mut self, yes: bool) {
+        self.parallel = yes;
+    }
+
+    /// How many cycles of an agent, or rounds, at one instant count as endless ([`CYCLE_LIMIT`]).
+    pub fn set_cycle_limit(&mut self, cycles: u64) {
+        self.limit = cycles;
+        self.machines.iter_mut().for_each(|m| m.cycle_limit = cycles);
+    }
+
+    /// An event reaches an agent, which will take it in when it is next run.
+    pub fn perceive(&mut self, agent: usize, event: EventId, args: &[Value]) {
+        self.repetition.forget();
+        if let Some(machine) = self.machines.get_mut(agent) {
+            machine.perceive(event, args);
+        }
+    }
+
+    /// The agent's action is finished, and its intention goes on when it is next run. A token that is not of an action in
+    /// progress has no effect.
+    pub fn stimulus_done(&mut self, agent: usize, token: ActionToken, now: Nanos) {
+        self.repetition.forget();
+        self.pass(now);
+        if let Some(machine) = self.machines.get_mut(agent) {
+            machine.action_done(token);
+        }
+    }
+
+    /// Runs rounds until everybody waits or is done, then lets what is due by now expire, and so on; an event that comes
+    /// together with the end of an `await` wins. Appends what the agents do, in their order, with the agent's place.
+    pub fn run(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+        self.rounds_until_quiet(now, true, out);
+    }
+
+    /// As [`run`](Self::run), but nothing that is due by now expires yet: for a harness in which others may still make
+    /// events at this instant.
+    pub fn settle(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+        self.rounds_until_quiet(now, false, out);
+    }
+
+    fn pass(&mut self, now: Nanos) {
+        if now > self.now {
+            self.now = now;
+            self.rounds = 0;
+            self.repetition.forget();
+            self.machines.iter_mut().for_each(|m| m.advance(now));
+        }
+    }
+
+    fn rounds_until_quiet(&mut self, now: Nanos, expire: bool, out: &mut Vec<(usize, Action)>) {
+        self.pass(now);
+        loop {
+            self.active.clear();
+            let working = (0u16..).zip(&self.machines).filter(|(_, m)| m.has_work());
+            self.active.extend(working.map(|(place, _)| place));
+            self.reason();
+            if !(expire && self.halted.is_none() && self.expire()) {
+                break;
+            }
+        }
+        for (place, machine) in self.machines.iter_mut().enumerate() {
+            out.extend(machine.actions.drain(..).map(|action| (place, action)));
+        }
+    }
+
+    /// Lets what is due expire; `false` if nothing was.
+    fn expire(&mut self) -> bool {
+        let now = self.now;
+        let mut any = false;
+        for machine in &mut self.machines {
+            if machine.timers.first().is_some_and(|t| t.due <= now) {
+                machine.log.round = self.round;
+                any = machine.expire() || any;
+            }
+        }
+        any
+    }
+
+    /// Rounds of the active agents and of those they speak to.
+    fn reason(&mut self) {
+        while !self.active.is_empty() && self.halted.is_none() {
+            self.round += 1;
+            self.rounds += 1;
+            if self.rounds > self.limit {
+                return self.halt(Status::Endless);
+            }
+            let mut repetition = std::mem::take(&mut self.repetition);
+            let repeats = repetition.seen(self.rounds, self);
+            self.repetition = repetition;
+            if repeats {
+                return self.halt(Status::Livelock);
+            }
+            self.settle_active();
+            self.deliver();
+        }
+    }
+
+    fn settle_active(&mut self) {
+        let round = self.round;
+        let settle = |machine: &mut Machine| {
+            machine.log.round = round;
+            machine.settle();
+        };
+        if self.parallel && self.active.len() > 1 {
+            let mut active = vec![false; self.machines.len()];
+            self.active.iter().for_each(|place| active[usize::from(*place)] = true);
+            let machines = self.machines.par_iter_mut().zip(active);
+            machines.filter(|(_, active)| *active).for_each(|(machine, _)| settle(machine));
+        } else {
+            for place in &self.active {
+                settle(&mut self.machines[usize::from(*place)]);
+            }
+        }
+        let halted = self.active.iter().find_map(|place| self.machines[usize::from(*place)].halted);
+        if let Some(status) = halted.filter(|s| *s != Status::Malformed) {
+            self.halted = Some(status);
+        }
+    }
+
+    /// Messages go to their receivers, in the order of senders and as they were sent; who hears is active next.
+    fn deliver(&mut self) {
+        let senders = std::mem::take(&mut self.active);
+        for sender in &senders {
+            let mut mail = std::mem::take(&mut self.machines[usize::from(*sender)].outbox);
+            for letter in mail.drain(..) {
+                if let Some(receiver) = self.machines.get_mut(usize::from(letter.to)) {
+                    receiver.receive(*sender, letter.speech);
+                    // Who has settled has read all letters before.
+                    if receiver.inbox.len() == 1 {
+                        self.active.push(letter.to);
+                    }
+                }
+            }
+            self.machines[usize::from(*sender)].outbox = mail;
+        }
+        self.active.sort_unstable();
+    }
+
+    fn halt(&mut self, status: Status) {
+        self.halted = Some(status);
+        let what = if status == Status::Livelock { Logged::Livelock } else { Logged::Endless };
+        for place in &self.active {
+            let machine = &mut self.machines[usize::from(*place)];
+            machine.log.round = self.round;
+            machine.enter(0, what.clone());
+        }
+    }
+
+    /// The earliest time at which a `wait`, an `await` or a deadline is over.
+    #[must_use]
+    pub fn next_wake(&self) -> Option<Nanos> {
+        if self.halted.is_some() {
+            return None;
+        }
+        self.machines.iter().filter_map(Machine::next_wake).min()
+    }
+
+    /// How the agents stand together: the first of malformed, livelock, endless, ready, waiting, idle that one of them is.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        let all: Vec<Status> = self.machines.iter().map(Machine::status).chain(self.halted).collect();
+        let order = [
+            Status::Malformed,
+            Status::Livelock,
+            Status::Endless,
+            Status::Ready,
+            Status::Waiting,
+            Status::Idle,
+        ];
+        order.into_iter().find(|s| all.contains(s)).unwrap_or(Status::Idle)
+    }
+
+    /// The agents that did not come to rest, or cannot be run, by name.
+    #[must_use]
+    pub fn at_fault(&self) -> Vec<&'p str> {
+        let name = |m: &Machine<'p>| m.mind.agent.map_or("?", |a| a.name.as_str());
+        let own = self.machines.iter().filter(|m| m.halted.is_some());
+        let own: Vec<&str> = own.map(name).collect();
+        if !own.is_empty() || self.halted.is_none() {
+            return own;
+        }
+        self.active.iter().map(|place| name(&self.machines[usize::from(*place)])).collect()
+    }
+
+    /// Why a program cannot be run.
+    #[must_use]
+    pub fn fault(&self) -> Option<&Malformed> {
+        self.machines.iter().find_map(|m| m.fault.as_ref())
+    }
+
+    /// What was counted, by agent; empty unless [`measure`](Self::measure) was called.
+    #[must_use]
+    pub fn measured(&self) -> Vec<&Measured> {
+        self.machines.iter().filter_map(|m| m.measured.as_deref()).collect()
+    }
+
+    /// The agents' logs as one: by round, then by agent, then as entered. With each entry the agent's place.
+    #[must_use]
+    pub fn log(&self) -> Vec<(usize, &LogEntry)> {
+        let entries = self.machines.iter().enumerate().flat_map(|(place, m)| {
+            m.log.entries.iter().map(move |entry| (place, entry))
+        });
+        let mut all: Vec<(usize, &LogEntry)> = entries.collect();
+        all.sort_by_key(|(place, entry)| (entry.round, *place));
+        all
+    }
+
+    /// Hands the logs over and begins new ones, for a run that must not grow.
+    pub fn clear_log(&mut self) {
+        self.machines.iter_mut().for_each(|m| m.log.entries.clear());
+    }
+
+    /// An entry of an agent's log in a line of text, with names; without time and agent.
+    #[must_use]
+    pub fn describe(&self, agent: usize, entry: &LogEntry) -> String {
+        self.machines.get(agent).map_or_else(String::new, |m| m.describe(entry))
+    }
+
+    /// All that an agent believes now: by the order of declarations, then oldest first.
+    pub fn beliefs(&self, agent: usize) -> impl Iterator<Item = Fact> {
+        self.machines.get(agent).into_iter().flat_map(|m| m.mind.beliefs.facts())
+    }
+
+    /// How many plans the highest intention of any agent holds.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.machines.iter().map(|m| m.mind.pool.height()).max().unwrap_or(0)
+    }
+}
+
+impl Repeats for Society<'_> {
+    fn fingerprint(&self) -> u64 {
+        let each = self.machines.iter().map(Repeats::fingerprint);
+        let inboxes = self.machines.iter().map(|m| m.inbox.front().map_or(0, crate::repeat::letter));
+        each.chain(inboxes).fold(self.active.len() as u64, |h, n| h.rotate_left(7) ^ n)
+    }
+
+    fn state(&self) -> Vec<u64> {
+        let active = self.active.iter().map(|p| u64::from(*p));
+        active.chain(self.machines.iter().flat_map(Repeats::state)).collect()
+    }
+}
