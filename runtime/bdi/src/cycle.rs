@@ -142,7 +142,7 @@ impl<'p> Machine<'p> {
             self.post(Event {
                 on: TriggerOn::GoalAdded(*goal),
                 args,
-                annotations: Annotations::new(),
+                annotations: None,
                 of: None,
                 origin: agent.origin,
                 by: None,
@@ -259,7 +259,7 @@ impl<'p> Machine<'p> {
         for belief in self.mind.library.percepts(event).to_vec() {
             self.sense(belief, args);
         }
-        self.announce(TriggerOn::Perceived(event), args, Annotations::new());
+        self.announce(TriggerOn::Perceived(event), args, None);
     }
 
     /// A belief that holds the arguments of the latest event.
@@ -326,7 +326,7 @@ impl<'p> Machine<'p> {
             (Some(plan), _) => {
                 let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
                 if event.of.is_none() {
-                    self.mind.pool.at(place).reply = event.reply;
+                    self.mind.pool.at(place).reply = event.reply.as_deref().copied();
                 }
                 self.begin(place, plan, event);
             }
@@ -334,9 +334,9 @@ impl<'p> Machine<'p> {
                 let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
                 self.fail_to_adopt(place, goal, event);
             }
-            (None, TriggerOn::TestAdded(belief)) => match (event.of, event.reply) {
+            (None, TriggerOn::TestAdded(belief)) => match (event.of, event.reply.as_deref()) {
                 (Some(place), _) => self.fail(place, Cause::NoAnswer(belief)),
-                (None, Some(reply)) => self.answer_nothing(reply),
+                (None, Some(reply)) => self.answer_nothing(*reply),
                 (None, None) => {}
             },
             (
@@ -431,10 +431,10 @@ impl<'p> Machine<'p> {
     }
 
     /// Posts an event that matters only if a plan is relevant to it.
-    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Annotations) {
+    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<Annotations>) {
         if !self.mind.library.relevant(on).is_empty() {
             let args: Args = args.iter().map(|v| Some(*v)).collect();
-            let origin = self.agent_origin();
+            let (origin, annotations) = (self.agent_origin(), annotations.map(Box::new));
             self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
         }
     }
@@ -446,13 +446,13 @@ impl<'p> Machine<'p> {
             return;
         }
         self.entry(0, || Logged::Added { belief, args: args.to_vec(), annotations: new.clone() });
-        self.announce(TriggerOn::BeliefAdded(belief), args, new);
+        self.announce(TriggerOn::BeliefAdded(belief), args, Some(new));
     }
 
     /// A belief has left the base.
     pub fn left(&mut self, belief: BeliefId, args: &[Value]) {
         self.entry(0, || Logged::Left { belief, args: args.to_vec() });
-        self.announce(TriggerOn::BeliefRemoved(belief), args, Annotations::new());
+        self.announce(TriggerOn::BeliefRemoved(belief), args, None);
     }
 
     pub fn next_serial(&mut self) -> u64 {

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use crate::belief::Annotations;
 
 /// The arguments of an event; `None` is an argument that a test goal leaves open.
-pub type Args = SmallVec<[Option<Value>; 4]>;
+pub type Args = SmallVec<[Option<Value>; 2]>;
 
 /// Ground arguments.
 pub(crate) type Ground = SmallVec<[Value; 4]>;
@@ -44,8 +44,8 @@ pub struct Action {
 pub(crate) struct Event {
     pub on: TriggerOn,
     pub args: Args,
-    /// Of a belief those that are new, or were; of a goal who asked for it, if that was another agent.
-    pub annotations: Annotations,
+    /// Of a belief that was added those that are new; of a goal who asked for it, if that was another agent.
+    pub annotations: Option<Box<Annotations>>,
     /// The intention that waits for the event's plan; `None`: the plan becomes an intention of its own.
     pub of: Option<u32>,
     /// What posted a goal: a step, or the agent.
@@ -53,7 +53,7 @@ pub(crate) struct Event {
     /// The plan and the site of the step that posted a goal.
     pub by: Option<(u16, u16)>,
     /// Who asked, and waits for the answer of this test goal.
-    pub reply: Option<Reply>,
+    pub reply: Option<Box<Reply>>,
 }
 
 /// To whom an answer goes.

@@ -7,7 +7,7 @@ use hrdsl_ir::{
 
 use crate::{
     Cause, Logged,
-    belief::{Annotations, from as told_by},
+    belief::from as told_by,
     code::Op,
     cycle::Machine,
     event::{Args, Event, Ground, Mail, Reply, Speech},
@@ -174,7 +174,7 @@ impl<'p> Machine<'p> {
             Performative::Achieve => {
                 let Some(goal) = self.goal(content) else { return };
                 let (on, origin) = (TriggerOn::GoalAdded(goal), self.agent_origin());
-                let annotations: Annotations = told_by(name);
+                let annotations = Some(Box::new(told_by(name)));
                 self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
             }
             Performative::Unachieve => {
@@ -198,9 +198,8 @@ impl<'p> Machine<'p> {
         let found = self.answers_to(belief, &args, all).unwrap_or_default();
         let on = TriggerOn::TestAdded(belief);
         if found.is_empty() && !all && !self.mind.library.relevant(on).is_empty() {
-            let (origin, annotations) = (self.agent_origin(), Annotations::new());
-            let reply = Some(reply);
-            self.post(Event { on, args, annotations, of: None, origin, by: None, reply });
+            let (origin, reply) = (self.agent_origin(), Some(Box::new(reply)));
+            self.post(Event { on, args, annotations: None, of: None, origin, by: None, reply });
         } else if let Some(question) = question {
             self.say(to, Speech::Answer { question, answers: found });
         } else {

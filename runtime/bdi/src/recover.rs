@@ -7,7 +7,6 @@ use hrdsl_ir::{
 
 use crate::{
     Cause, Failure, Logged,
-    belief::Annotations,
     code::Op,
     cycle::Machine,
     event::{Args, Event, Reply},
@@ -210,7 +209,7 @@ impl<'p> Machine<'p> {
             };
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = Args::from_slice(self.mind.pool.see(place).args(top));
-                let (annotations, origin) = (Annotations::new(), failure.origin);
+                let (annotations, origin) = (None, failure.origin);
                 let of = Some(place);
                 let event = Event { on, args, annotations, of, origin, by: None, reply: None };
                 self.select(&event, of).map(|plan| (plan, event))

@@ -17,11 +17,17 @@ use crate::{
 /// The first cycle at which a state is kept.
 const FIRST: u64 = 64;
 
+/// Words of states that may be compared for each cycle: large states that only look alike must not cost more than the
+/// run itself.
+const WORK: u64 = 16;
+
 /// A state that was kept, and until which cycle it is compared.
 #[derive(Debug, Default)]
 pub(crate) struct Repetition {
     kept: Option<(u64, Vec<u64>)>,
     until: u64,
+    /// Words of states that were compared since.
+    work: u64,
 }
 
 /// What has a state that can repeat.
@@ -43,13 +49,18 @@ impl Repetition {
         if let Some((fingerprint, state)) = &self.kept {
             if cycle > self.until {
                 self.kept = None;
-            } else if *fingerprint == of.fingerprint() && *state == of.state() {
-                return true;
+            } else if self.work <= cycle * WORK && *fingerprint == of.fingerprint() {
+                let now = of.state();
+                self.work += now.len() as u64;
+                if now == *state {
+                    return true;
+                }
             }
         }
         if cycle >= FIRST && cycle.is_power_of_two() {
             self.kept = Some((of.fingerprint(), of.state()));
             self.until = cycle + cycle / 16;
+            self.work = 0;
         }
         false
     }
@@ -69,12 +80,14 @@ fn hash(slots: &[Slot]) -> u64 {
 
 impl Repeats for Machine<'_> {
     fn fingerprint(&self) -> u64 {
-        let events = self.mind.events.front().map_or(0, |e| hash(&e.args));
-        let top = self.ready.front().map_or(0, |p| {
-            let i = self.mind.pool.see(*p);
+        let of = |place: u32| {
+            let i = self.mind.pool.see(place);
             let next = i.frames.last().map_or(0, |f| u64::from(f.next) << 16 | u64::from(f.plan));
             mix(mix(hash(i.vars()), i.frames.len() as u64), next)
-        });
+        };
+        let front = self.mind.events.front();
+        let events = front.map_or(0, |e| mix(hash(&e.args), e.of.map_or(0, of)));
+        let top = self.ready.front().map_or(0, |p| of(*p));
         let counts = [self.mind.events.len(), self.ready.len(), self.mind.pool.in_use(), self.inbox.len()];
         counts.iter().fold(mix(events, top), |h, n| mix(h, *n as u64))
     }
@@ -187,7 +200,7 @@ fn event(out: &mut Vec<u64>, e: &Event) {
         On::Perceived(e) => [6, e.0],
     }.map(u64::from));
     slots(out, &e.args);
-    annotations(out, &e.annotations);
+    e.annotations.iter().for_each(|a| annotations(out, a));
     out.push(e.of.map_or(0, |p| u64::from(p) + 1));
 }
 

@@ -63,7 +63,12 @@ impl<'p> Machine<'p> {
         if !plan.trigger.annotations.is_empty() {
             let own = own();
             let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
-            let held = if is_goal && event.annotations.is_empty() { &own } else { &event.annotations };
+            let none = Annotations::new();
+            let held = match &event.annotations {
+                Some(held) => held,
+                None if is_goal => &own,
+                None => &none,
+            };
             match self.annotated(plan, held) {
                 Err(fault) => return Verdict::Faulty(fault),
                 Ok(false) => return Verdict::Unlike,

@@ -26,12 +26,25 @@ pub(crate) enum Flow {
     Suspended,
 }
 
-fn values<C: FromIterator<T>, T>(
+fn values<C: Default + Extend<T>, T>(
     exprs: &[Expr],
     slots: &[Slot],
     of: impl Fn(Value) -> T,
 ) -> Result<C, Cause> {
-    exprs.iter().map(|e| eval(e, slots).map(&of).map_err(Cause::from)).collect()
+    let mut all = C::default();
+    for expr in exprs {
+        all.extend(Some(of(eval(expr, slots)?)));
+    }
+    Ok(all)
+}
+
+/// The same, for the arguments of a goal.
+fn given(exprs: &[Expr], slots: &[Slot]) -> Result<Args, Cause> {
+    let mut all = Args::new();
+    for expr in exprs {
+        all.push(Some(eval(expr, slots)?));
+    }
+    Ok(all)
 }
 
 /// Where a step is: its intention, its plan, its place in the body, and in the text.
@@ -286,7 +299,7 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Suspended)
             }
             StepKind::Achieve { goal, args, within } => {
-                let args = values(args, slots, Some)?;
+                let args = given(args, slots)?;
                 if let Some(within) = within {
                     self.set_deadline(place, within)?;
                 }
@@ -294,7 +307,7 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Suspended)
             }
             StepKind::Spawn { goal, args } => {
-                let args = values(args, slots, Some)?;
+                let args = given(args, slots)?;
                 self.post_goal(here, TriggerOn::GoalAdded(*goal), args, None);
                 Ok(Flow::Next)
             }
@@ -343,8 +356,7 @@ impl<'p> Machine<'p> {
 
     fn post_goal(&mut self, here: Here, on: TriggerOn, args: Args, of: Option<u32>) {
         let by = Some((here.plan, here.site));
-        let annotations = Annotations::new();
-        self.post(Event { on, args, annotations, of, origin: here.origin, by, reply: None });
+        self.post(Event { on, args, annotations: None, of, origin: here.origin, by, reply: None });
     }
 
     fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), Cause> {

@@ -18,19 +18,49 @@ pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
     match expr {
         Expr::Const(value) => Ok(*value),
         Expr::Var(i) => slots.get(usize::from(*i)).copied().flatten().ok_or(EvalError::Unbound(*i)),
-        Expr::Binary(op, a, b) if !matches!(op, BinaryOp::And | BinaryOp::Or) => {
-            let (a, b) = (eval(a, slots)?, eval(b, slots)?);
-            match (op, a, b) {
-                (BinaryOp::Add, Value::Int(a), Value::Int(b)) => {
-                    a.checked_add(b).map(Value::Int).ok_or(EvalError::Overflow)
-                }
-                (BinaryOp::Lt, Value::Int(a), Value::Int(b)) => Ok(Value::Bool(a < b)),
-                _ => binary(*op, a, b),
-            }
-        }
-        Expr::Binary(..) | Expr::Unary(..) | Expr::If(..) | Expr::Call(..) | Expr::List(..) => {
+        Expr::Binary(op, a, b) => operate(*op, a, b, slots),
+        Expr::Unary(..) | Expr::If(..) | Expr::Call(..) | Expr::List(..) => {
             expr.eval(&|i| slots.get(usize::from(i)).copied().flatten())
         }
+    }
+}
+
+/// The whole number that a constant or a variable is.
+#[inline]
+fn whole(expr: &Expr, slots: &[Slot]) -> Option<i64> {
+    match expr {
+        Expr::Const(Value::Int(n)) => Some(*n),
+        Expr::Var(i) => match slots.get(usize::from(*i)) {
+            Some(Some(Value::Int(n))) => Some(*n),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The commonest operations are done at once: this is where most of an agent's time goes.
+fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
+    if let (Some(a), Some(b)) = (whole(a, slots), whole(b, slots)) {
+        return match op {
+            BinaryOp::Add => a.checked_add(b).map(Value::Int).ok_or(EvalError::Overflow),
+            BinaryOp::Sub => a.checked_sub(b).map(Value::Int).ok_or(EvalError::Overflow),
+            BinaryOp::Lt => Ok(Value::Bool(a < b)),
+            BinaryOp::Le => Ok(Value::Bool(a <= b)),
+            BinaryOp::Gt => Ok(Value::Bool(a > b)),
+            BinaryOp::Ge => Ok(Value::Bool(a >= b)),
+            BinaryOp::Eq => Ok(Value::Bool(a == b)),
+            BinaryOp::Ne => Ok(Value::Bool(a != b)),
+            BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => {
+                binary(op, Value::Int(a), Value::Int(b))
+            }
+        };
+    }
+    match op {
+        BinaryOp::And | BinaryOp::Or => {
+            let left = eval(a, slots)?.as_bool().ok_or(EvalError::Type)?;
+            if left == (op == BinaryOp::Or) { Ok(Value::Bool(left)) } else { eval(b, slots) }
+        }
+        _ => binary(op, eval(a, slots)?, eval(b, slots)?),
     }
 }
 
