@@ -295,6 +295,9 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
             "texts are written between `\"` and `\"`"
         }
+        Kind::Dot if fault.has("INTERNAL") && after.is_some_and(Kind::is_word) => {
+            "an internal action is written `.print`: with a blank before its dot, and none after it"
+        }
         Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
         Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",
         Kind::DotDot if matches!(before, Some(Kind::Int | Kind::Quantity)) && !fault.has("IDENT") => {

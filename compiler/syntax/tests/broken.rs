@@ -178,6 +178,7 @@ broken! {
         "agent A plays p {\n plan +!a {\n if x { b }\n rule c when d\n goal e\n}"
         "agent A plays p { plan +!a { .print( } }"
         "agent A plays p { plan +!a { . print } }"
+        "agent A plays p { plan +!a { while.count(b, 1) { } } }"
         "agent A plays p { plan +!a { ask .print(1) } }"
         "agent A plays p { plan +!a { ask\n .print(1)\n !b } }"
         "agent A plays p { plan +!a { X = ; Y == 1 } }"
