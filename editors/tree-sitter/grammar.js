@@ -7,7 +7,7 @@
 const KEYWORDS = require("./keywords.json").map((row) => row.word);
 
 // From the loosest operator to the tightest.
-const PREC = { OR: 1, AND: 2, NOT: 3, COMPARE: 4, ADD: 5, MULTIPLY: 6, NEGATE: 7 };
+const PREC = { OR: 1, AND: 2, NOT: 3, COMPARE: 4, RANGE: 5, ADD: 6, MULTIPLY: 7, NEGATE: 8 };
 
 /** The external token of a keyword, shown as the word itself. */
 function keyword($, word) {
@@ -49,6 +49,8 @@ module.exports = grammar({
   conflicts: ($) => [
     // `bool[4]`, and `limits[4] .. 7`.
     [$.named_type, $._path],
+    // `var x: T = 1`, and a range, in which no `=` can be.
+    [$.named_type, $.expression],
   ],
 
   rules: {
@@ -127,16 +129,17 @@ module.exports = grammar({
     parameters: ($) => seq("(", listed($.parameter), ")"),
     parameter: ($) => seq(field("name", $.identifier), ":", field("type", $.type)),
 
-    type: ($) => choice($.named_type, $.template_type, $.range_type, $.array_type),
+    type: ($) => choice($.named_type, $.template_type, $.range_type, $.array_type, $.list_type),
     named_type: ($) => field("name", $.identifier),
     // What a template can be given besides values.
-    template_type: ($) => choice(keyword($, "event"), keyword($, "actor"), keyword($, "cover")),
-    range_type: ($) => seq(field("low", $._range_end), "..", field("high", $._range_end)),
+    template_type: ($) => choice(...["event", "actor", "cover", "agent"].map((word) => keyword($, word))),
+    range_type: ($) => prec.left(PREC.RANGE, seq(field("low", $._range_end), "..", field("high", $._range_end))),
     array_type: ($) =>
       choice(
         seq(field("element", choice($.named_type, $.array_type)), "[", field("size", $.expression), "]"),
         seq("(", field("element", $.range_type), ")", "[", field("size", $.expression), "]"),
       ),
+    list_type: ($) => seq("[", field("element", $.type), "]"),
 
     // ── Stimuli ──
 
@@ -200,10 +203,15 @@ module.exports = grammar({
         $.float,
         $.quantity,
         $.boolean,
+        $.string,
+        $.list,
         $.wildcard,
         $.identifier,
         $.path,
         $.call_expression,
+        $.annotated_expression,
+        $.internal_action,
+        $.unify_expression,
         $.index_expression,
         $.field_expression,
         $.parenthesized_expression,
@@ -239,8 +247,15 @@ module.exports = grammar({
           PREC.NOT,
           seq(field("operator", choice(keyword($, "not"), "!", "!!")), field("operand", $.expression)),
         ),
-        prec(PREC.NEGATE, seq(field("operator", "-"), field("operand", $.expression))),
+        prec(PREC.NEGATE, seq(field("operator", choice("-", "~")), field("operand", $.expression))),
       ),
+
+    // In conditions of agents: binds or compares.
+    unify_expression: ($) =>
+      prec.left(PREC.COMPARE, seq(field("left", $.expression), "=", field("right", $.expression))),
+
+    list: ($) =>
+      seq("[", optional(seq(list($.expression), optional(seq("|", field("rest", $.expression))))), "]"),
 
     parenthesized_expression: ($) => seq("(", $.expression, ")"),
     tuple: ($) => seq("(", $.expression, ",", list($.expression), optional(","), ")"),
@@ -274,14 +289,27 @@ module.exports = grammar({
     field_expression: ($) =>
       seq(field("value", choice($.index_expression, $.field_expression)), ".", field("field", $._after_dot)),
 
+    // `b(X)[source(S)]`. One annotation of a name without arguments is an index.
+    annotated_expression: ($) =>
+      choice(
+        seq(field("value", $.call_expression), field("annotations", $.annotations)),
+        seq(field("value", $._path), field("annotations", alias($._several_annotations, $.annotations))),
+      ),
+    annotations: ($) => seq("[", list($.expression), "]"),
+    _several_annotations: ($) => seq("[", $.expression, ",", list($.expression), "]"),
+
+    // `.count(b(_), N)`
+    internal_action: ($) => seq(".", field("name", $._after_dot), optional(field("arguments", $.arguments))),
+
     arguments: ($) => seq("(", listed($.expression), ")"),
 
     _path: ($) => choice($.identifier, $.path),
     path: ($) => seq($.identifier, repeat1($._dot_name)),
-    _dot_name: ($) => seq(".", $._after_dot),
+    // Rather than an internal action: `hold.sample.emit()`.
+    _dot_name: ($) => prec(1, seq(".", $._after_dot)),
     _after_dot: ($) => alias($._member, $.identifier),
 
-    range: ($) => seq(field("low", $._range_end), "..", field("high", $._range_end)),
+    range: ($) => prec.left(PREC.RANGE, seq(field("low", $._range_end), "..", field("high", $._range_end))),
     _range_end: ($) => $.expression,
 
     quantity: ($) => seq(field("value", choice($.integer, $.float)), field("unit", $.unit)),
@@ -321,33 +349,78 @@ module.exports = grammar({
         field("plays", $.identifier),
         field("body", $.agent_body),
       ),
-    agent_body: ($) => block($, choice($.belief, $.goal, $.plan, $.allow)),
+    agent_body: ($) => block($, choice($.belief, $.belief_rule, $.goal_type, $.goal, $.plan, $.allow)),
     belief: ($) =>
       seq(
         keyword($, "belief"),
         field("name", $.identifier),
         optional(field("parameters", $.parameters)),
-        optional(seq("=", list(field("initial", $.call)))),
+        optional(seq("[", list(field("annotation", $.parameter)), "]")),
+        optional(seq(keyword($, "on"), field("event", $.identifier))),
+        optional(seq("=", list(seq(optional("~"), field("initial", $.call), optional($.annotations))))),
       ),
+    belief_rule: ($) =>
+      seq(
+        keyword($, "rule"),
+        optional("~"),
+        field("head", $.call),
+        optional($.annotations),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
+      ),
+    goal_type: ($) =>
+      seq(keyword($, "goal"), field("name", $.identifier), optional(field("parameters", $.parameters))),
     goal: ($) => seq(keyword($, "goal"), "!", field("goal", $.call)),
     plan: ($) =>
       seq(
         keyword($, "plan"),
-        optional(seq("@", field("label", $.identifier))),
+        optional(seq("@", field("label", $.identifier), optional(seq("[", field("mode", $.identifier), "]")))),
         field("trigger", $.trigger),
         optional(seq(keyword($, "when"), field("condition", $.expression))),
         field("body", $.plan_body),
       ),
-    trigger: ($) => seq(field("kind", $.trigger_kind), field("call", $.call)),
+    trigger: ($) =>
+      seq(field("kind", $.trigger_kind), optional("~"), field("call", $.call), optional($.annotations)),
     trigger_kind: ($) =>
-      choice("+", "-", seq("+", "!"), seq("-", "!"), seq("+", "?"), keyword($, "on")),
-    plan_body: ($) => seq("{", optional(seq(list($._plan_step, ";"), optional(";"))), closing($)),
+      choice("+", "-", seq("+", "!"), seq("-", "!"), seq("+", "?"), seq("-", "?"), keyword($, "on")),
+    // After a step that ends with a block, the semicolon may be left out.
+    plan_body: ($) =>
+      seq(
+        "{",
+        repeat(choice(seq($._plan_step, ";"), seq($._block_step, optional(";")))),
+        optional($._plan_step),
+        closing($),
+      ),
+    _block_step: ($) => choice(alias($._plan_if, $.if_step), $.while_step, $.for_step, $.fork_step),
+    _plan_if: ($) =>
+      seq(
+        keyword($, "if"),
+        field("condition", $.expression),
+        field("consequence", $.plan_body),
+        optional(
+          seq(keyword($, "else"), field("alternative", choice($.plan_body, alias($._plan_if, $.if_step)))),
+        ),
+      ),
+    while_step: ($) =>
+      seq(keyword($, "while"), field("condition", $.expression), field("body", $.plan_body)),
+    for_step: ($) => seq(keyword($, "for"), field("condition", $.expression), field("body", $.plan_body)),
+    fork_step: ($) =>
+      seq(
+        keyword($, "fork"),
+        field("branch", $.plan_body),
+        choice(
+          repeat1(seq(keyword($, "and"), field("branch", $.plan_body))),
+          repeat1(seq(keyword($, "or"), field("branch", $.plan_body))),
+        ),
+      ),
     _plan_step: ($) =>
       choice(
         $.do_step,
         $.achieve_step,
         $.spawn_step,
         $.query_step,
+        $.test_step,
+        $.unify_step,
+        $.internal_action,
         $.add_step,
         $.remove_step,
         $.replace_step,
@@ -355,12 +428,15 @@ module.exports = grammar({
         $.wait_step,
       ),
     do_step: ($) => $.call,
-    achieve_step: ($) => seq("!", $.call),
+    achieve_step: ($) => seq("!", $.call, optional($._within)),
     spawn_step: ($) => seq("!!", $.call),
-    query_step: ($) => seq("?", $.call),
-    add_step: ($) => seq("+", $.call),
-    remove_step: ($) => seq("-", $.call),
-    replace_step: ($) => seq("-+", $.call),
+    query_step: ($) => seq("?", $._literal),
+    test_step: ($) => seq("?", "(", field("condition", $.expression), ")"),
+    unify_step: ($) => seq(field("left", $.identifier), "=", field("right", $.expression)),
+    add_step: ($) => seq("+", $._literal),
+    remove_step: ($) => seq("-", $._literal),
+    replace_step: ($) => seq("-+", $._literal),
+    _literal: ($) => seq(optional("~"), $.call, optional($.annotations)),
     await_step: ($) => seq(keyword($, "await"), field("events", $.await_events), optional($._within)),
     wait_step: ($) => seq(keyword($, "wait"), field("time", $.expression)),
 
@@ -554,7 +630,9 @@ module.exports = grammar({
     // A word, and what it is set to.
     setting: ($) =>
       choice(
-        seq(keyword($, "explore"), field("value", $.identifier)),
+        seq(keyword($, "explore"), field("value", $.identifier), optional(field("arguments", $.arguments))),
+        seq(keyword($, "stop"), keyword($, "after"), field("value", $.expression)),
+        keyword($, "minimise"),
         ...["tests", "horizon", "patience"].map((word) =>
           seq(keyword($, word), field("value", $.expression)),
         ),
@@ -570,6 +648,8 @@ module.exports = grammar({
           seq(keyword($, "bin"), keyword($, "of"), field("of", $.identifier)),
           keyword($, "location"),
           keyword($, "edge"),
+          keyword($, "plan"),
+          field("what", $.identifier),
         ),
       ),
 

@@ -5,8 +5,7 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 use crate::ast::{
     Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
     EdgeAction, Expr, ExprKind, Instance, ItemKind, Literal, Name, Param, Path, Range, Sort, Step, StepKind,
-    StimulusStep,
-    SuiteMember, SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
+    StimulusStep, SuiteMember, SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 

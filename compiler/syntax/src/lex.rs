@@ -194,6 +194,7 @@ fn instead_of(c: char) -> Option<&'static str> {
         '&' => "`and` is written `&&` or `and`",
         '\'' | '`' | '‘' | '’' | '“' | '”' | '«' | '»' => "texts are written between `\"` and `\"`",
         '#' => "comments begin with `//`",
+        '\\' => "`not equal` is written `!=`",
         '≤' => "write `<=`",
         '≥' => "write `>=`",
         '≠' => "write `!=`",
@@ -268,12 +269,16 @@ impl Join<'_> {
         self.raw.get(i).map(|t| t.kind)
     }
 
-    /// A dot right before a name, and not right after anything that has parts: `.count`.
+    /// A dot right before a name, and after nothing that has parts: `.count`. After a name or index a dot is always that
+    /// of a part, also on a new line; only `while .count(…)` and `for .member(…)` have a blank before their action.
     fn starts_internal(&self, i: usize) -> bool {
         let dot = self.raw[i];
-        let before = i.checked_sub(1).map(|i| self.raw[i]);
-        let part = before.is_some_and(|t| t.end == dot.start && (t.kind.ends_operand() || t.kind.is_word()));
         let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
+        let part = self.out.last().is_some_and(|before| match before.kind {
+            Kind::RBrace => false,
+            Kind::While | Kind::For => before.end == dot.start,
+            kind => kind.ends_operand(),
+        });
         named && !part
     }
 
@@ -284,7 +289,10 @@ impl Join<'_> {
             return Kind::From;
         }
         let hard = matches!(kind.class(), Some(Class::Head | Class::Hard));
-        if hard && !self.raw[i].first && self.out.last().is_some_and(|t| matches!(t.kind, Kind::Dot | Kind::Internal)) {
+        if hard
+            && !self.raw[i].first
+            && self.out.last().is_some_and(|t| matches!(t.kind, Kind::Dot | Kind::Internal))
+        {
             return Kind::Ident;
         }
         kind

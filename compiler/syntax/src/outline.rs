@@ -87,6 +87,14 @@ struct Bracket {
     element: bool,
 }
 
+impl Bracket {
+    fn end_of_expression(&mut self) {
+        self.highest = self.highest.max(self.operators + self.child);
+        self.operators = 0;
+        self.child = 0;
+    }
+}
+
 struct Splitter<'t> {
     file: FileId,
     text: &'t str,
@@ -194,8 +202,9 @@ impl Splitter<'_> {
             (Some(Kind::Agent), Kind::Plan) => {
                 matches!(next, Some(Kind::Plus | Kind::Minus | Kind::On | Kind::At_))
             }
-            (Some(Kind::Agent), Kind::Goal) => next == Some(Kind::Bang),
+            (Some(Kind::Agent), Kind::Goal) => next.is_some_and(|k| k == Kind::Bang || k.is_name()),
             (Some(Kind::Agent), Kind::Belief) => next.is_some_and(Kind::is_name),
+            (Some(Kind::Agent), Kind::Rule) => next.is_some_and(|k| k == Kind::Tilde || k.is_name()),
             (Some(Kind::Automaton), Kind::From) => true,
             (Some(Kind::Automaton), Kind::Location | Kind::Init | Kind::Committed | Kind::Urgent) => {
                 next.is_some_and(Kind::is_name)
@@ -359,6 +368,16 @@ impl Splitter<'_> {
             Kind::Dot => top.element,
             _ => false,
         };
+        // `if` after a block or operand, and the words between the branches of a fork, are no operators of what is before.
+        let step = match token.kind {
+            Kind::If => after_operand,
+            Kind::And | Kind::Or => self.kind(i + 1) == Some(Kind::LBrace),
+            _ => false,
+        };
+        let Some(top) = self.brackets.last_mut() else { return };
+        if step {
+            top.end_of_expression();
+        }
         if token.kind.is_operator() || part {
             top.operators += 1;
             self.limit(token);
@@ -373,9 +392,7 @@ impl Splitter<'_> {
             }
         };
         if boundary {
-            top.highest = top.highest.max(top.operators + top.child);
-            top.operators = 0;
-            top.child = 0;
+            top.end_of_expression();
         }
     }
 

@@ -3,18 +3,20 @@
 //! The grammar itself says where a member ends: the first token that cannot belong to it. Only after a broken member the
 //! next one is looked for by its keyword.
 
+mod steps;
+
 use std::ops::Range;
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::Span;
 
 use crate::ast::{
     AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind, Expr,
-    ExprKind, ItemKind, Plan, Step, StepKind, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind,
-    SystemMember, SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
+    ExprKind, ItemKind, Plan, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind, SystemMember,
+    SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
 };
 use crate::context::{Context, Unit};
 use crate::parse::run;
-use crate::report::{Fault, found, report};
+use crate::report::{Fault, report};
 use crate::token::{Kind, Lexeme};
 
 pub(crate) struct Recovery<'a, 't> {
@@ -189,6 +191,15 @@ impl Recovery<'_, '_> {
     /// Takes the member at `at`, which more text follows, and gives where the next one starts.
     fn part<M: Member>(&mut self, at: usize, end: usize, mut fault: Fault, members: &mut Vec<M>) -> usize {
         let stop = at + fault.at;
+        let member = M::START == Kind::StartAgentMember && stop > at && stop < end && fault.complete();
+        if member
+            && self.is_full_stop(stop)
+            && let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop])
+        {
+            members.extend(M::of(unit));
+            self.full_stop(stop);
+            return stop + 1;
+        }
         if stop > at && fault.complete() && self.can_start::<M>(stop) {
             if let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop]) {
                 members.extend(M::of(unit));
@@ -317,85 +328,6 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// The steps of a plan's body, one by one.
-    fn steps(&mut self, block: Range<usize>) -> Vec<Step> {
-        let mut steps = Vec::new();
-        let mut at = block.start;
-        while at < block.end {
-            if self.tokens[at].kind == Kind::Semi {
-                at = self.empty_step(&block, at);
-                continue;
-            }
-            let end = self.end_of_step(at, block.end);
-            match run(self.cx, Some(Kind::StartStep), &self.tokens[at..end]) {
-                Ok(Unit::Step(step)) => steps.push(step),
-                Ok(_) => {}
-                Err(fault) => {
-                    let stop = at + fault.at;
-                    if stop > at
-                        && fault.complete()
-                        && starts_step(self.tokens[stop.min(end - 1)].kind)
-                        && let Ok(Unit::Step(step)) =
-                            run(self.cx, Some(Kind::StartStep), &self.tokens[at..stop])
-                    {
-                        steps.push(step);
-                        self.missing_semicolon(stop);
-                        at = stop;
-                        continue;
-                    }
-                    self.report(&fault, at..end);
-                    steps.push(Step { kind: StepKind::Error, span: self.span(&(at..end)) });
-                }
-            }
-            at = end + 1;
-        }
-        steps
-    }
-
-    /// Two semicolons, or one before the first step.
-    fn empty_step(&mut self, block: &Range<usize>, at: usize) -> usize {
-        let span = self.cx.span_of(self.tokens[at]);
-        self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, "expected a step such as `!goal` or `await`, found `;`")
-                .help("take the `;` away")
-                .fix("take the `;` away", span, "", true),
-        );
-        (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
-    }
-
-    fn missing_semicolon(&mut self, at: usize) {
-        let token = self.tokens[at];
-        if token.kind == Kind::Error {
-            return;
-        }
-        let message = format!("expected `;`, found {}", found(token, self.cx.text));
-        let span = self.cx.span_of(token);
-        let before = self.tokens[at - 1];
-        let last = self.cx.text_of(before).chars().next_back().map_or(0, char::len_utf8);
-        let end = self.cx.span(before.end.saturating_sub(last as u32), before.end);
-        // On a line of its own it can be nothing but the next step.
-        let after = self.cx.span(before.end, before.end);
-        self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, message)
-                .label(end, "the step before ends here")
-                .help("put `;` between two steps of a plan")
-                .fix("put `;` after the step before", after, ";", token.first),
-        );
-    }
-
-    fn end_of_step(&self, at: usize, end: usize) -> usize {
-        let mut depth = 0_usize;
-        for i in at..end {
-            match self.tokens[i].kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth = depth.saturating_sub(1),
-                Kind::Semi if depth == 0 => return i,
-                _ => {}
-            }
-        }
-        end
-    }
-
     /// `if c { … } else { … }` in a stimulus.
     fn condition(&mut self, range: &Range<usize>) -> Option<Unit> {
         let pairs = self.pairs(range);
@@ -428,21 +360,6 @@ impl Recovery<'_, '_> {
     }
 }
 
-/// A token that starts a step of a plan.
-fn starts_step(kind: Kind) -> bool {
-    kind.is_name()
-        || matches!(
-            kind,
-            Kind::Await
-                | Kind::Bang
-                | Kind::BangBang
-                | Kind::Question
-                | Kind::Plus
-                | Kind::Minus
-                | Kind::MinusPlus
-        )
-}
-
 macro_rules! members {
     ($($member:ident $kinds:ident $start:ident [$($doc:ident)?] $($names:ident)? : $($kind:ident)|*;)*) => {$(
         impl Member for $member {
@@ -465,12 +382,12 @@ macro_rules! members {
 
 members! {
     StimulusStep StimulusStepKind StartStimulusStep [] is_name: Emit | If;
-    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Goal | Plan | Allow;
+    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Rule | Goal | Plan | Allow;
     AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
         Clock | Var | Init | Committed | Urgent | Location | From | Allow;
     CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore | Allow;
     SuiteMember SuiteMemberKind StartSuiteMember []:
-        Choose | Explore | Tests | Horizon | Patience | Reach | Stimuli | Await | Length | Pause;
+        Choose | Explore | Stop | Minimise | Tests | Horizon | Patience | Reach | Stimuli | Await | Length | Pause;
     TestMember TestMemberKind StartTestMember [] is_name: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
         Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;

@@ -51,7 +51,8 @@ pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], nex
     if let Some((token, near)) = token.and_then(|t| Some((t, keyword_near(cx, fault, t)?))) {
         let title = format!("replace `{}` by `{near}`", cx.text_of(token));
         diagnostic = diagnostic.help(format!("did you mean `{near}`?")).fix(title, span, near, false);
-    } else if let Some(help) = token.and_then(|t| help(cx, fault, [before, after], t)) {
+    } else if let Some(help) = agentspeak(fault, tokens).or_else(|| help(cx, fault, [before, after], token?))
+    {
         diagnostic = diagnostic.help(help);
     }
     cx.diagnostics.push(diagnostic);
@@ -79,7 +80,7 @@ fn any_of(words: &[String]) -> String {
 // ── What was expected ──
 
 const OPERATORS: &[&str] =
-    &["+", "-", "*", "/", "%", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or"];
+    &["+", "-", "*", "/", "%", "=", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or"];
 
 /// Terminals that together mean one thing to a person. The first that fits is taken.
 struct Group {
@@ -94,15 +95,17 @@ struct Group {
     says: &'static [&'static str],
 }
 
-const EXPRESSION: &[&str] =
-    &["INT", "FLOAT", "QUANTITY", "(", "-", "!", "!!", "not", "true", "false", "_", "if", "ERROR", "."];
+const EXPRESSION: &[&str] = &[
+    "INT", "FLOAT", "QUANTITY", "STRING", "INTERNAL", "(", "[", "-", "~", "!", "!!", "not", "true", "false",
+    "_", "if", "ERROR", ".",
+];
 
 const GROUPS: &[Group] = &[
     Group {
         if_all: &["-+", "await"],
         if_none: &[],
         names: true,
-        covers: &["!", "!!", "?", "+", "-", "-+", "await", "wait"],
+        covers: &["!", "!!", "?", "+", "-", "-+", "await", "wait", "if", "while", "for", "fork", "INTERNAL"],
         says: &["a step such as `!goal` or `await`"],
     },
     Group {
@@ -134,8 +137,8 @@ const GROUPS: &[Group] = &[
         if_none: &["IDENT"],
         names: false,
         covers: &[
-            "choose", "explore", "tests", "horizon", "patience", "reach", "stimuli", "await", "length",
-            "pause",
+            "choose", "explore", "stop", "minimise", "tests", "horizon", "patience", "reach", "stimuli",
+            "await", "length", "pause",
         ],
         says: &["a line such as `choose` or `tests`"],
     },
@@ -171,6 +174,7 @@ const GROUPS: &[Group] = &[
     Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "(", "["], says: &[] },
     Group { if_all: &["+", "*", "["], if_none: &[], names: false, covers: &["["], says: &[] },
     Group { if_all: &["=", "+=", "["], if_none: &[], names: false, covers: &[".", "["], says: &[] },
+    Group { if_all: &["when", "["], if_none: &[], names: false, covers: &["(", "["], says: &[] },
     // Fits before every member, and is never what was meant.
     Group { if_all: &["allow", "plan"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
     Group { if_all: &["allow", "clock"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
@@ -194,7 +198,9 @@ fn describe(fault: &Fault, first: bool) -> Vec<String> {
         said.push("a name".to_owned());
         left.retain(|t| !is_name(t));
     }
-    if left.iter().filter(|t| OPERATORS.contains(t)).count() >= 2 {
+    // `and` and `or` alone stand between the branches of a fork.
+    let fork = !left.iter().any(|t| OPERATORS.contains(t) && !["and", "or"].contains(t));
+    if !fork && left.iter().filter(|t| OPERATORS.contains(t)).count() >= 2 {
         said.push("an operator".to_owned());
         left.retain(|t| !OPERATORS.contains(t));
     }
@@ -218,6 +224,7 @@ fn keyword(word: &str) -> Option<Class> {
 fn terminal(name: &str) -> Option<String> {
     Some(match name {
         "ORIGIN" => "a name".to_owned(),
+        "INTERNAL" => "an internal action such as `.print`".to_owned(),
         "INT" => "a number".to_owned(),
         "STRING" => "a text in quotes".to_owned(),
         "END" | "ERROR" | "FLOAT" | "QUANTITY" => return None,
@@ -248,7 +255,8 @@ fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
 /// The expected keyword that a word was meant to be.
 fn keyword_near<'f>(cx: &Context<'_>, fault: &'f Fault, token: Lexeme) -> Option<&'f str> {
     let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
-    token.kind.is_word().then(|| nearest(cx.text_of(token), keywords))?
+    let meant = token.kind.is_word() && token.kind.class() != Some(Class::Hard);
+    meant.then(|| nearest(cx.text_of(token), keywords))?
 }
 
 fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lexeme) -> Option<String> {
@@ -277,9 +285,8 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         return Some(format!("`{word}` is a keyword and cannot be a name; `{word}_` can"));
     }
     let text = match token.kind {
-        Kind::Assign if fault.has("==") => "to compare, write `==`",
         Kind::Eq if fault.has("=") => "to set a value, write `=`",
-        Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge if fault.has("&&") => {
+        Kind::Assign | Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge if fault.has("&&") => {
             "comparisons cannot be chained: write `a < b && b < c`"
         }
         Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
@@ -287,6 +294,9 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
         kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
             "texts are written between `\"` and `\"`"
+        }
+        Kind::Dot if fault.has("INTERNAL") && after.is_some_and(Kind::is_word) => {
+            "an internal action is written `.print`: with a blank before its dot, and none after it"
         }
         Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
         Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",
@@ -297,6 +307,58 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         _ => return None,
     };
     Some(text.to_owned())
+}
+
+/// What to write for what AgentSpeak writes in another way, and for what is easily mixed up in agents.
+fn agentspeak(fault: &Fault, tokens: &[Lexeme]) -> Option<String> {
+    let at = fault.at.min(tokens.len());
+    let rest: Vec<Kind> = tokens[at..].iter().take(2).map(|t| t.kind).collect();
+    let start: Vec<Kind> = tokens.iter().take(2).map(|t| t.kind).collect();
+    let member = fault.has("belief") && fault.has("plan") && !fault.has("IDENT");
+    let text = match (rest.as_slice(), start.as_slice()) {
+        ([Kind::Bang, ..], _) if member => "a goal that is adopted at the start is written `goal !g`",
+        ([Kind::Plus | Kind::Minus | Kind::At_, ..], _) if member => {
+            "a plan is written `plan +!g when context { steps }`"
+        }
+        ([name, ..], _) if member && name.is_name() => {
+            "a belief is declared by `belief b(x: type)`, with `= b(1)` if it is held at the start; a rule is `rule b(X) when …`"
+        }
+        ([Kind::Colon, Kind::Minus], _) if fault.has("when") => "`:-` is written `when`",
+        ([Kind::Colon, ..], _) if fault.has("when") => "the context of a plan is written `when …`",
+        ([Kind::Lt, Kind::Minus], _) if fault.has("{") => {
+            "the body of a plan is written `{ … }`, without `<-`"
+        }
+        (_, [Kind::Plan, ..]) if fault.has("{") && has_left_arrow(&tokens[..at]) => {
+            "the body of a plan is written `{ … }`, without `<-`"
+        }
+        (_, [Kind::Goal, Kind::Bang]) if rest.first() == Some(&Kind::Colon) => {
+            "`goal g(x: type)`, without `!`, declares the types of a goal; `goal !g(1)` adopts it at the start"
+        }
+        (_, [Kind::Goal, name]) if name.is_name() && fault.has("IDENT") => {
+            "`goal g(x: type)` declares the types of a goal; `goal !g(1)` adopts it at the start"
+        }
+        ([Kind::LBracket, ..], [Kind::Bang | Kind::BangBang, ..]) => {
+            "a goal is adopted without annotations; the triggers of plans have them"
+        }
+        ([Kind::And | Kind::Or, Kind::LBrace], [Kind::Fork, ..]) => {
+            "a fork has `and` between all of its branches, or `or` between all"
+        }
+        ([Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge, ..], _)
+            if fault.of == "step" && fault.has("=") =>
+        {
+            "a step binds or compares by `X = e`; other conditions are asked by `?(…)`"
+        }
+        ([Kind::Else, ..], _) if fault.of == "step" => {
+            "`else` follows the block of an `if`, and a `{` follows it"
+        }
+        _ => return None,
+    };
+    Some(text.to_owned())
+}
+
+/// `<-`, which is read as two tokens.
+fn has_left_arrow(tokens: &[Lexeme]) -> bool {
+    tokens.windows(2).any(|w| (w[0].kind, w[1].kind) == (Kind::Lt, Kind::Minus) && w[0].end == w[1].start)
 }
 
 /// The word that differs from `word` by a slip of the fingers, if there is one.

@@ -55,7 +55,7 @@ broken! {
         "require R safety \"a \\q\" never a"
         "const a = 99999999999999999999"
         "system r { run \"a\\"
-        "const a = [1]"
+        "const a = 1 \\== 2"
         "const a = 2 ^ 3"
         "const a = .5"
         "const a = 5."
@@ -100,7 +100,12 @@ broken! {
         "const a = (1"
         "const a = f(1, 2"
         "const a = 1 < 2 < 3"
-        "const a = b = c"
+        "const a = b = c = d"
+        "const a = [1, 2"
+        "const a = [1 | ]"
+        "const a = [1 | b, c]"
+        "const a = ~3 +"
+        "const a = .count("
         "const a = if b { 1 }"
         "const a = if b { 1 } else if c { 2 }"
         "const a = b[1"
@@ -138,12 +143,61 @@ broken! {
         "agent A plays p { plan +!a when { b } }"
         "agent A plays p { plan +!a b }"
         "agent A plays p { belif x }"
-        "agent A plays p { goal table }"
+        "agent A plays p { goal table(1) }"
+        "agent A plays p { goal !table(leg: 1..4) }"
+        "agent A plays p { goal }"
         "agent A plays p { plan +!a { b\n plan +!c { d }\n}"
         "agent A plays p {\n belief x\nagent B plays q { }"
         "agent A plays p {\n plan +!a { x }\n"
         "agent A { belief x }"
         "agent A plays p { plan +!a { x } }\n plan +!b { y }\n}"
+        "agent A plays p { belief b [sure] }"
+        "agent A plays p { belief b [sure: 0..9 }"
+        "agent A plays p { belief b on }"
+        "agent A plays p { rule when x }"
+        "agent A plays p { rule b(X) }\nagent B plays q { rule b(X) when }"
+    ]
+    blocks [
+        "agent A plays p { plan +!a { if x { b; reach(; c } else { d; = ; e } f } }"
+        "agent A plays p { plan +!a { if { b } } }"
+        "agent A plays p { plan +!a { if x b } }"
+        "agent A plays p { plan +!a { if x { b } else c } }"
+        "agent A plays p { plan +!a { else { b } } }"
+        "agent A plays p { plan +!a { while x { b } else { c } } }"
+        "agent A plays p { plan +!a { while { b; wait } c } }"
+        "agent A plays p { plan +!a { for seen(K) b } }"
+        "agent A plays p { plan +!a { fork { b } } }"
+        "agent A plays p { plan +!a { fork { b } and { c; wait } or { d } e } }"
+        "agent A plays p { plan +!a { fork b } }"
+        "agent A plays p { plan +!a { if x { b };; c } }"
+        "agent A plays p { plan +!a { if x { b c } d } }"
+        "agent A plays p { plan +!a { reach(\n if x { b }\n c } }"
+        "agent A plays p { plan +!a { if if x { y } else { z } { b; ! } c } }"
+        "agent A plays p { plan +!a { if x { while y { for z { wait } } } } }"
+        "agent A plays p {\n plan +!a {\n if x { b\n }\n plan +!c { d }\n}"
+        "agent A plays p {\n plan +!a {\n if x { b }\n rule c when d\n goal e\n}"
+        "agent A plays p { plan +!a { .print( } }"
+        "agent A plays p { plan +!a { . print } }"
+        "agent A plays p { plan +!a { while.count(b, 1) { } } }"
+        "agent A plays p { plan +!a { ask .print(1) } }"
+        "agent A plays p { plan +!a { ask\n .print(1)\n !b } }"
+        "agent A plays p { plan +!a { X = ; Y == 1 } }"
+        "agent A plays p { plan +!a { !b[source(S)]; !!c[source(S)] } }"
+        "agent A plays p { plan +!a { ?~; +b[; -c[] } }"
+        "agent A plays p { plan @l[atomic +!a { b } }"
+    ]
+    agentspeak [
+        "agent A plays p { wants(2). }"
+        "agent A plays p { !start. }"
+        "agent A plays p { +!start <- a; b. }"
+        "agent A plays p { @l +!start : c <- a; b. }"
+        "agent A plays p { belief wants(x: 0..4) = wants(2).\n goal !start. rule b(X) when c(X).\n belief d }"
+        "agent A plays p { rule b(X) :- c(X) & d }"
+        "agent A plays p { plan +!start : c { a } }"
+        "agent A plays p { plan +!start <- a; b. }"
+        "agent A plays p { plan +!start when c <- a; b. }"
+        "agent A plays p { plan +!start when c { a; b. }\n plan +!b { a. ; b }. }"
+        "agent A plays p { plan +!start when b(X) | c(X) { a } }"
     ]
     automata [
         "automaton P plays p { location }"
@@ -182,6 +236,10 @@ broken! {
         "suite s by agents A { choose one wants A tests 3 }"
         "suite s by agents A { test 3 }"
         "suite s by random { length 5.. }"
+        "suite s by agents A { stop 30 }"
+        "suite s by agents A { stop after\n minimise 3 tests 3 }"
+        "suite s by agents A { reach each 3 reach each plan }"
+        "suite s by agents A { explore wise( tests 3 }"
         "suite s by search of t { reach bin of c }"
         "cross c = a * b { bin x when y }"
         "cross c = a, b { }"
@@ -225,13 +283,15 @@ fn nesting_is_limited() {
 #[test]
 fn height_is_limited() {
     let limit = hrdsl_syntax::MAX_HEIGHT as usize;
-    let shapes: [fn(usize) -> String; 6] = [
+    let shapes: [fn(usize) -> String; 8] = [
         |n| format!("const a = 1{}", " + 1".repeat(n)),
         |n| format!("const a = {}1", "- ".repeat(n)),
         |n| format!("const a = {}b", "not ".repeat(n)),
         |n| format!("const a = {}b", "!".repeat(n)),
         |n| format!("const a = {}b", "if a { 1 } else { 1 } + ".repeat(n)),
         |n| format!("agent A plays a {{ plan +!a when b{} {{ }} }}", " && (x + 1)".repeat(n)),
+        |n| format!("agent A plays a {{ plan +!a {{ {} }} }}", "if b { } else ".repeat(n) + "{ }"),
+        |n| format!("agent A plays a {{ rule b when {}c }}", "~c && ".repeat(n)),
     ];
     for shape in shapes {
         let (_, fits) = parse(FileId(0), &shape(limit / 4));
@@ -252,6 +312,9 @@ fn long_is_not_deep() {
     let (_, diagnostics) = parse(FileId(0), &format!("world {{ {members} }}"));
     assert!(diagnostics.is_empty(), "{:?}", diagnostics[0]);
     let steps = "-+a(N + 1); !b(-1);".repeat(5_000);
+    let (_, diagnostics) = parse(FileId(0), &format!("agent A plays a {{ plan +!a {{ {steps} }} }}"));
+    assert!(diagnostics.is_empty(), "{:?}", diagnostics[0]);
+    let steps = "if a && b { c } while not d { } fork { .f } and { } fork { } or { g }".repeat(5_000);
     let (_, diagnostics) = parse(FileId(0), &format!("agent A plays a {{ plan +!a {{ {steps} }} }}"));
     assert!(diagnostics.is_empty(), "{:?}", diagnostics[0]);
 }

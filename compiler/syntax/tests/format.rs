@@ -171,6 +171,13 @@ fn the_examples_are_formatted() {
 }
 
 #[test]
+fn every_form_of_agents_is_among_the_texts() {
+    let found = texts().into_iter().find(|(name, _)| name.ends_with("tests/texts/agents.hri"));
+    let (name, text) = found.expect("the file is read without fault");
+    insta::assert_snapshot!(checked(&name, &text));
+}
+
+#[test]
 fn the_page_of_the_style_is_written_in_it() {
     let page = fs::read_to_string(root().join("spec/style.md")).unwrap();
     let block = page.split("```hri\n").nth(1).unwrap().split("```").next().unwrap();
@@ -447,6 +454,75 @@ agent Human(n:0..4,e:event)plays person{
 }
 agent B=Human(3,asked)
 agent Long=Human(3,asked)
+"#
+    beliefs r#"
+agent Human plays person{
+  belief seen(leg:1..4)[sure:0..100,at:time]on e=seen(1)[ sure ( 9 ) , source(self) ],~ seen(2)
+  belief light(gaze:bool)on sensed
+  belief near[why:string]
+  belief all(what:[ int ],who:agent,r:[[0..4]])=all([1,- 2],[ ],[[1 ] ])
+  belief much_longer_than_the_others(first_parameter: 0..4, second_parameter: 0..4) [sure: 0..100, at: time] on an_event = much_longer_than_the_others(1, 2)[sure(9)], much_longer_than_the_others(2, 3)
+  rule near(L)when at(L,D)&&D<3m
+  rule ~ path(X,[X|T]) [sure(5)]when not .member(X,T)
+  rule short
+  rule connected_to(X, Y) when linked_directly(X, Y) || linked_directly(X, Somewhere_else) && connected_to(Somewhere_else, Y) && not broken(X)
+  goal deliver(leg:1..4);goal table goal!table
+}
+"#
+    steps r#"
+agent Human plays person{
+  plan@one [ atomic ]+! deliver ( L ) [ source(S),sure(9) ]when ~ broken(L)&&X=L+1&& .count(seen(_),N)&&N>2{}
+  plan- ? at(_,_){.fail}
+  plan -~seen(L)[source ( percept )]when .empty([ ]){.print ;}
+  plan +!a{
+    !fetch(L)within 10s;!! watch;? at(L,D);?( D<2m&&near(_) );?~ b[source(self)];D2=D+1m
+    ;X=[H|T];+seen(L) [ sure(90) ];- seen(_)[source(Robot)];-+wants(2);-~b;.abolish(seen(_));.suspend
+    ;.send(Robot,tell,seen(1)[sure(2)]);.print("saw ",All,);Y=if a{1}else{2};Z=([1,2])
+  }
+  plan +!b { .findall(Leg_that_was_seen, seen(Leg_that_was_seen)[source(percept), sure(100)], All_the_legs_seen); .print("saw ", All_the_legs_seen) }
+}
+"#
+    blocks r#"
+agent Human plays person{
+  plan +!a{if near(L)&&X>2{a;b;}else if F{c}else{d};e}
+  plan +!b {
+    if near(L)&&X>2 { a;
+      b }
+    else if F {c} else { d }
+    if x{};if y{a}else{};if z{a} if z{b};c;
+    while not done{while(b){c}
+      d}
+    while .count(b(_),1) { for .member ( X,[1,2] ){} }
+    for seen(K){ }
+    fork{a}and{b;c}and{}
+    fork {if x{a}
+    }or{ b // why
+    };last
+    // at the end
+  }
+  plan +!c when x {
+    if if x{y}else{z}{a}
+    if near(Leg) && at(Leg, Distance) && Distance < 3 m && not broken(Leg) && wanted(Leg) && not seen(Leg) && free(Leg) {
+      reach(Leg); grip(Leg)
+    } else if far(Leg) { walk(Leg); reach(Leg); grip(Leg); say_that_it_is_in_the_hand(Leg); !settle(Leg) within 10 s; wait 3 s }
+    while not done { // until done
+
+      // first
+      a
+
+      ;
+
+      b
+    }
+
+    for seen(K)
+    { a } fork { a; b } and { c }
+    // then
+    fork { reach(Leg); grip(Leg); say_ready; !settle(Leg) within 10 s } or { wait 100 s; .print("nothing happened") } or { await gone }
+    if x { a } // one
+    else { b } // two
+  }
+}
 "#
     automaton r#"
 var away:bool=false

@@ -26,7 +26,12 @@ fn soft_keywords_are_names() {
             "actor {word} : {word} const {word} = {word} event {word}({word}: {word}) from {word} to {word}, {word}
              stimulus {word}({word}: {word}) by {word} {{ emit {word} sample {word} in {word} .. {word} {word}.{word}() }}
              agent {word} plays {word} {{ belief {word} = {word}({word}) goal !{word}
-               plan @{word} +!{word} when {word} {{ !{word}; +{word}; await {word} | {word} }} }}
+               belief {word}({word}: [{word}]) [{word}: {word}] on {word} = ~{word}[{word}({word})] goal {word}({word}: {word})
+               rule {word}({word}, [{word} | {word}])[{word}] when {word}({word})[{word}, {word}] && .{word} && {word}
+               plan @{word} +!{word} when {word} {{ !{word}; +{word}; await {word} | {word} }}
+               plan @{word}[{word}] -?{word}[{word}] when ~{word} || {word}[{word}] = {word} {{
+                 if {word} {{ !{word} within {word} }} else if {word} {{ ?({word} = {word}) }} else {{ .{word}({word}, [{word}]) }}
+                 while {word} {{ -~{word}[{word}]; }} for {word}({word}) {{ }} fork {{ +{word} }} and {{ .{word} }} }} }}
              automaton {word} plays {word} {{ clock {word} location {word} {word} -> {word} on {word} when {word} < 3
                location {word} }}
              network {word} = {word} | {word}

@@ -2,8 +2,8 @@
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, ItemKind, PatternKind, StepKind,
-    StimulusStepKind, TestMemberKind, WorldMemberKind,
+    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, ItemKind, PatternKind, Step,
+    StepKind, StimulusStepKind, SuiteMemberKind, TestMemberKind, WorldMemberKind,
 };
 use hrdsl_syntax::parse;
 
@@ -56,6 +56,8 @@ fn a_broken_step_costs_that_step() {
         .filter_map(|m| match &m.kind {
             AgentMemberKind::Plan(plan) => Some(&plan.body),
             AgentMemberKind::Belief { .. }
+            | AgentMemberKind::Rule { .. }
+            | AgentMemberKind::GoalType { .. }
             | AgentMemberKind::Goal(_)
             | AgentMemberKind::Allow(_)
             | AgentMemberKind::Error => None,
@@ -64,6 +66,122 @@ fn a_broken_step_costs_that_step() {
     let broken: Vec<_> = bodies.iter().filter(|b| b.iter().any(|s| s.kind == StepKind::Error)).collect();
     assert_eq!(broken.len(), 1);
     assert_eq!(broken[0].len(), 5, "the four other steps are there");
+}
+
+/// The steps of the plan of a text with one agent, a word for each: what is in blocks in brackets.
+fn steps(text: &str) -> (String, usize) {
+    fn all(steps: &[Step]) -> String {
+        steps.iter().map(|s| one(&s.kind)).collect::<Vec<_>>().join(" ")
+    }
+    fn one(kind: &StepKind) -> String {
+        match kind {
+            StepKind::Do(call) | StepKind::Achieve { call, .. } | StepKind::Spawn(call) => {
+                call.name.text.clone()
+            }
+            StepKind::Internal(call) => format!(".{}", call.name.text),
+            StepKind::Query(l) | StepKind::Add(l) | StepKind::Remove(l) | StepKind::Replace(l) => {
+                l.call.name.text.clone()
+            }
+            StepKind::Test(_) => "test".to_owned(),
+            StepKind::Unify { .. } => "unify".to_owned(),
+            StepKind::Await { .. } => "await".to_owned(),
+            StepKind::Wait(_) => "wait".to_owned(),
+            StepKind::If { then, otherwise, .. } => format!("if[{}][{}]", all(then), all(otherwise)),
+            StepKind::While { body, .. } => format!("while[{}]", all(body)),
+            StepKind::For { body, .. } => format!("for[{}]", all(body)),
+            StepKind::Fork { all: and, branches } => {
+                let branches: String = branches.iter().map(|b| format!("[{}]", all(b))).collect();
+                format!("{}{branches}", if *and { "and" } else { "or" })
+            }
+            StepKind::Error => "-".to_owned(),
+        }
+    }
+    let text = format!("agent A plays p {{ plan +!a {{ {text} }} }}");
+    let (file, diagnostics) = parse(FileId(0), &text);
+    let AgentMemberKind::Plan(plan) = &agent(&file, "A").members[0].kind else { panic!("{text}") };
+    (all(&plan.body), diagnostics.len())
+}
+
+#[test]
+fn a_bad_step_in_a_block_costs_that_step() {
+    for (text, expected, faults) in [
+        ("a; if x { b; c(; d } else { e; = ; f } g", "a if[b - d][e - f] g", 2),
+        ("if x { b } else if y { c; ! } else { d; ? } e", "if[b][if[c -][d -]] e", 2),
+        ("while x { a; for y { b; ! ; c }; d } e", "while[a for[b - c] d] e", 1),
+        ("fork { a; ! } and { b } and { ?; c }; d", "and[a -][b][- c] d", 2),
+        ("fork { a } or { b; wait }", "or[a][b -]", 1),
+        ("if if x { y } else { z } { a; ! ; b } c", "if[a - b][] c", 1),
+        ("if x { a; if y { b; if z { c; !; d } e } f } g", "if[a if[b if[c - d][] e][] f][] g", 1),
+    ] {
+        assert_eq!(steps(text), (expected.to_owned(), faults), "{text}");
+    }
+}
+
+/// The blocks of a step whose head is bad are read for their faults, and the steps after it stay.
+#[test]
+fn a_bad_head_costs_that_step() {
+    for (text, expected, faults) in [
+        ("a; if { b; ! } c", "a - c", 2),
+        ("while x && { b } c; d", "- c d", 1),
+        ("fork { a } and { b } or { c } d", "- d", 1),
+        ("fork { a } b", "- b", 1),
+        ("if x { a } else b; c", "if[a][] - c", 1),
+        ("while x a; b", "- b", 1),
+        ("reach(y\n while x { a }\n b", "- while[a] b", 1),
+        ("reach(\n !b; c", "- c", 1),
+    ] {
+        assert_eq!(steps(text), (expected.to_owned(), faults), "{text}");
+    }
+}
+
+#[test]
+fn missing_semicolons_and_full_stops_cost_nothing() {
+    for (text, expected, faults) in [
+        ("a if x { b c } d; e", "a if[b c][] d e", 2),
+        ("a while x { b }; while y { c } d", "a while[b] while[c] d", 1),
+        ("a\n .print(1)\n .fail", "a .print .fail", 2),
+        ("a .print(1); ?b(1) .fail; wait 5 s\n .fail", "a .print b .fail wait .fail", 3),
+        ("a; b.", "a b", 1),
+        ("if x { a. } b.; c", "if[a][] b c", 2),
+        ("if x { a };; b", "if[a][] b", 1),
+    ] {
+        assert_eq!(steps(text), (expected.to_owned(), faults), "{text}");
+    }
+}
+
+#[test]
+fn new_members_are_found_after_broken_ones() {
+    let text = "agent A plays p {
+      belief b(x
+      rule c(X) when d(X)
+      goal 5 rule e
+      rule when f
+      goal g(x: int) plan +!h { a
+      rule i when j
+      goal k }
+    suite s by random { tests within
+      stop after 3
+      explore 5
+      minimise
+      reach each plan }";
+    let (file, diagnostics) = parse(FileId(0), text);
+    let kinds: Vec<_> = agent(&file, "A")
+        .members
+        .iter()
+        .map(|m| match &m.kind {
+            AgentMemberKind::Belief { .. } => "belief",
+            AgentMemberKind::Rule { .. } => "rule",
+            AgentMemberKind::GoalType { .. } => "type",
+            AgentMemberKind::Goal(_) => "goal",
+            AgentMemberKind::Plan(_) => "plan",
+            AgentMemberKind::Allow(_) => "allow",
+            AgentMemberKind::Error => "-",
+        })
+        .collect();
+    assert_eq!(kinds, ["-", "rule", "-", "rule", "-", "type", "plan", "rule", "type"], "{diagnostics:#?}");
+    let ItemKind::Suite(suite) = &file.items[1].kind else { panic!("a suite") };
+    let broken = suite.members.iter().filter(|m| m.kind == SuiteMemberKind::Error).count();
+    assert_eq!((suite.members.len(), broken), (5, 2), "{diagnostics:#?}");
 }
 
 #[test]
@@ -88,7 +206,7 @@ fn a_broken_member_costs_that_member() {
 
 #[test]
 fn a_broken_edge_costs_that_edge() {
-    let (file, n) = with("offered -> waiting do t = 0", "offered -> waiting when t = 0 do t = 0; x = 1");
+    let (file, n) = with("offered -> waiting do t = 0", "offered -> waiting when t = do t = 0; x = 1");
     assert_eq!(n, 1);
     let broken = automaton(&file, "Person");
     assert_eq!(broken.members.len(), automaton(&whole(), "Person").members.len());

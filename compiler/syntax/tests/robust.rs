@@ -5,7 +5,8 @@ use hrdsl_syntax::ast::File;
 use hrdsl_syntax::parse;
 use proptest::prelude::*;
 
-const SCENARIO: &str = include_str!("../../../examples/handover/scenario.hri");
+const SCENARIO: &str =
+    concat!(include_str!("../../../examples/handover/scenario.hri"), include_str!("texts/agents.hri"));
 
 /// Parses, and checks what holds for every text.
 fn check(text: &str) -> (File, Vec<Diagnostic>) {
@@ -111,6 +112,18 @@ fn runs() {
         ")",
         "if ",
         "if a { ",
+        "if a { } ",
+        "if a { } else ",
+        "while a { b ",
+        "fork { ",
+        "fork { } and { } ",
+        "for a { } fork { a; } or ",
+        "rule a(X) when ",
+        "[",
+        "[a | ",
+        "~",
+        ".f(",
+        "a[b] ",
         "- ",
         "!",
         "!!",

@@ -100,6 +100,60 @@ agent Human plays person {
   plan on look(G) { reach; hold(1) }
 }
 "#
+    beliefs r#"
+agent Human plays person {
+  belief seen(leg: 1..4) [sure: 0..100, at: time]
+  belief light(gaze: bool) on sensed
+  belief all(what: [int], who: agent, ranges: [[0..4]], text: string) [why: string] on told = all([1, -2], self, [], "x")[why("y"), source(Robot)], ~all([], percept, [[1]], "")
+  rule near(L) when at(L, D) && D < 3 m
+  rule ~near(_)
+  rule path(X, [X | T])[sure(5)] when not .member(X, T)
+  goal deliver(leg: 1..4) goal table goal !table
+}
+"#
+    plans r#"
+agent Human plays person {
+  plan @one[atomic] +!deliver(L)[source(S), sure(9)] when ~broken(L) && X = L + 1 && .count(seen(_), N) && N > 2 { }
+  plan @two -?at(_, _) { .fail }
+  plan +?at(L, D) { }
+  plan +seen(L)[source(percept)] when .empty([]) { }
+  plan -~seen(L) { }
+  plan on offered { }
+}
+"#
+    steps r#"
+agent Human plays person {
+  plan +!a {
+    !fetch(L) within 10 s; !!watch; ?at(L, D); ?(D < 2 m && near(_)); ?~b[source(self)]; D2 = D + 1 m; X = [H | T]
+    ; +seen(L)[sure(90)]; -seen(_)[source(Robot)]; -+wants(2); -~b; .abolish(seen(_)); .drop_all_desires; .suspend;
+    .send(Robot, tell, seen(1)[sure(2)]); .ask(Robot, at(L, Where), 5 s); .findall(L, seen(L), All); .print("saw ", All)
+  }
+}
+"#
+    blocks r#"
+agent Human plays person {
+  plan +!a {
+    if near(L) && X > 2 { a; b; } else if F { c } else { d }
+    if if x { y } else { z } { } else { }; if x { a }
+    while not done { while (b) { c } d }
+    for seen(K) { };
+    fork { a } and { b; c } and { }
+    fork { if x { a } } or { b };
+    last
+  }
+  plan +!b { while .count(b(_), 1) { for .member(X, L) { } } .print(x) }
+  plan +!c { while_ = 3; for_(x); forks }
+}
+"#
+    terms r#"
+const a = ["x", [], [1, 2 | b], .f, .f(1)]
+const b = ~c(1) && not ~d && ~e[source(self)]
+const c = d(X)[source(S)] && e[source(S)] && f[source(S), at(T)] && g[i][j].x
+const d = e = f + 1 && g(h = 2)
+const e = a .b + c
+  .d - f[0]
+  .x
+"#
     automaton r#"
 var away: bool = false
 automaton P plays person {
@@ -141,6 +195,10 @@ suite s by agents Human, Robot {
   explore pairwise tests 160 horizon 300 s; patience 60 s
 }
 suite t by search of table { reach each bin of c; reach each location reach each edge }
+suite w by agents Human {
+  explore wise(3) stop after 30 minimise reach each plan; reach each context reach each message reach each path
+  explore learn
+}
 suite r by random { stimuli ask, look await offered | gone length 5..20 pause 0 s .. 10 s tests 3 }
 "#
     tests r#"
@@ -206,4 +264,31 @@ fn the_reference_scenario_is_read_whole() {
     assert!(diagnostics.is_empty(), "{diagnostics:#?}");
     assert_eq!(file.scenario.map(|s| s.text).as_deref(), Some("handover"));
     assert!(file.items.len() > 40);
+}
+
+#[test]
+fn every_form_of_agents_is_read() {
+    let (file, diagnostics) = parse(FileId(0), include_str!("texts/agents.hri"));
+    assert!(diagnostics.is_empty(), "{diagnostics:#?}");
+    let tree = serde_json::to_string(&file).expect("trees are plain data");
+    for form in [
+        "goal_type",
+        "rule",
+        "annotated",
+        "strong",
+        "internal",
+        "unify",
+        "list",
+        "text",
+        "while",
+        "for",
+        "fork",
+        "within",
+        "test_failed",
+        "stop_after",
+        "minimise",
+        "reach_each",
+    ] {
+        assert!(tree.contains(&format!("\"{form}\"")), "{form}");
+    }
 }

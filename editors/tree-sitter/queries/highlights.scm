@@ -20,7 +20,7 @@
 
 ["(" ")" "{" "}" "[" "]"] @punctuation.bracket
 ["," ";" ":" "."] @punctuation.delimiter
-["->" ".." "=" "+=" "-=" "|" "||" "&&" "!" "!!" "==" "!=" "<" "<=" ">" ">=" "+" "-" "*" "/" "%" "?" "-+" "@"] @operator
+["->" ".." "=" "+=" "-=" "|" "||" "&&" "!" "!!" "==" "!=" "<" "<=" ">" ">=" "+" "-" "*" "/" "%" "?" "-+" "@" "~"] @operator
 (trigger_kind) @operator
 
 ; ── Keywords ──
@@ -28,12 +28,15 @@
 [
   "scenario" "actor" "const" "stimulus" "agent" "automaton" "network" "require" "assume" "cover" "cross" "suite" "part"
   "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on" "do" "emit" "within" "sample" "hold" "belief" "goal"
-  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "while" "globally" "at"
+  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "globally" "at"
   "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "explore" "tests"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
-  "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event"
+  "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"
+  "stop" "minimise"
 ] @keyword
+["for" "fork" "while"] @keyword.repeat
+(never_pattern "while" @keyword)
 ["enum" "record"] @keyword.type
 ["init" "urgent" "committed"] @keyword.modifier
 ["if" "else"] @keyword.conditional
@@ -41,6 +44,7 @@
 "use" @keyword.import
 "allow" @keyword.directive
 ["not" "and" "or"] @keyword.operator
+(fork_step ["and" "or"] @keyword.repeat)
 (boolean ["true" "false"] @boolean)
 
 ; ── Names where they are declared ──
@@ -68,7 +72,10 @@
 (agent_declaration name: (identifier) @type)
 (agent_declaration plays: (identifier) @type)
 (belief name: (identifier) @function)
+(belief event: (identifier) @function)
+(goal_type name: (identifier) @function)
 (plan label: (identifier) @label)
+(plan mode: (identifier) @attribute)
 (automaton_declaration name: (identifier) @type)
 (automaton_declaration plays: (identifier) @type)
 (location name: (identifier) @label)
@@ -102,8 +109,8 @@
 (named_type name: (identifier) @type)
 ((named_type name: (identifier) @type.builtin)
   (#any-of? @type.builtin
-    "bool" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
-(template_type) @type.builtin
+    "bool" "int" "string" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
+(template_type ["event" "actor" "cover" "agent"] @type.builtin)
 (call name: (identifier) @function.call)
 (call_expression function: (identifier) @function.call)
 (call_expression function: (path (identifier) @function.call .))
@@ -112,6 +119,8 @@
 (achieve_step (call name: (identifier) @function.method))
 (spawn_step (call name: (identifier) @function.method))
 (goal goal: (call name: (identifier) @function.method))
+(belief_rule head: (call name: (identifier) @function))
+(internal_action name: (identifier) @function.builtin)
 (field_expression field: (identifier) @variable.member)
 (path "." . (identifier) @variable.member)
 

@@ -14,6 +14,8 @@
   (parameters)
   (arguments)
   (tuple)
+  (list)
+  (annotations)
   (if_expression)
   (if_range)
 ] @indent.begin
@@ -26,6 +28,7 @@
   (cover_declaration)
   (signal)
   (rule)
+  (belief_rule)
 ] @indent.begin
 
 (comment) @indent.auto

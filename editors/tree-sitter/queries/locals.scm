@@ -4,6 +4,7 @@
 (stimulus_declaration) @local.scope
 (agent_declaration) @local.scope
 (plan) @local.scope
+(belief_rule) @local.scope
 (automaton_declaration) @local.scope
 (edge) @local.scope
 (require_declaration) @local.scope
@@ -26,6 +27,7 @@
 (parameter name: (identifier) @local.definition)
 (sample_step name: (identifier) @local.definition)
 (belief name: (identifier) @local.definition)
+(goal_type name: (identifier) @local.definition)
 (var_declaration name: (identifier) @local.definition)
 (clock name: (identifier) @local.definition)
 (placement name: (identifier) @local.definition)

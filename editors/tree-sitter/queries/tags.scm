@@ -20,6 +20,8 @@
 (system_declaration actor: (identifier) @name) @definition.class
 
 (belief name: (identifier) @name) @definition.field
+(belief_rule head: (call name: (identifier) @name)) @definition.method
+(goal_type name: (identifier) @name) @definition.field
 (plan trigger: (trigger call: (call name: (identifier) @name))) @definition.method
 (var_declaration name: (identifier) @name) @definition.variable
 (location name: (identifier) @name) @definition.field

@@ -104,7 +104,8 @@ static bool before_arrow(TSLexer *lexer) {
 // After `50 %`: an operand on the same line makes it a remainder.
 static bool before_operand(TSLexer *lexer) {
   take_blanks(lexer);
-  if (is_digit(lexer->lookahead) || lexer->lookahead == '(') return true;
+  int32_t next = lexer->lookahead;
+  if (is_digit(next) || next == '(' || next == '[' || next == '"' || next == '~') return true;
   if (!is_letter(lexer->lookahead)) return false;
   Word word = take_word(lexer);
   const Keyword *keyword = keyword_of(&word);

@@ -74,7 +74,7 @@ impl<'t> Layout<'_, 't> {
         for (n, member) in block.members.iter().enumerate() {
             let last = n + 1 == block.members.len();
             let separator = match block.kind {
-                BlockKind::Steps if !last => ";",
+                BlockKind::Steps if !last && !ends_with_block(member) => ";",
                 BlockKind::List => ",",
                 BlockKind::Steps | BlockKind::Members => "",
             };
@@ -92,7 +92,8 @@ impl<'t> Layout<'_, 't> {
         if first.newline || !first.leading.is_empty() || !line.whole || line.comment.is_some() {
             return false;
         }
-        let between = if kind == BlockKind::Members { "; " } else { " " };
+        // A step that ends with a block has no semicolon where the line ends.
+        let between = if kind == BlockKind::Members || line.text.ends_with('}') { "; " } else { " " };
         let used = line.indent + line.text.chars().count() + between.len() + separator.len();
         let Some(flat) = Flat::member(self.toks, member, WIDTH.saturating_sub(used)) else { return false };
         let comment = self.toks[member.end - 1].trailing;
@@ -303,6 +304,10 @@ impl Lists {
             || (before.kind == Kind::Comma && last.depth == depth);
         if starts { inner } else { inner + STEP }
     }
+}
+
+fn ends_with_block(member: &Member) -> bool {
+    matches!(member.parts.last(), Some(Part::Block(_)))
 }
 
 /// Writes a separator after the last atom.

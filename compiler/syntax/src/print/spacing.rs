@@ -17,14 +17,18 @@ const COMMA: Weakness = 2;
 pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
     let Some(before) = at.checked_sub(1) else { return false };
     let (p, n) = (&toks[before], &toks[at]);
-    if matches!(n.kind, Kind::Comma | Kind::Semi | Kind::RParen | Kind::RBracket | Kind::Dot | Kind::LBracket)
-    {
+    if matches!(n.kind, Kind::Comma | Kind::Semi | Kind::RParen | Kind::RBracket | Kind::Dot) {
         return false;
     }
     match p.kind {
-        Kind::LParen | Kind::LBracket | Kind::Dot | Kind::At_ | Kind::Question | Kind::MinusPlus => {
-            return false;
-        }
+        Kind::LParen
+        | Kind::LBracket
+        | Kind::Dot
+        | Kind::Internal
+        | Kind::At_
+        | Kind::Question
+        | Kind::Tilde
+        | Kind::MinusPlus => return false,
         Kind::Bang | Kind::BangBang => return matches!(n.kind, Kind::Bang | Kind::BangBang),
         Kind::Plus | Kind::Minus if p.mark.prefix => return false,
         Kind::DotDot => return !p.mark.tight,
@@ -33,6 +37,8 @@ pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
     match n.kind {
         Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor,
         Kind::LParen => !n.mark.call,
+        // An index and annotations belong to what is before; a list stands alone.
+        Kind::LBracket => n.mark.apart || !p.kind.ends_operand(),
         Kind::DotDot => !n.mark.tight,
         _ => true,
     }

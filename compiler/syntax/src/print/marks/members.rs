@@ -16,6 +16,10 @@ impl Marker<'_> {
         match &member.kind {
             AgentMemberKind::Belief { name, params, annotations, initial, .. } => {
                 self.params(name.span.end, params);
+                if let Some(first) = annotations.first() {
+                    let open = self.at(first.name.span.start).saturating_sub(1);
+                    self.marks[open].apart = true;
+                }
                 annotations.iter().for_each(|p| self.param(p));
                 initial.iter().for_each(|l| self.literal(l));
             }
@@ -44,6 +48,10 @@ impl Marker<'_> {
             m.start = true;
             m.prefix = true;
         });
+        self.step_kind(step);
+    }
+
+    fn step_kind(&mut self, step: &Step) {
         match &step.kind {
             StepKind::Do(call) | StepKind::Spawn(call) | StepKind::Internal(call) => self.call(call),
             StepKind::Achieve { call, within } => {
@@ -66,7 +74,8 @@ impl Marker<'_> {
             StepKind::If { condition, then, otherwise } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
-                then.iter().chain(otherwise).for_each(|s| self.step(s));
+                then.iter().for_each(|s| self.step(s));
+                self.else_steps(step.span.end, otherwise);
             }
             StepKind::While { condition, body } | StepKind::For { condition, body } => {
                 self.expr(condition);
@@ -74,10 +83,32 @@ impl Marker<'_> {
                 body.iter().for_each(|s| self.step(s));
             }
             StepKind::Fork { branches, .. } => {
-                self.block(step.span.start, BlockKind::Steps);
+                self.branches(step.span.start, branches.len());
                 branches.iter().flatten().for_each(|s| self.step(s));
             }
             StepKind::Error => {}
+        }
+    }
+
+    /// What follows `else`: another choice, or a block that ends with the step.
+    fn else_steps(&mut self, end: u32, steps: &[Step]) {
+        if let [step] = steps
+            && self.after_else(step.span.start)
+        {
+            return self.step_kind(step);
+        }
+        self.else_block(end, BlockKind::Steps);
+        steps.iter().for_each(|s| self.step(s));
+    }
+
+    /// The blocks of a fork: each starts two tokens after the end of the one before.
+    fn branches(&mut self, offset: u32, count: usize) {
+        let mut open = self.at(offset) + 1;
+        for _ in 0..count {
+            let Some(mark) = self.marks.get_mut(open) else { return };
+            mark.block = Some(BlockKind::Steps);
+            let Some(close) = self.closing(open) else { return };
+            open = close + 2;
         }
     }
 

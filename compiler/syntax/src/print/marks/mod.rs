@@ -32,6 +32,8 @@ pub(in crate::print) struct Mark {
     pub pattern: bool,
     /// A parenthesis that belongs to the name before it.
     pub call: bool,
+    /// A square bracket that does not belong to what is before it.
+    pub apart: bool,
     /// A sign that belongs to what follows.
     pub prefix: bool,
     /// `..` between two small operands.
@@ -264,18 +266,27 @@ impl Marker<'_> {
     /// What follows `else`: another choice, or a block that ends with the step.
     fn otherwise(&mut self, end: u32, steps: &[StimulusStep]) {
         if let [step] = steps
-            && self.at(step.span.start).checked_sub(1).is_some_and(|at| self.tokens[at].kind == Kind::Else)
+            && self.after_else(step.span.start)
         {
             return self.stimulus_kind(step);
         }
+        self.else_block(end, BlockKind::Members);
+        steps.iter().for_each(|s| self.stimulus_step(s));
+    }
+
+    fn after_else(&self, offset: u32) -> bool {
+        self.at(offset).checked_sub(1).is_some_and(|at| self.tokens[at].kind == Kind::Else)
+    }
+
+    /// The block after `else` that ends here, if there is one.
+    fn else_block(&mut self, end: u32, kind: BlockKind) {
         let last = self.at(end).saturating_sub(1);
         if let Some(open) = self.opening(last)
             && open > 0
             && self.tokens[open - 1].kind == Kind::Else
         {
-            self.marks[open].block = Some(BlockKind::Members);
+            self.marks[open].block = Some(kind);
         }
-        steps.iter().for_each(|s| self.stimulus_step(s));
     }
 
     /// The brace that the brace at `close` closes.
@@ -285,6 +296,24 @@ impl Marker<'_> {
             match self.tokens[at].kind {
                 Kind::RBrace => depth += 1,
                 Kind::LBrace => {
+                    depth = depth.checked_sub(1)?;
+                    if depth == 0 {
+                        return Some(at);
+                    }
+                }
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// The brace that closes the brace at `open`.
+    fn closing(&self, open: usize) -> Option<usize> {
+        let mut depth = 0_usize;
+        for (at, token) in self.tokens.iter().enumerate().skip(open) {
+            match token.kind {
+                Kind::LBrace => depth += 1,
+                Kind::RBrace => {
                     depth = depth.checked_sub(1)?;
                     if depth == 0 {
                         return Some(at);

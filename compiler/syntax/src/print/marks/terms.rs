@@ -100,6 +100,7 @@ impl Marker<'_> {
             }
             ExprKind::Tuple(parts) => parts.iter().for_each(|p| self.expr(p)),
             ExprKind::List { items, rest } => {
+                self.apart(expr.span.start);
                 items.iter().for_each(|i| self.expr(i));
                 self.maybe(rest.as_deref());
             }
@@ -121,13 +122,24 @@ impl Marker<'_> {
 
     /// The sign of an operand, which may be in parentheses.
     pub(super) fn sign(&mut self, offset: u32) {
-        let mut at = self.at(offset);
-        while self.tokens.get(at).is_some_and(|t| t.kind == Kind::LParen) {
-            at += 1;
-        }
+        let at = self.within_parentheses(offset);
         if let Some(mark) = self.marks.get_mut(at) {
             mark.prefix = true;
         }
+    }
+
+    /// The bracket of a list, which may be in parentheses.
+    fn apart(&mut self, offset: u32) {
+        let at = self.within_parentheses(offset);
+        if let Some(mark) = self.marks.get_mut(at) {
+            mark.apart = true;
+        }
+    }
+
+    fn within_parentheses(&self, offset: u32) -> usize {
+        let from = self.at(offset);
+        let parentheses = self.tokens[from..].iter().take_while(|t| t.kind == Kind::LParen).count();
+        from + parentheses
     }
 }
 
