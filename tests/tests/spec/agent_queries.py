@@ -1,6 +1,6 @@
 """Matching and queries, as `spec/agents-semantics.md` defines them."""
 
-from agent_values import OPEN, Fault, alike, apply, distinct, evaluate, fits, in_order, reads
+from agent_values import OPEN, Fault, alike, apply, distinct, evaluate, fits, in_order, one_of, reads
 
 DEPTH, STEPS = 100_000, 10_000_000
 
@@ -193,7 +193,7 @@ class Query:
             number = sum(1 for _ in self.answers(of["formula"], theta, depth, called))
             yield from self.one(of["out"], number, theta, called)
         elif form == "member":
-            for element in value(of["list"]):
+            for element in one_of(value(of["list"]), tuple):
                 yield from self.one(of["element"], element, theta, called)
         elif form in ("apply", "holds"):
             result = apply(of["function"], [value(e) for e in of["args"]])
