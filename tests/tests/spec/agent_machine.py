@@ -176,7 +176,7 @@ class Agent:
         i, new = self.adopt(event)
         text = f"{self.writer.event(event.on, event.values)} → {self.writer.selected(frame.plan, frame.theta)}{new}"
         self.log(text, None if new else i)
-        if i.frames and self.leaves_early(i.frames[-1]):
+        if i.frames and frame.kind().startswith("goal") and self.leaves_early(i.frames[-1]):
             i.frames.pop()
         i.frames.append(frame)
         if len(i.frames) > FRAMES:
