@@ -87,19 +87,21 @@ class Here:
         except Fault:
             return self.expression(e)
 
-    def expression(self, e, inner=False):
-        """An expression as it stands, with the values of what is known."""
+    def expression(self, e, within=None):
+        """An expression as it stands, with the values of what is known; perhaps `within` an operator of a sort."""
         ((form, of),) = e.items()
         if form == "const":
             return written(value_of(of))
         if form == "var":
             return written(self.theta[of]) if of in self.theta else self.called[of]
         if form == "unary":
-            return ("not " if of[0] == "not" else "-") + self.expression(of[1], True)
+            is_not = of[0] == "not"
+            return ("not " if is_not else "-") + self.expression(of[1], "logical" if is_not else "other")
         if form == "binary":
-            operand = self.value if of[0] in COMPARED else lambda part: self.expression(part, True)
+            here = "logical" if of[0] in ("and", "or") else "other"
+            operand = self.value if of[0] in COMPARED else lambda part: self.expression(part, here)
             text = f"{operand(of[1])} {OPERATORS[of[0]]} {operand(of[2])}"
-            return f"({text})" if inner else text
+            return f"({text})" if within == "other" or within and of[0] not in COMPARED else text
         if form == "if":
             return f"if {self.value(of[0])} {{ {self.value(of[1])} }} else {{ {self.value(of[2])} }}"
         if form == "call":
@@ -144,7 +146,7 @@ class Here:
             text = f" {OPERATORS[form]} ".join(self.formula(part, True) for part in of)
             return f"({text})" if inner and len(of) > 1 else text
         if form == "test":
-            return self.expression(of, inner)
+            return self.expression(of, "logical" if inner else None)
         if form == "unify":
             return f"{self.term(of[0])} = {self.value(of[1])}"
         return self.internal(of)

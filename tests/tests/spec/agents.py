@@ -1,13 +1,15 @@
-"""Agents and the harness as `spec/agents.md`, `spec/agents-semantics.md`, `spec/internal-actions.md` and `spec/harness.md`
-define them, rule by rule, and slowly. Nothing here is taken from the code of hrdsl: where the two differ, one of them or the
-specification is wrong.
+"""Agents and the harness, rule by rule, and slowly, as these pages define them: `spec/agents.md`,
+`spec/agents-semantics.md`, `spec/internal-actions.md`, `spec/harness.md`. Nothing here is taken from the code of hrdsl:
+where the two differ, one of them or the specification is wrong.
 
-Reads a program and the casts of some runs as JSON, and prints of each run the log, the events that happened, how it ended,
-and a line `.`:
+Reads a program and the casts of some runs as JSON, and prints of each run the log, the events that happened (lines that
+begin with `event`), how it ended (`ended: quiescent`), and a line `.`:
 
     {"program": …, "sources": ["the text of file 0"], "limit": 60000000000,
      "runs": [[{"agent": 0, "chosen": [a Fact, …]}, …], …]}
 
+The parts: values and expressions (`agent_values`), matching and queries (`agent_queries`), the state (`agent_state`), the
+machine (`agent_machine`), its steps (`agent_steps`), what the log says (`agent_text`); rounds and the harness are here.
 What is left out: the world, automata, samples of stimuli, `.random` and `.shuffle`.
 """
 
