@@ -5,11 +5,11 @@
 
 use std::{
     cmp::Ordering,
-    collections::HashMap,
     fmt,
     sync::{LazyLock, Mutex, PoisonError},
 };
 
+use rustc_hash::FxHashMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::{Symbol, Value, expr::EvalError};
@@ -54,7 +54,7 @@ type Key = (u8, u64, usize);
 
 const SHARDS: usize = 16;
 
-static CELLS: LazyLock<[Mutex<HashMap<Key, &'static Cell>>; SHARDS]> =
+static CELLS: LazyLock<[Mutex<FxHashMap<Key, &'static Cell>>; SHARDS]> =
     LazyLock::new(|| std::array::from_fn(|_| Mutex::default()));
 
 impl List {

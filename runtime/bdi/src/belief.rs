@@ -44,6 +44,17 @@ fn hash(value: Value) -> u64 {
     }
 }
 
+/// What taking a source away did.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Withdrawn {
+    /// The fact did not have it.
+    Nothing,
+    /// The fact has other sources.
+    Source,
+    /// It was the last, and the fact left, with these annotations.
+    Fact(Annotations),
+}
+
 /// Goes through live rows, upwards.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Cursor {
@@ -145,22 +156,28 @@ impl Rows {
     }
 
     /// Takes a source away from a row; the fact leaves when that was the last one.
-    pub fn withdraw(&mut self, row: usize, source: Value) -> bool {
+    pub fn withdraw(&mut self, row: usize, source: Value) -> Withdrawn {
         let held = &mut self.annotations[row];
-        held.retain(|(what, value)| *what != Annotation::Source || !same(*value, source));
-        if held.iter().any(|(what, _)| *what == Annotation::Source) {
-            return false;
+        let is_it = |(what, value): &(Annotation, Value)| *what == Annotation::Source && same(*value, source);
+        let sources = held.iter().filter(|(what, _)| *what == Annotation::Source).count();
+        if !held.iter().any(is_it) {
+            return Withdrawn::Nothing;
         }
-        self.remove(row);
-        true
+        if sources == 1 {
+            return Withdrawn::Fact(self.remove(row));
+        }
+        held.retain(|a| !is_it(a));
+        Withdrawn::Source
     }
 
-    pub fn remove(&mut self, row: usize) {
-        self.annotations[row].clear();
+    /// Takes the fact out; gives the annotations that it had.
+    pub fn remove(&mut self, row: usize) -> Annotations {
+        let had = std::mem::take(&mut self.annotations[row]);
         self.live -= 1;
         while self.start < self.annotations.len() && self.annotations[self.start].is_empty() {
             self.start += 1;
         }
+        had
     }
 
     fn compact(&mut self) {
@@ -243,7 +260,7 @@ pub(crate) fn from(source: Value) -> Annotations {
 /// With `source(self)`, if no source is among them.
 pub(crate) fn sourced(mut annotations: Annotations) -> Annotations {
     if !annotations.iter().any(|(what, _)| *what == Annotation::Source) {
-        annotations.insert(0, (Annotation::Source, Value::Symbol(source_self())));
+        annotations.push((Annotation::Source, Value::Symbol(source_self())));
     }
     annotations
 }
@@ -318,9 +335,10 @@ mod tests {
         assert_eq!(r.insert(&values(&[1]), told("Robot")), told("Robot"));
         assert!(r.insert(&values(&[1]), told("Robot")).is_empty());
         assert_eq!(r.annotations(0).len(), 2);
-        assert!(!r.withdraw(0, Value::Symbol(source_self())));
-        assert!(!r.withdraw(0, Value::Symbol(source_self())));
-        assert!(r.withdraw(0, Value::Symbol(Symbol::intern("Robot"))));
+        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), Withdrawn::Source);
+        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), Withdrawn::Nothing);
+        let robot = Value::Symbol(Symbol::intern("Robot"));
+        assert_eq!(r.withdraw(0, robot), Withdrawn::Fact(told("Robot")));
         assert_eq!(r.len(), 0);
     }
 

@@ -20,20 +20,24 @@ impl Machine<'_> {
         what: Control,
         goal: Option<&(GoalId, Vec<Term>)>,
     ) -> Result<Flow, Cause> {
-        let number = self.mind.pool.see(place).number;
+        let before = self.touched;
         match goal {
             Some((goal, args)) => {
                 let slots = self.mind.pool.see(place).vars();
+                crate::unify::well_bound(args, slots)?;
                 let args: Vec<Slot> = args.iter().map(|t| known(t, slots)).collect();
+                self.acting = Some(place);
                 self.control_goal(what, *goal, &args);
+                self.acting = None;
             }
-            None => self.control_all(place, what),
+            None => {
+                self.acting = Some(place);
+                self.control_all(place, what);
+                self.acting = None;
+            }
         }
-        let intention = self.mind.pool.see(place);
-        let same = intention.number == number && !matches!(intention.state, State::Free);
-        // What was ended, or ended and began anew, has been seen to.
-        let untouched = same && matches!(intention.state, State::Ready) && !self.ready.contains(&place);
-        Ok(if untouched { Flow::Next } else { Flow::Suspended })
+        // What was ended, or ended and went on another way, has been seen to.
+        Ok(if self.touched == before { Flow::Next } else { Flow::Suspended })
     }
 
     /// Without a goal: of all others, or of the intention itself.
@@ -41,141 +45,136 @@ impl Machine<'_> {
         match what {
             Control::DropIntention => self.drop_others(place),
             Control::DropDesire => {
+                self.drop_events(&|e| matches!(e.on, TriggerOn::GoalAdded(_)));
                 self.drop_others(place);
-                self.mind.events.retain(|e| !is_goal(e));
             }
-            Control::DropEvent => {
-                let waiting: Vec<u32> = self.mind.events.iter().filter_map(|e| e.of).collect();
-                self.mind.events.clear();
-                waiting.into_iter().for_each(|p| self.drop_whole(p));
-            }
+            Control::DropEvent => self.drop_events(&|_| true),
             Control::Suspend => self.mind.pool.at(place).suspended = true,
             // The checker refuses these without a goal.
             Control::SucceedGoal | Control::FailGoal | Control::Resume => {}
         }
     }
 
+    /// All but the intention itself and those whose branch it is.
     fn drop_others(&mut self, place: u32) {
-        let root = self.root(place);
-        for other in self.mind.pool.in_order() {
-            if self.is_used(other) && self.root(other) != root {
-                self.drop_whole(other);
+        let mut own = vec![place];
+        while let Some(parent) = self.mind.pool.see(own[own.len() - 1]).parent {
+            own.push(parent);
+        }
+        for (other, number) in self.numbered() {
+            if !own.contains(&other) && self.is_still(other, number) {
+                self.drop_one(other);
             }
         }
     }
 
     pub fn control_goal(&mut self, what: Control, goal: GoalId, args: &[Slot]) {
-        let has: Vec<(u32, Option<usize>)> = self
-            .mind
-            .pool
-            .in_order()
-            .into_iter()
-            .filter_map(|place| {
-                let frame = self.mind.frame_of(self.mind.pool.see(place), goal, args);
-                let posted = || self.mind.events.iter().any(|e| e.of == Some(place) && is_this(e, goal, args));
-                (frame.is_some() || posted()).then_some((place, frame))
-            })
-            .collect();
+        let is_this = |e: &Event| e.on == TriggerOn::GoalAdded(goal) && agree(&e.args, args);
         match what {
-            Control::DropIntention => has.into_iter().for_each(|(place, _)| self.drop_whole(place)),
-            Control::DropDesire => {
-                has.into_iter().for_each(|(place, _)| self.drop_whole(place));
-                self.mind.events.retain(|e| !is_this(e, goal, args));
+            Control::DropEvent => return self.drop_events(&is_this),
+            Control::DropDesire => self.drop_events(&is_this),
+            Control::DropIntention
+            | Control::SucceedGoal
+            | Control::FailGoal
+            | Control::Suspend
+            | Control::Resume => {}
+        }
+        let numbered = self.numbered();
+        let has = numbered.into_iter().filter_map(|(place, number)| {
+            self.mind.frame_of(self.mind.pool.see(place), goal, args).map(|frame| (place, number, frame))
+        });
+        for (place, number, frame) in has.collect::<Vec<_>>() {
+            if !self.is_still(place, number) {
+                continue;
             }
-            Control::DropEvent => {
-                let waiting: Vec<u32> =
-                    self.mind.events.iter().filter(|e| is_this(e, goal, args)).filter_map(|e| e.of).collect();
-                self.mind.events.retain(|e| !is_this(e, goal, args));
-                waiting.into_iter().for_each(|p| self.drop_whole(p));
+            match what {
+                Control::DropIntention | Control::DropDesire => self.drop_one(place),
+                Control::SucceedGoal => self.succeed(place, frame),
+                Control::FailGoal => self.fail_goal(place, frame),
+                Control::Suspend => self.suspend(place),
+                Control::Resume => self.wake(place),
+                Control::DropEvent => {}
             }
-            Control::SucceedGoal => {
-                has.into_iter().for_each(|(place, frame)| self.succeed(place, frame));
-                self.mind.events.retain(|e| e.of.is_some() || !is_this(e, goal, args));
-            }
-            Control::FailGoal => has.into_iter().for_each(|(place, frame)| self.fail_goal(place, frame)),
-            Control::Suspend => has.into_iter().for_each(|(place, _)| self.suspend(place)),
-            Control::Resume => has.into_iter().for_each(|(place, _)| self.wake(place)),
         }
     }
 
-    fn is_used(&self, place: u32) -> bool {
-        !matches!(self.mind.pool.see(place).state, State::Free)
+    /// The intentions in use, in their order, with their numbers.
+    fn numbered(&self) -> Vec<(u32, u32)> {
+        let number = |place: u32| (place, self.mind.pool.see(place).number);
+        self.mind.pool.in_order().into_iter().map(number).collect()
     }
 
-    /// The intention that forked, and was forked by none.
-    fn root(&self, mut place: u32) -> u32 {
-        while let Some(parent) = self.mind.pool.see(place).parent {
-            place = parent;
+    fn is_still(&self, place: u32, number: u32) -> bool {
+        let intention = self.mind.pool.see(place);
+        !matches!(intention.state, State::Free) && intention.number == number
+    }
+
+    fn drop_events(&mut self, of: &dyn Fn(&Event) -> bool) {
+        let events = std::mem::take(&mut self.mind.events);
+        let (gone, kept): (Vec<Event>, Vec<Event>) = events.into_iter().partition(|e| of(e));
+        self.mind.events.extend(kept);
+        for event in gone {
+            if let Some(place) = event.of {
+                self.drop_one(place);
+            }
+            if let Some(reply) = event.reply {
+                self.answer_nothing(*reply);
+            }
         }
-        place
     }
 
     /// The goal counts as achieved.
-    fn succeed(&mut self, place: u32, frame: Option<usize>) {
-        if !self.is_used(place) {
-            return;
-        }
+    fn succeed(&mut self, place: u32, frame: usize) {
         self.detach(place);
-        if let Some(frame) = frame {
-            while self.mind.pool.see(place).frames.len() > frame {
-                self.leave(place);
-            }
-        } else {
-            let height = self.mind.pool.see(place).frames.len();
-            self.drop_deadlines(place, height);
+        while self.mind.pool.see(place).frames.len() > frame {
+            self.leave(place);
         }
         self.resume(place);
     }
 
-    fn fail_goal(&mut self, place: u32, frame: Option<usize>) {
-        if !self.is_used(place) {
-            return;
+    fn fail_goal(&mut self, place: u32, frame: usize) {
+        self.detach(place);
+        while self.mind.pool.see(place).frames.len() > frame + 1 {
+            self.leave(place);
         }
-        let posted = self.detach(place);
-        match (frame, posted) {
-            (Some(frame), _) => {
-                while self.mind.pool.see(place).frames.len() > frame + 1 {
-                    self.leave(place);
-                }
-                self.fail(place, Cause::Told);
-            }
-            (None, Some(event)) if let TriggerOn::GoalAdded(goal) = event.on => {
-                self.fail_unadopted(place, goal, &event, Cause::Told);
-            }
-            (None, _) => self.fail(place, Cause::Told),
-        }
+        self.fail(place, Cause::FailGoal);
     }
 
     fn suspend(&mut self, place: u32) {
-        for child in self.mind.pool.see(place).children.clone() {
-            self.suspend(child);
-        }
         let intention = self.mind.pool.at(place);
         intention.suspended = true;
         if matches!(intention.state, State::Ready) && self.ready.contains(&place) {
             self.mind.pool.at(place).state = State::Held;
             self.ready.retain(|p| *p != place);
         }
+        for child in self.mind.pool.see(place).children.clone() {
+            self.suspend(child);
+        }
     }
 
     fn wake(&mut self, place: u32) {
-        for child in self.mind.pool.see(place).children.clone() {
-            self.wake(child);
-        }
+        let children = self.mind.pool.see(place).children.clone();
         let intention = self.mind.pool.at(place);
-        intention.suspended = false;
-        if matches!(intention.state, State::Held) {
-            self.make_ready(place);
+        let was = std::mem::take(&mut intention.suspended);
+        if was && matches!(intention.state, State::Held) {
+            self.resume(place);
+        }
+        for child in children {
+            self.wake(child);
         }
     }
 
     // ── Ends without failure ──
 
-    /// Removes an intention, with the one that it is a branch of and all branches.
-    pub fn drop_whole(&mut self, place: u32) {
-        if self.is_used(place) {
-            let root = self.root(place);
-            self.drop_tree(root);
+    /// Removes an intention; a fork that it is a branch of is told.
+    fn drop_one(&mut self, place: u32) {
+        if matches!(self.mind.pool.see(place).state, State::Free) {
+            return;
+        }
+        let parent = self.mind.pool.see(place).parent;
+        self.drop_tree(place);
+        if let Some(parent) = parent {
+            self.miss_branch(parent, place);
         }
     }
 
@@ -186,10 +185,10 @@ impl Machine<'_> {
     }
 
     fn drop_tree(&mut self, place: u32) {
+        self.entry_of(place, || Logged::Dropped);
         self.detach(place);
         let reply = self.mind.pool.see(place).reply;
         self.drop_deadlines(place, 0);
-        self.entry_of(place, || Logged::Dropped);
         self.mind.pool.release(place);
         if let Some(reply) = reply {
             self.answer_nothing(reply);
@@ -198,7 +197,9 @@ impl Machine<'_> {
 
     /// The intention no longer waits for anything; gives the event that it waited for, if there was one.
     pub fn detach(&mut self, place: u32) -> Option<Event> {
-        self.drop_children(place);
+        if self.acting == Some(place) {
+            self.touched += 1;
+        }
         let mut posted = None;
         match self.mind.pool.see(place).state {
             State::Awaiting { timer, .. } => {
@@ -224,14 +225,7 @@ impl Machine<'_> {
             State::Acting(_) | State::Free | State::Held | State::Forked { .. } => {}
         }
         self.mind.pool.at(place).state = State::Ready;
+        self.drop_children(place);
         posted
     }
-}
-
-fn is_goal(event: &Event) -> bool {
-    matches!(event.on, TriggerOn::GoalAdded(_))
-}
-
-fn is_this(event: &Event, goal: GoalId, args: &[Slot]) -> bool {
-    event.on == TriggerOn::GoalAdded(goal) && agree(&event.args, args)
 }

@@ -12,8 +12,8 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Action, ActionToken, Cause, Detail, Failure, LogEntry, Logged, Malformed, Measured,
-    belief::{Annotations, BeliefBase, from, sourced, typed},
+    Action, ActionToken, Cause, Detail, LogEntry, Logged, Malformed, Measured,
+    belief::{Annotations, BeliefBase, Withdrawn, from, sourced, typed},
     check,
     dice::Dice,
     event::{Args, Event, Ground, Incoming, Mail, Speech},
@@ -69,6 +69,9 @@ pub(crate) struct Machine<'p> {
     pub cycles: u64,
     pub cycle_limit: u64,
     pub repetition: Repetition,
+    /// The intention whose step changes goals, and how often such steps ended what they were part of.
+    pub acting: Option<u32>,
+    pub touched: u64,
     /// It will never run again.
     pub halted: Option<Status>,
     pub fault: Option<Malformed>,
@@ -102,7 +105,7 @@ impl<'p> Machine<'p> {
                 me,
             },
             solver: Solver::default(),
-            dice: Dice::new(seed, u64::from(place) + 1),
+            dice: Dice::new(seed, u64::from(id.0) + 1),
             log: Log { detail, ..Log::default() },
             measured: None,
             serial: 0,
@@ -115,6 +118,8 @@ impl<'p> Machine<'p> {
             cycles: 0,
             cycle_limit: CYCLE_LIMIT,
             repetition: Repetition::default(),
+            acting: None,
+            touched: 0,
             halted: None,
             fault: None,
         };
@@ -154,18 +159,15 @@ impl<'p> Machine<'p> {
     // ── From outside ──
 
     pub fn perceive(&mut self, event: EventId, args: &[Value]) {
-        self.repetition.forget();
         self.inbox.push_back(Incoming::Perceived { event, args: Ground::from_slice(args) });
     }
 
     pub fn receive(&mut self, from: u16, speech: Speech) {
-        self.repetition.forget();
         self.inbox.push_back(Incoming::Heard { from, speech });
     }
 
     /// The action is finished. A token that is not of an action in progress has no effect.
     pub fn action_done(&mut self, token: ActionToken) {
-        self.repetition.forget();
         let (place, serial) = token.parts();
         let acting = self.mind.pool.get(place).map(|i| i.state);
         if matches!(acting, Some(State::Acting(current)) if current == serial) {
@@ -175,6 +177,8 @@ impl<'p> Machine<'p> {
 
     /// Runs reasoning cycles until everything waits or is done, taking in what was perceived and heard.
     pub fn settle(&mut self) {
+        self.repetition.forget();
+        let mut done = 0;
         while self.halted.is_none() {
             if self.mind.events.is_empty() && self.ready.is_empty() {
                 let Some(incoming) = self.inbox.pop_front() else { return };
@@ -187,19 +191,20 @@ impl<'p> Machine<'p> {
                 return;
             }
             self.cycles += 1;
-            if self.repeats() {
+            self.cycle();
+            done += 1;
+            if self.repeats(done) {
                 self.halted = Some(Status::Livelock);
                 self.enter(0, Logged::Livelock);
                 return;
             }
-            self.cycle();
         }
     }
 
-    /// Whether the state is one that it was in, at this instant and with nothing from outside since.
-    fn repeats(&mut self) -> bool {
+    /// Whether the state after so many cycles of settling is one that it was in before.
+    fn repeats(&mut self, done: u64) -> bool {
         let mut repetition = std::mem::take(&mut self.repetition);
-        let repeats = repetition.seen(self.cycles, self);
+        let repeats = repetition.seen(done, self);
         self.repetition = repetition;
         repeats
     }
@@ -209,7 +214,6 @@ impl<'p> Machine<'p> {
         if now > self.mind.now {
             self.mind.now = now;
             self.cycles = 0;
-            self.repetition.forget();
         }
     }
 
@@ -245,6 +249,9 @@ impl<'p> Machine<'p> {
 
     fn notice(&mut self, event: EventId, args: &[Value]) {
         self.entry(0, || Logged::Perceived { event, args: args.to_vec() });
+        for belief in self.mind.library.percepts(event).to_vec() {
+            self.sense(belief, args);
+        }
         for place in std::mem::take(&mut self.awaiting) {
             let State::Awaiting { events, timer } = self.mind.pool.see(place).state else { continue };
             if !events.iter().any(|pattern| pattern.matches(event, args)) {
@@ -256,9 +263,6 @@ impl<'p> Machine<'p> {
             }
             self.resume(place);
         }
-        for belief in self.mind.library.percepts(event).to_vec() {
-            self.sense(belief, args);
-        }
         self.announce(TriggerOn::Perceived(event), args, None);
     }
 
@@ -269,10 +273,7 @@ impl<'p> Machine<'p> {
         let is_this = |row: usize| rows.row(row).iter().zip(args).all(|(a, b)| same(*a, *b));
         let old: Vec<usize> = rows.iter().filter(|row| !is_this(*row)).collect();
         for row in old {
-            let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
-            if self.mind.beliefs.of_mut(belief).withdraw(row, percept) {
-                self.left(belief, &fact);
-            }
+            self.take(belief, row, percept);
         }
         self.believe(belief, args, from(percept));
     }
@@ -323,33 +324,23 @@ impl<'p> Machine<'p> {
     fn deliberate(&mut self, event: &Event) {
         let plan = self.select(event, event.of);
         match (plan, event.on) {
-            (Some(plan), _) => {
-                let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
-                if event.of.is_none() {
-                    self.mind.pool.at(place).reply = event.reply.as_deref().copied();
-                }
-                self.begin(place, plan, event);
-            }
-            (None, TriggerOn::GoalAdded(goal)) => {
-                let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
-                self.fail_to_adopt(place, goal, event);
-            }
-            (None, TriggerOn::TestAdded(belief)) => match (event.of, event.reply.as_deref()) {
-                (Some(place), _) => self.fail(place, Cause::NoAnswer(belief)),
-                (None, Some(reply)) => self.answer_nothing(*reply),
-                (None, None) => {}
-            },
-            (
-                None,
-                TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::Perceived(_)
-                | TriggerOn::TestFailed(_)
-                | TriggerOn::GoalFailed(_),
-            ) => {
-                self.entry(0, || Logged::Unhandled { on: event.on, args: event.args.clone() });
+            (Some(plan), _) => self.adopt(plan, event),
+            (None, on) => {
+                let number = event.of.map_or(0, |place| self.mind.pool.see(place).number);
+                let (args, origin) = (event.args.clone(), event.origin);
+                self.enter(number, Logged::Unhandled { on, args, origin });
+                self.fail_by_itself(event);
             }
         }
+    }
+
+    /// Puts the plan just selected on the event's intention, or on one of its own.
+    pub fn adopt(&mut self, plan: u16, event: &Event) {
+        let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
+        if event.of.is_none() {
+            self.mind.pool.at(place).reply = event.reply.as_deref().copied();
+        }
+        self.begin(place, plan, event);
     }
 
     /// Puts the plan just selected on top of an intention.
@@ -382,13 +373,14 @@ impl<'p> Machine<'p> {
         let selected = self.mind.library.plan(plan);
         let first = crate::code::settle(self.mind.library.code(plan), 0);
         let vars = &self.solver.slots[..selected.vars.len()];
+        let fresh = self.mind.pool.count(place);
         let intention = self.mind.pool.at(place);
-        let fresh = intention.frames.is_empty() && event.of.is_none();
         intention.push(plan, first, &event.args, vars);
         intention.atomic += u32::from(selected.atomic);
         let number = intention.number;
-        if let (Some(under), Some(top)) = (under, intention.frames.last_mut()) {
-            top.under = under;
+        if let Some(top) = intention.frames.last_mut() {
+            top.under = under.unwrap_or(top.under);
+            top.told = event.annotations.as_ref().and_then(|a| a.first()).and_then(|(_, v)| v.as_symbol());
         }
         if let Some(measured) = &mut self.measured {
             let under = intention.frames.last().map_or([crate::intention::NO_PLAN; 2], |f| f.under);
@@ -403,10 +395,6 @@ impl<'p> Machine<'p> {
     /// The intention's turn comes again.
     pub fn make_ready(&mut self, place: u32) {
         let intention = self.mind.pool.at(place);
-        if intention.suspended {
-            intention.state = State::Held;
-            return;
-        }
         intention.state = State::Ready;
         if intention.atomic > 0 {
             self.ready.push_front(place);
@@ -449,10 +437,28 @@ impl<'p> Machine<'p> {
         self.announce(TriggerOn::BeliefAdded(belief), args, Some(new));
     }
 
-    /// A belief has left the base.
-    pub fn left(&mut self, belief: BeliefId, args: &[Value]) {
+    /// A belief leaves the base.
+    pub fn remove(&mut self, belief: BeliefId, row: usize) {
+        let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+        let had = self.mind.beliefs.of_mut(belief).remove(row);
+        self.left(belief, &fact, had);
+    }
+
+    fn left(&mut self, belief: BeliefId, args: &[Value], had: Annotations) {
         self.entry(0, || Logged::Left { belief, args: args.to_vec() });
-        self.announce(TriggerOn::BeliefRemoved(belief), args, None);
+        self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had));
+    }
+
+    /// Takes a source away from a fact, if it has it.
+    pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
+        let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+        match self.mind.beliefs.of_mut(belief).withdraw(row, source) {
+            Withdrawn::Nothing => {}
+            Withdrawn::Source => {
+                self.entry(0, || Logged::Taken { belief, args: fact.to_vec(), source });
+            }
+            Withdrawn::Fact(had) => self.left(belief, &fact, had),
+        }
     }
 
     pub fn next_serial(&mut self) -> u64 {
@@ -491,8 +497,4 @@ impl<'p> Machine<'p> {
         }
     }
 
-    pub fn enter_failure(&mut self, place: u32, failure: Failure) {
-        let number = self.mind.pool.see(place).number;
-        self.enter(number, Logged::Failed(failure));
-    }
 }

@@ -72,8 +72,8 @@ pub(crate) enum Speech {
     Say { performative: Performative, content: ContentId, args: Args },
     /// `.ask`, `.ask_all`: the asker waits for the answer to its question of this number.
     Ask { question: u64, content: ContentId, args: Args, all: bool },
-    /// The answers to a question: none, one, or of `.ask_all` any number.
-    Answer { question: u64, answers: Vec<Args> },
+    /// The answers to a question: one, or of `.ask_all` any number; `None` if there is no answer.
+    Answer { question: u64, content: ContentId, all: bool, answers: Option<Vec<Args>> },
 }
 
 /// A message on its way.

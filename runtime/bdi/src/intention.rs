@@ -1,6 +1,6 @@
 //! Intentions: stacks of partly executed plans.
 
-use hrdsl_ir::{EventPattern, Nanos};
+use hrdsl_ir::{EventPattern, Nanos, Symbol};
 use smallvec::SmallVec;
 
 use crate::{event::Reply, unify::Slot};
@@ -22,6 +22,8 @@ pub(crate) struct Frame {
     pub under: [u16; 2],
     /// A branch of a `fork`: the goal is its parent's.
     pub branch: bool,
+    /// Of a goal: the other agent that asked for it.
+    pub told: Option<Symbol>,
 }
 
 pub(crate) const NO_PLAN: u16 = u16::MAX;
@@ -80,7 +82,7 @@ pub(crate) struct Loop {
 
 #[derive(Debug)]
 pub(crate) struct Intention<'p> {
-    /// Counted from 1 in the order of adoption.
+    /// Counted from 1 in the order in which they get their first plan; 0 before.
     pub number: u32,
     pub state: State<'p>,
     pub suspended: bool,
@@ -104,7 +106,7 @@ impl Intention<'_> {
         let vars_at = start + args.len() as u32;
         let below = self.frames.last();
         let under = below.map_or([NO_PLAN; 2], |f| [f.plan, f.under[0]]);
-        self.frames.push(Frame { plan, next, at: NO_LINE, args: start, vars: vars_at, under, branch: false });
+        self.frames.push(Frame { plan, next, at: NO_LINE, args: start, vars: vars_at, under, branch: false, told: None });
         self.slots.extend_from_slice(args);
         self.slots.extend_from_slice(vars);
     }
@@ -147,15 +149,13 @@ pub(crate) struct Pool<'p> {
 impl<'p> Pool<'p> {
     /// A place for a new intention.
     pub fn adopt(&mut self) -> u32 {
-        self.adopted += 1;
-        let number = self.adopted;
         if let Some(place) = self.free.pop() {
             let intention = self.at(place);
-            (intention.number, intention.state) = (number, State::Ready);
+            (intention.number, intention.state) = (0, State::Ready);
             return place;
         }
         self.all.push(Intention {
-            number,
+            number: 0,
             state: State::Ready,
             suspended: false,
             atomic: 0,
@@ -168,6 +168,18 @@ impl<'p> Pool<'p> {
             reply: None,
         });
         self.all.len() as u32 - 1
+    }
+
+    /// Gives it the next number, unless it has one; `true` if it had none.
+    pub fn count(&mut self, place: u32) -> bool {
+        let next = self.adopted + 1;
+        let intention = self.at(place);
+        let fresh = intention.number == 0;
+        if fresh {
+            intention.number = next;
+            self.adopted = next;
+        }
+        fresh
     }
 
     pub fn release(&mut self, place: u32) {

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use hrdsl_ir::{
-    EventId, Nanos, Span, Value,
-    bdi::{Annotation, BeliefId, ContentId, GoalId, Performative, TriggerOn},
+    EventId, Nanos, Span, Symbol, Value,
+    bdi::{Annotation, BeliefId, ContentId, Performative, TriggerOn},
     expr::EvalError,
 };
 
@@ -44,15 +44,15 @@ pub enum Logged {
     Selected { on: TriggerOn, args: Args, plan: PlanIndex, vars: Vec<Slot>, fresh: bool },
     /// A plan was tried.
     Tried { on: TriggerOn, args: Args, plan: PlanIndex, verdict: Verdict },
-    /// An event for which there are plans, but none is applicable.
-    Unhandled { on: TriggerOn, args: Args },
+    /// An event for which no plan was selected.
+    Unhandled { on: TriggerOn, args: Args, origin: Span },
     /// A plan could not be tried.
     Fault { plan: PlanIndex, fault: Fault, origin: Span },
+    /// A question of another agent could not be answered.
+    FaultyAnswer { belief: BeliefId, fault: Fault },
     /// A step is done: with the variables before it.
     Step { plan: PlanIndex, line: u16, vars: Vec<Slot>, outcome: Outcome },
     Failed(Failure),
-    /// A failure that no plan handled: the intention is gone.
-    Abandoned(Failure),
     /// The intention is done.
     Finished,
     /// An internal action, or the end of another branch, removed the intention.
@@ -60,15 +60,17 @@ pub enum Logged {
     /// With the annotations that are new.
     Added { belief: BeliefId, args: Vec<Value>, annotations: Annotations },
     Left { belief: BeliefId, args: Vec<Value> },
-    /// A removal that removed nothing: the fact is held from these sources.
-    StillHeld { belief: BeliefId, args: Vec<Value>, from: Vec<Value> },
+    /// A source was taken from a fact that has others.
+    Taken { belief: BeliefId, args: Vec<Value>, source: Value },
+    /// A removal of what is from one source (open: any) removed nothing: the fact is held from these.
+    StillHeld { belief: BeliefId, args: Vec<Value>, meant: Slot, from: Vec<Value> },
     /// A fact that does not fit its declaration was left out.
     Refused { belief: BeliefId, args: Vec<Value> },
     Perceived { event: EventId, args: Vec<Value> },
     Heard { from: u16, performative: Performative, content: ContentId, args: Args },
     /// A question of another agent that waits for the answer.
     Asked { from: u16, content: ContentId, args: Args, all: bool },
-    Answered { from: u16, answers: Vec<Args> },
+    Answered { from: u16, content: ContentId, all: bool, answers: Option<Vec<Args>> },
     Printed(String),
     /// At one instant the state repeats.
     Livelock,
@@ -82,6 +84,8 @@ pub enum Outcome {
     Done,
     /// `if`, `while`
     Holds(bool),
+    /// Its condition has a fault.
+    Faulty,
     /// `for`
     Answers(usize),
     /// `fork`
@@ -102,30 +106,22 @@ pub enum Verdict {
 /// Where and why something failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// The innermost goal that failed; none: the intention handles an event and has no goal.
-    pub goal: Option<(GoalId, Args)>,
-    /// The plan that was being executed; none: a goal of the agent's start, or of its own intention, found no plan.
-    pub plan: Option<PlanIndex>,
+    /// What the plan that was being executed was selected for.
+    pub on: TriggerOn,
+    pub args: Args,
+    pub plan: PlanIndex,
     pub cause: Cause,
-    /// The step that failed, or the agent.
+    /// The step that failed, or the plan.
     pub origin: Span,
 }
 
 /// Why a step or goal failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// No plan has the goal as its trigger.
-    NoRelevantPlan,
-    /// Plans are relevant to the goal but none is applicable.
-    NoApplicablePlan,
-    /// The belief base and the plans for the test goal have no answer.
-    NoAnswer(BeliefId),
-    /// A condition of a step has no answer.
-    NoMatch,
-    /// An `await` was over before an event matched, an `.ask` before the answer came.
+    /// Neither beliefs, nor plans, nor the other agent have an answer.
+    NoAnswer,
+    /// An `await` was over before an event matched, an `.ask` before the answer came, a goal's deadline.
     TimedOut,
-    /// A goal was not achieved in time.
-    Deadline,
     /// An expression has no value.
     NoValue(EvalError),
     /// A query went too far.
@@ -137,13 +133,17 @@ pub enum Cause {
     /// More plans than an intention can hold wait for each other.
     TooDeep,
     /// A message to an agent that is not in the run.
-    NoSuchAgent,
+    NoSuchAgent(Value),
     /// A message about what the other agent does not have.
-    NoSuchContent,
-    /// The other agent has no answer.
-    NegativeAnswer,
-    /// `.fail`, `.fail_goal`
-    Told,
+    NoSuchContent(Symbol),
+    /// `.fail`
+    Fail,
+    /// `.fail_goal`
+    FailGoal,
+    /// Of `fork … and …`.
+    Branch,
+    /// Of `fork … or …`.
+    AllBranches,
 }
 
 impl From<EvalError> for Cause {
@@ -164,21 +164,19 @@ impl From<Fault> for Cause {
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Cause::NoRelevantPlan => f.write_str("no plan is relevant"),
-            Cause::NoApplicablePlan => f.write_str("no plan is applicable"),
-            Cause::NoAnswer(_) => f.write_str("no belief answers"),
-            Cause::NoMatch => f.write_str("the condition has no answer"),
+            Cause::NoAnswer => f.write_str("no answer"),
             Cause::TimedOut => f.write_str("the time is over"),
-            Cause::Deadline => f.write_str("the deadline is over"),
             Cause::NoValue(error) => error.fmt(f),
             Cause::Query(fault) => fault.fmt(f),
-            Cause::OutOfRange => f.write_str("value out of range"),
-            Cause::BadWait => f.write_str("not a time to wait"),
-            Cause::TooDeep => f.write_str("too many nested goals"),
-            Cause::NoSuchAgent => f.write_str("no such agent in this run"),
-            Cause::NoSuchContent => f.write_str("the agent has nothing of this name"),
-            Cause::NegativeAnswer => f.write_str("the agent has no answer"),
-            Cause::Told => f.write_str("the plan says so"),
+            Cause::OutOfRange => f.write_str("a value is not of its type"),
+            Cause::BadWait => f.write_str("a time is negative, or no number"),
+            Cause::TooDeep => f.write_str("the stack is full"),
+            Cause::NoSuchAgent(name) => write!(f, "{name} is not in this run"),
+            Cause::NoSuchContent(name) => write!(f, "{name} has nothing of this name"),
+            Cause::Fail => f.write_str(".fail"),
+            Cause::FailGoal => f.write_str(".fail_goal"),
+            Cause::Branch => f.write_str("a branch failed"),
+            Cause::AllBranches => f.write_str("all branches failed"),
         }
     }
 }

@@ -2,16 +2,22 @@
 
 use hrdsl_ir::{
     Expr, List, Symbol, Value,
-    bdi::{BeliefId, ContentId, Control, GoalId, Literal, Performative, StepKind, Subject, Term, TriggerOn},
+    bdi::{
+        BeliefId, ContentId, Control, GoalId, Literal, Performative, StepKind, Subject, Term, TriggerOn,
+        source_self,
+    },
+    expr::EvalError,
+    list::same,
 };
 
 use crate::{
     Cause, Logged,
-    belief::from as told_by,
+    belief::{from as told_by, typed},
     code::Op,
     cycle::Machine,
     event::{Args, Event, Ground, Mail, Reply, Speech},
     intention::State,
+    log::sources,
     mind::agree,
     query::{Fault, Solver},
     step::{Flow, Here},
@@ -49,8 +55,10 @@ impl<'p> Machine<'p> {
     }
 
     fn receiver(&self, place: u32, to: &Expr) -> Result<u16, Cause> {
-        let name = eval(to, self.mind.pool.see(place).vars())?.as_symbol();
-        name.and_then(|n| self.mind.me.peers.place(n)).ok_or(Cause::NoSuchAgent)
+        let value = eval(to, self.mind.pool.see(place).vars())?;
+        let own = |name: Symbol| (name == source_self()).then_some(self.mind.me.place);
+        let found = value.as_symbol().and_then(|name| own(name).or_else(|| self.mind.me.peers.place(name)));
+        found.ok_or(Cause::NoSuchAgent(value))
     }
 
     pub fn say(&mut self, to: u16, speech: Speech) {
@@ -67,8 +75,6 @@ impl<'p> Machine<'p> {
         content: ContentId,
         args: &[Term],
     ) -> Result<Flow, Cause> {
-        let slots = self.mind.pool.see(here.place).vars();
-        let args: Args = args.iter().map(|t| known(t, slots)).collect();
         let suits = |subject: Option<Subject>| match subject {
             Some(Subject::Goal(_)) => is_of_goal(performative),
             Some(Subject::Belief(_)) => !is_of_goal(performative),
@@ -78,7 +84,7 @@ impl<'p> Machine<'p> {
             Some(to) => {
                 let to = self.receiver(here.place, to)?;
                 if !suits(self.subject(content, to)) {
-                    return Err(Cause::NoSuchContent);
+                    return Err(Cause::NoSuchContent(self.name_of(to)));
                 }
                 vec![to]
             }
@@ -87,11 +93,54 @@ impl<'p> Machine<'p> {
                 all.filter(|p| *p != self.mind.me.place && suits(self.subject(content, *p))).collect()
             }
         };
-        for to in receivers {
-            self.say(to, Speech::Say { performative, content, args: args.clone() });
+        let is_question = matches!(performative, Performative::AskOne | Performative::AskAll);
+        if is_question && self.belief(content).is_none() {
+            return Err(Cause::NoSuchContent(self.mind.me.name));
         }
+        let closed = matches!(performative, Performative::Tell | Performative::Achieve);
+        let args = self.content(here.place, args, closed)?;
+        let mut mail = Vec::new();
+        for to in receivers {
+            let args = if closed { self.fitting(content, to, &args)? } else { args.clone() };
+            mail.push(Mail { to, speech: Speech::Say { performative, content, args } });
+        }
+        self.outbox.append(&mut mail);
         self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
         Ok(Flow::Next)
+    }
+
+    /// The values that are known; all must be, if it is `closed`.
+    fn content(&self, place: u32, terms: &[Term], closed: bool) -> Result<Args, Cause> {
+        let slots = self.mind.pool.see(place).vars();
+        crate::unify::well_bound(terms, slots)?;
+        let mut args = Args::new();
+        for term in terms {
+            if let (Term::Expr(expr), true) = (term, closed) {
+                eval(expr, slots)?;
+            }
+            let value = known(term, slots);
+            if closed && value.is_none() {
+                let variable = if let Term::Var(v) = term { *v } else { u16::MAX };
+                return Err(Cause::NoValue(EvalError::Unbound(variable)));
+            }
+            args.push(value);
+        }
+        Ok(args)
+    }
+
+    /// The values, as the receiver declares them.
+    fn fitting(&self, content: ContentId, to: u16, args: &Args) -> Result<Args, Cause> {
+        let (_, id) = self.mind.me.peers.agents[usize::from(to)];
+        let agent = &self.mind.program.agents[usize::from(id.0)];
+        let params = match self.subject(content, to) {
+            Some(Subject::Belief(belief)) => Some(&agent.beliefs[usize::from(belief.0)].params),
+            Some(Subject::Goal(goal)) => agent.goals[usize::from(goal.0)].params.as_ref(),
+            None => None,
+        };
+        let Some(params) = params else { return Ok(args.clone()) };
+        let ground: Ground = args.iter().copied().flatten().collect();
+        let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
+        Ok(typed.into_iter().map(Some).collect())
     }
 
     pub fn ask(
@@ -105,11 +154,10 @@ impl<'p> Machine<'p> {
     ) -> Result<Flow, Cause> {
         let to = self.receiver(here.place, to)?;
         if !matches!(self.subject(content, to), Some(Subject::Belief(_))) {
-            return Err(Cause::NoSuchContent);
+            return Err(Cause::NoSuchContent(self.name_of(to)));
         }
+        let args = self.content(here.place, args, false)?;
         let time = within.map(|e| self.time(here.place, e)).transpose()?;
-        let slots = self.mind.pool.see(here.place).vars();
-        let args: Args = args.iter().map(|t| known(t, slots)).collect();
         let question = self.next_serial();
         let timer = time.map(|t| self.set_timer(here.place, t));
         self.mind.pool.at(here.place).state = State::Asking { question, timer };
@@ -135,40 +183,29 @@ impl<'p> Machine<'p> {
                 self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
                 self.reply(from, content, args, Some(question), all);
             }
-            Speech::Answer { question, answers } => {
+            Speech::Answer { question, content, all, answers } => {
                 let given = answers.clone();
-                self.entry(0, || Logged::Answered { from, answers: given });
-                self.learn(question, &answers);
+                self.entry(0, || Logged::Answered { from, content, all, answers: given });
+                self.learn(question, answers.as_deref());
             }
         }
     }
 
     fn obey(&mut self, from: u16, performative: Performative, content: ContentId, args: Args) {
-        let name = Value::Symbol(self.name_of(from));
+        let me = from == self.mind.me.place;
+        let name = Value::Symbol(if me { source_self() } else { self.name_of(from) });
         match performative {
             Performative::Tell => {
                 let Some(belief) = self.belief(content) else { return };
-                let ground: Option<Ground> = args.iter().copied().collect();
-                match ground.clone().and_then(|g| self.declared(belief, g)) {
+                let ground: Ground = args.iter().copied().flatten().collect();
+                match self.declared(belief, ground.clone()) {
                     Some(args) => self.believe(belief, &args, told_by(name)),
-                    None => {
-                        let args = ground.unwrap_or_default().into_vec();
-                        self.enter(0, Logged::Refused { belief, args });
-                    }
+                    None => self.enter(0, Logged::Refused { belief, args: ground.into_vec() }),
                 }
             }
             Performative::Untell => {
-                let Some(belief) = self.belief(content) else { return };
-                let rows = self.mind.beliefs.of(belief);
-                let matches = |row: &usize| {
-                    let values: Vec<Slot> = rows.row(*row).iter().map(|v| Some(*v)).collect();
-                    agree(&values, &args)
-                };
-                for row in rows.iter().filter(matches).collect::<Vec<_>>() {
-                    let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
-                    if self.mind.beliefs.of_mut(belief).withdraw(row, name) {
-                        self.left(belief, &fact);
-                    }
+                if let Some(belief) = self.belief(content) {
+                    self.untell(belief, &args, name);
                 }
             }
             Performative::Achieve => {
@@ -187,6 +224,27 @@ impl<'p> Machine<'p> {
         }
     }
 
+    /// The first fact that matches and has the source loses it.
+    fn untell(&mut self, belief: BeliefId, args: &Args, source: Value) {
+        let mut kept = None;
+        for row in self.mind.beliefs.of(belief).iter().collect::<Vec<_>>() {
+            let rows = self.mind.beliefs.of(belief);
+            let values: Vec<Slot> = rows.row(row).iter().map(|v| Some(*v)).collect();
+            if !agree(&values, args) {
+                continue;
+            }
+            if sources(rows.annotations(row)).iter().any(|s| same(*s, source)) {
+                return self.take(belief, row, source);
+            }
+            kept = kept.or(Some(row));
+        }
+        if let Some(row) = kept {
+            let rows = self.mind.beliefs.of(belief);
+            let (args, from) = (rows.row(row).to_vec(), sources(rows.annotations(row)));
+            self.enter(0, Logged::StillHeld { belief, args, meant: Some(source), from });
+        }
+    }
+
     fn name_of(&self, place: u16) -> Symbol {
         self.mind.me.peers.agents[usize::from(place)].0
     }
@@ -195,30 +253,51 @@ impl<'p> Machine<'p> {
     fn reply(&mut self, to: u16, content: ContentId, args: Args, question: Option<u64>, all: bool) {
         let reply = Reply { to, content, question };
         let Some(belief) = self.belief(content) else { return self.answer_nothing(reply) };
-        let found = self.answers_to(belief, &args, all).unwrap_or_default();
-        let on = TriggerOn::TestAdded(belief);
-        if found.is_empty() && !all && !self.mind.library.relevant(on).is_empty() {
+        let found = match self.answers_to(belief, &args, all) {
+            Ok(found) => found,
+            Err(fault) => {
+                self.enter(0, Logged::FaultyAnswer { belief, fault });
+                return self.answer_nothing(reply);
+            }
+        };
+        if found.is_empty() && !all && self.plans_answer(belief) {
             let (origin, reply) = (self.agent_origin(), Some(Box::new(reply)));
+            let on = TriggerOn::TestAdded(belief);
             self.post(Event { on, args, annotations: None, of: None, origin, by: None, reply });
+        } else if found.is_empty() && !all {
+            self.answer_nothing(reply);
         } else if let Some(question) = question {
-            self.say(to, Speech::Answer { question, answers: found });
+            self.say(to, Speech::Answer { question, content, all, answers: Some(found) });
         } else {
-            found.into_iter().for_each(|args| self.tell_back(reply, args));
+            found.into_iter().for_each(|args| self.tell_back(reply, &args));
         }
     }
 
-    fn tell_back(&mut self, reply: Reply, args: Args) {
+    /// Tells who asked, if the answer suits its belief.
+    fn tell_back(&mut self, reply: Reply, args: &Args) {
         let Reply { to, content, .. } = reply;
-        self.say(to, Speech::Say { performative: Performative::Tell, content, args });
+        if let (Some(Subject::Belief(_)), Ok(args)) = (self.subject(content, to), self.fitting(content, to, args)) {
+            self.say(to, Speech::Say { performative: Performative::Tell, content, args });
+        }
     }
 
-    /// The plan for a test goal that another agent asked for has this answer.
-    pub fn answer(&mut self, reply: Reply, answer: &Args) {
-        match reply.question {
-            Some(question) => self.say(reply.to, Speech::Answer { question, answers: vec![answer.clone()] }),
-            None if answer.iter().all(Option::is_some) => self.tell_back(reply, answer.clone()),
-            None => {}
+    /// The plan for a test goal that another agent asked for has this answer; what it left open, the belief base is
+    /// asked.
+    pub fn answer(&mut self, reply: Reply, answer: &Args) -> Result<(), Cause> {
+        let mut whole = answer.clone();
+        if answer.iter().any(Option::is_none) {
+            let belief = self.belief(reply.content).ok_or(Cause::NoAnswer)?;
+            whole = self.answers_to(belief, answer, false)?.pop().ok_or(Cause::NoAnswer)?;
         }
+        let content = reply.content;
+        match reply.question {
+            Some(question) => {
+                let answers = Some(vec![whole]);
+                self.say(reply.to, Speech::Answer { question, content, all: false, answers });
+            }
+            None => self.tell_back(reply, &whole),
+        }
+        Ok(())
     }
 
     /// The first fact that follows, or all.
@@ -237,11 +316,11 @@ impl<'p> Machine<'p> {
     }
 
     /// The answer to a question comes.
-    fn learn(&mut self, question: u64, answers: &[Args]) {
+    fn learn(&mut self, question: u64, answers: Option<&[Args]>) {
         let asks = |state: State| matches!(state, State::Asking { question: q, .. } if q == question);
         let Some(place) = self.mind.pool.iter().find(|(_, i)| asks(i.state)).map(|(p, _)| p) else { return };
         self.detach(place);
-        match self.take_answers(place, answers) {
+        match answers.ok_or(Cause::NoAnswer).and_then(|answers| self.take_answers(place, answers)) {
             Ok(()) => self.resume(place),
             Err(cause) => self.fail(place, cause),
         }
@@ -254,10 +333,10 @@ impl<'p> Machine<'p> {
         let step: &'p StepKind = step;
         match step {
             StepKind::Ask { args, .. } => {
-                let answer = answers.first().ok_or(Cause::NegativeAnswer)?;
+                let answer = answers.first().ok_or(Cause::NoAnswer)?;
                 let vars = self.mind.pool.at(place).vars_mut();
                 let fits = unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(Cause::NegativeAnswer) }
+                if fits { Ok(()) } else { Err(Cause::NoAnswer) }
             }
             StepKind::AskAll { template, args, out, .. } => {
                 let vars = self.mind.pool.see(place).vars();
@@ -270,7 +349,7 @@ impl<'p> Machine<'p> {
                 }
                 let vars = self.mind.pool.at(place).vars_mut();
                 let fits = unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(Cause::NoMatch) }
+                if fits { Ok(()) } else { Err(Cause::NoAnswer) }
             }
             // INVARIANT: only these two ask.
             _ => Ok(()),

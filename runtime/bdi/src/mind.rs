@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::{
     belief::BeliefBase,
     event::Event,
-    intention::{Intention, Pool},
+    intention::{Frame, Intention, Pool},
     plan::Library,
     unify::Slot,
 };
@@ -89,31 +89,37 @@ pub(crate) fn agree(args: &[Slot], wanted: &[Slot]) -> bool {
 }
 
 impl Mind<'_> {
+    /// Whether the frame is of the goal: selected for it, or for its failure.
+    fn is_of(&self, frame: &Frame, goal: GoalId) -> bool {
+        let on = self.library.plan(frame.plan).trigger.on;
+        !frame.branch && (on == TriggerOn::GoalAdded(goal) || on == TriggerOn::GoalFailed(goal))
+    }
+
     /// The lowest frame of the intention with such a goal.
     pub fn frame_of(&self, intention: &Intention, goal: GoalId, args: &[Slot]) -> Option<usize> {
-        intention.frames.iter().position(|frame| {
-            let on = self.library.plan(frame.plan).trigger.on;
-            let has = on == TriggerOn::GoalAdded(goal) || on == TriggerOn::GoalFailed(goal);
-            has && !frame.branch && agree(intention.args(*frame), args)
-        })
+        let is_it = |f: &Frame| self.is_of(f, goal) && agree(intention.args(*f), args);
+        intention.frames.iter().position(is_it)
     }
 
-    /// Whether such a goal was posted, and waits for its plan.
-    pub fn is_posted(&self, event: &Event, goal: GoalId, args: &[Slot]) -> bool {
-        event.on == TriggerOn::GoalAdded(goal) && agree(&event.args, args)
-    }
-
-    pub fn holds_goal(&self, how: Held, goal: GoalId, args: &[Slot]) -> bool {
-        let mut events = self.events.iter().filter(|e| self.is_posted(e, goal, args));
-        let posted = match how {
-            Held::Desired => events.next().is_some(),
-            Held::Intended => events.any(|e| e.of.is_some()),
-            Held::Suspended => {
-                events.any(|e| e.of.is_some_and(|p| self.pool.get(p).is_some_and(|i| i.suspended)))
+    /// Calls `f` with the arguments of each such goal: by intention, in their order, from the lowest frame on; then, if it
+    /// is desired, of those that wait for a plan.
+    pub fn each_had(&self, how: Held, goal: GoalId, f: &mut dyn FnMut(&[Slot])) {
+        for place in self.pool.in_order() {
+            let intention = self.pool.see(place);
+            if how == Held::Suspended && !intention.suspended {
+                continue;
             }
-        };
-        let of_interest = |i: &Intention| how != Held::Suspended || i.suspended;
-        posted
-            || self.pool.iter().any(|(_, i)| of_interest(i) && self.frame_of(i, goal, args).is_some())
+            intention.frames.iter().filter(|x| self.is_of(x, goal)).for_each(|x| f(intention.args(*x)));
+        }
+        if how == Held::Desired {
+            let posted = self.events.iter().filter(|e| e.on == TriggerOn::GoalAdded(goal));
+            posted.for_each(|e| f(&e.args));
+        }
+    }
+
+    pub fn has_any(&self, how: Held, goal: GoalId) -> bool {
+        let mut any = false;
+        self.each_had(how, goal, &mut |_| any = true);
+        any
     }
 }

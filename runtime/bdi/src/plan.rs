@@ -56,6 +56,10 @@ impl<'p> Library<'p> {
     }
 
     fn may_leave_early(&self, plan: &Plan, named: &[bool]) -> bool {
+        !plan.atomic && self.is_forgotten(plan, named)
+    }
+
+    fn is_forgotten(&self, plan: &Plan, named: &[bool]) -> bool {
         match plan.trigger.on {
             // The failure of a later sub-goal, or whoever names the goal, would have to find it.
             TriggerOn::GoalAdded(goal) => {

@@ -8,7 +8,7 @@ use std::fmt;
 
 use hrdsl_ir::{
     List, Value,
-    bdi::{Context, Internal, Literal, Rule, Term},
+    bdi::{Context, GoalId, Internal, Literal, Rule, Term},
     expr::EvalError,
     list::{apply, order, same},
     value::seconds,
@@ -41,8 +41,8 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Fault::NoValue(error) => error.fmt(f),
-            Fault::TooDeep => write!(f, "rules call each other more than {MAX_DEPTH} deep"),
-            Fault::TooLong => write!(f, "a query takes more than {MAX_STEPS} steps"),
+            Fault::TooDeep => f.write_str("rules call each other too deeply"),
+            Fault::TooLong => f.write_str("the query takes too many steps"),
         }
     }
 }
@@ -82,6 +82,8 @@ enum Way<'p> {
     Rules { literal: &'p Literal, from: usize },
     Or(&'p [Context]),
     Member { element: &'p Term, rest: List },
+    /// The goals that are had, from this one on, with their arguments.
+    Goals { args: &'p [Term], from: u32, to: u32 },
     /// What is negated has no answer.
     Negation,
     /// There are no more answers; those from `start` on are collected.
@@ -107,6 +109,8 @@ pub(crate) struct Solver<'p> {
     conts: Vec<(Cont<'p>, At)>,
     choices: Vec<Choice<'p>>,
     collected: Vec<Value>,
+    /// The arguments of goals that are had.
+    had: Vec<Slot>,
     steps: u64,
     /// The parts of the formula, if it is a conjunction, and the last of them that was begun.
     parts: &'p [Context],
@@ -169,6 +173,7 @@ impl<'p> Solver<'p> {
         self.conts.clear();
         self.choices.clear();
         self.collected.clear();
+        self.had.clear();
         (self.steps, self.farthest) = (0, 0);
         self.parts = parts;
     }
@@ -472,11 +477,9 @@ impl<'p> Solver<'p> {
                 let holds = apply(*function, &args)? == Some(Value::Bool(true));
                 return Ok(holds.then_some(at.next));
             }
-            Internal::Intend { goal, args } => return Ok(self.held(mind, Held::Intended, *goal, args, at)),
-            Internal::Desire { goal, args } => return Ok(self.held(mind, Held::Desired, *goal, args, at)),
-            Internal::Suspended { goal, args } => {
-                return Ok(self.held(mind, Held::Suspended, *goal, args, at));
-            }
+            Internal::Intend { goal, args } => return self.held(mind, Held::Intended, *goal, args, at),
+            Internal::Desire { goal, args } => return self.held(mind, Held::Desired, *goal, args, at),
+            Internal::Suspended { goal, args } => return self.held(mind, Held::Suspended, *goal, args, at),
             Internal::Random { from: None, out } => (out, Some(Value::Float(dice.fraction()))),
             Internal::Random { from: Some(list), out } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
@@ -497,16 +500,39 @@ impl<'p> Solver<'p> {
     }
 
     fn held(
-        &self,
+        &mut self,
         mind: &Mind<'p>,
         how: Held,
-        goal: hrdsl_ir::bdi::GoalId,
-        args: &[Term],
+        goal: GoalId,
+        args: &'p [Term],
         at: At,
-    ) -> Option<u32> {
-        let slots = &self.slots[at.base as usize..];
-        let args: Vec<Slot> = args.iter().map(|t| known(t, slots)).collect();
-        mind.holds_goal(how, goal, &args).then_some(at.next)
+    ) -> Result<Option<u32>, Fault> {
+        let from = self.had.len() as u32;
+        mind.each_had(how, goal, &mut |had| self.had.extend_from_slice(had));
+        let arity = args.len() as u32;
+        if arity == 0 {
+            return Ok(mind.has_any(how, goal).then_some(at.next));
+        }
+        let to = self.had.len() as u32;
+        self.goals(args, from, to, at)
+    }
+
+    fn goals(&mut self, args: &'p [Term], mut from: u32, to: u32, at: At) -> Result<Option<u32>, Fault> {
+        while from < to {
+            let end = from + args.len() as u32;
+            let mark = self.trail.len();
+            let had = self.had[from as usize..end as usize].to_vec();
+            let base = at.base as usize;
+            if unify_all(args, had.into_iter(), base, &mut self.slots, &mut self.trail)? {
+                self.choose(Way::Goals { args, from: end, to }, at);
+                if let Some(choice) = self.choices.last_mut() {
+                    choice.trail = mark as u32;
+                }
+                return Ok(Some(at.next));
+            }
+            from = end;
+        }
+        Ok(None)
     }
 
     fn collect(
@@ -550,6 +576,7 @@ impl<'p> Solver<'p> {
                 Way::Rules { literal, from } => self.rules(mind, literal, from, at)?,
                 Way::Or(any) => self.either(any, at),
                 Way::Member { element, rest } => self.member(element, rest, at)?,
+                Way::Goals { args, from, to } => self.goals(args, from, to, at)?,
                 Way::Negation => Some(at.next),
                 Way::Collection { start, what } => self.gathered(start, what, at)?,
             };

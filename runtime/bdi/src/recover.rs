@@ -1,15 +1,16 @@
 //! The end of plans, good or bad: finished plans leave their intention, failures look for a failure plan.
 
 use hrdsl_ir::{
-    Span,
-    bdi::{GoalId, Literal, StepKind, TriggerOn},
+    Value,
+    bdi::{Literal, StepKind, TriggerOn},
 };
 
 use crate::{
     Cause, Failure, Logged,
-    code::Op,
+    belief::from as told_by,
+    code::{Op, settle},
     cycle::Machine,
-    event::{Args, Event, Reply},
+    event::{Args, Event, Reply, Speech},
     intention::{Frame, State},
     step::answers,
     unify::{Trail, known, unify_all},
@@ -18,6 +19,10 @@ use crate::{
 impl<'p> Machine<'p> {
     /// Lets an intention go on: plans that are finished leave it, and if one is left it is ready.
     pub fn resume(&mut self, place: u32) {
+        if self.mind.pool.see(place).suspended {
+            self.mind.pool.at(place).state = State::Held;
+            return;
+        }
         loop {
             let intention = self.mind.pool.see(place);
             let Some(top) = intention.frames.last().copied() else {
@@ -27,6 +32,17 @@ impl<'p> Machine<'p> {
             let line = self.mind.library.code(top.plan).get(usize::from(top.next)).map(|l| &l.op);
             match line {
                 Some(Op::Join) if top.branch => {}
+                // The next answer of a `for` takes no step, nor does its end.
+                Some(Op::Next { end }) => {
+                    let end = settle(self.mind.library.code(top.plan), *end);
+                    let to = if self.next_answer(place) {
+                        settle(self.mind.library.code(top.plan), top.next + 1)
+                    } else {
+                        end
+                    };
+                    self.jump(place, to);
+                    continue;
+                }
                 Some(_) => {
                     self.make_ready(place);
                     return;
@@ -37,15 +53,22 @@ impl<'p> Machine<'p> {
             let is_test = matches!(plan.trigger.on, TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_));
             let answers = (is_test && !top.branch)
                 .then(|| answers(&plan.trigger.args, intention.args(top), intention.vars()));
+            let own = answers.is_some().then(|| self.failure(place, Cause::NoAnswer));
             self.leave(place);
             if !top.branch {
                 self.measure(|m| m.completed[usize::from(top.plan)] += 1);
             }
-            // A failure plan may have an empty body, and be finished too.
-            if let Some(answers) = answers
-                && let Err(cause) = self.give(place, &answers)
-                && !self.unwind(place, cause)
-            {
+            let Some(answers) = answers else { continue };
+            if let Err(cause) = self.give(place, &answers) {
+                if self.mind.pool.see(place).frames.is_empty() {
+                    let number = self.mind.pool.see(place).number;
+                    if let Some(failure) = own {
+                        self.enter(number, Logged::Failed(Failure { cause, ..failure }));
+                    }
+                    self.unwind(place);
+                } else {
+                    self.fail(place, cause);
+                }
                 return;
             }
         }
@@ -76,28 +99,41 @@ impl<'p> Machine<'p> {
         self.entry_of(place, || Logged::Finished);
         self.mind.pool.release(place);
         let Some(parent) = parent else { return };
-        self.mind.pool.at(parent).children.retain(|c| *c != place);
-        if let State::Forked { left, all } = self.mind.pool.see(parent).state {
-            if all && left > 1 {
-                self.mind.pool.at(parent).state = State::Forked { left: left - 1, all };
-            } else {
-                self.drop_children(parent);
-                self.resume(parent);
-            }
+        let Some((left, all)) = self.lose_child(parent, place) else { return };
+        if all && left > 0 {
+            return;
         }
+        self.drop_children(parent);
+        self.resume(parent);
     }
 
     /// A branch has failed.
-    fn lose(&mut self, parent: u32, child: u32, cause: Cause) {
-        self.mind.pool.at(parent).children.retain(|c| *c != child);
-        if let State::Forked { left, all } = self.mind.pool.see(parent).state {
-            if !all && left > 1 {
-                self.mind.pool.at(parent).state = State::Forked { left: left - 1, all };
-            } else {
-                self.drop_children(parent);
-                self.fail(parent, cause);
-            }
+    fn lose(&mut self, parent: u32, child: u32) {
+        let Some((left, all)) = self.lose_child(parent, child) else { return };
+        if !all && left > 0 {
+            return;
         }
+        self.drop_children(parent);
+        self.fail(parent, if all { Cause::Branch } else { Cause::AllBranches });
+    }
+
+    /// A branch was dropped.
+    pub fn miss_branch(&mut self, parent: u32, child: u32) {
+        match self.lose_child(parent, child) {
+            Some((0, true)) => self.resume(parent),
+            Some((0, false)) => self.fail(parent, Cause::AllBranches),
+            Some(_) | None => {}
+        }
+    }
+
+    /// A branch leaves its fork; gives how many are left, and whether all are waited for.
+    fn lose_child(&mut self, parent: u32, child: u32) -> Option<(u32, bool)> {
+        let intention = self.mind.pool.at(parent);
+        intention.children.retain(|c| *c != child);
+        let State::Forked { left, all } = intention.state else { return None };
+        let left = left.saturating_sub(1);
+        intention.state = State::Forked { left, all };
+        Some((left, all))
     }
 
     /// Gives a test goal's answers to the query that asked, or to the agent. What the plan left open, the belief base is
@@ -106,21 +142,21 @@ impl<'p> Machine<'p> {
         let intention = self.mind.pool.see(place);
         let Some(asker) = intention.frames.last().copied() else {
             if let Some(reply) = intention.reply {
+                self.answer(reply, answers)?;
                 self.mind.pool.at(place).reply = None;
-                self.answer(reply, answers);
             }
             return Ok(());
         };
         let Some(literal) = self.asked_by(asker) else { return Ok(()) };
         let vars = self.mind.pool.at(place).vars_mut();
         if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut Trail::new())? {
-            return Err(Cause::NoAnswer(literal.belief));
+            return Err(Cause::NoAnswer);
         }
         let open = literal.args.iter().any(|t| *t != hrdsl_ir::bdi::Term::Any && known(t, vars).is_none());
         if open {
             self.solver.with(self.mind.pool.see(place).vars());
             if !self.solver.answer(&self.mind, &mut self.dice, literal)? {
-                return Err(Cause::NoAnswer(literal.belief));
+                return Err(Cause::NoAnswer);
             }
             let vars = self.mind.pool.at(place).vars_mut();
             vars.copy_from_slice(&self.solver.slots[..vars.len()]);
@@ -141,30 +177,28 @@ impl<'p> Machine<'p> {
 
     /// The step that an intention is at has failed.
     pub fn fail(&mut self, place: u32, cause: Cause) {
-        if self.unwind(place, cause) {
-            self.resume(place);
+        if !self.mind.pool.see(place).frames.is_empty() {
+            let failure = self.failure(place, cause);
+            let number = self.mind.pool.see(place).number;
+            self.enter(number, Logged::Failed(failure));
         }
+        self.unwind(place);
     }
 
-    /// A goal has no plan: it fails itself, before the goal below it does.
-    pub fn fail_to_adopt(&mut self, place: u32, goal: GoalId, event: &Event) {
-        let relevant = !self.mind.library.relevant(TriggerOn::GoalAdded(goal)).is_empty();
-        let cause = if relevant { Cause::NoApplicablePlan } else { Cause::NoRelevantPlan };
-        self.fail_unadopted(place, goal, event, cause);
-    }
-
-    /// A goal that has no frame yet fails.
-    pub fn fail_unadopted(&mut self, place: u32, goal: GoalId, event: &Event, cause: Cause) {
-        let mut failure = self.failure(place, cause);
-        (failure.goal, failure.origin) = (Some((goal, event.args.clone())), event.origin);
-        self.enter_failure(place, failure.clone());
-        let height = self.mind.pool.see(place).frames.len();
-        self.drop_deadlines(place, height);
-        let failed = Event { on: TriggerOn::GoalFailed(goal), of: Some(place), ..event.clone() };
-        if let Some(plan) = self.select(&failed, Some(place)) {
-            self.begin(place, plan, &failed);
-        } else if self.handle(place, failure) {
-            self.resume(place);
+    /// A goal or a query has no plan.
+    pub fn fail_by_itself(&mut self, event: &Event) {
+        if let Some(place) = event.of {
+            let height = self.mind.pool.see(place).frames.len();
+            self.drop_deadlines(place, height);
+        }
+        let Some(on) = failed(event.on) else { return };
+        let event = Event { on, by: None, ..event.clone() };
+        if let Some(plan) = self.select(&event, event.of) {
+            self.adopt(plan, &event);
+        } else if let Some(place) = event.of {
+            self.unwind(place);
+        } else if let Some(reply) = event.reply {
+            self.answer_nothing(*reply);
         }
     }
 
@@ -176,41 +210,22 @@ impl<'p> Machine<'p> {
             self.leave(place);
         }
         self.drop_deadlines(place, height);
-        let unadopted = self.mind.pool.see(place).frames.len() == height;
         match posted {
-            Some(event) if unadopted && let TriggerOn::GoalAdded(goal) = event.on => {
-                self.fail_unadopted(place, goal, &event, Cause::Deadline);
-            }
-            _ => self.fail(place, Cause::Deadline),
+            // It has no plan yet.
+            Some(event) if self.mind.pool.see(place).frames.len() == height => self.fail_by_itself(&event),
+            _ => self.fail(place, Cause::TimedOut),
         }
     }
 
-    /// Logs a failure and looks for a failure plan; `false` if the intention is gone.
-    fn unwind(&mut self, place: u32, cause: Cause) -> bool {
-        let failure = self.failure(place, cause);
-        self.enter_failure(place, failure.clone());
-        self.handle(place, failure)
-    }
-
-    /// Puts the first applicable failure plan, from the top goal downwards, in the place of its goal.
-    fn handle(&mut self, place: u32, failure: Failure) -> bool {
-        loop {
-            let intention = self.mind.pool.see(place);
-            let Some(top) = intention.frames.last().copied() else { break };
-            let on = match self.mind.library.plan(top.plan).trigger.on {
-                _ if top.branch => None,
-                TriggerOn::GoalAdded(goal) => Some(TriggerOn::GoalFailed(goal)),
-                TriggerOn::TestAdded(belief) => Some(TriggerOn::TestFailed(belief)),
-                TriggerOn::GoalFailed(_)
-                | TriggerOn::TestFailed(_)
-                | TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::Perceived(_) => None,
-            };
+    /// Takes off plans until a failure plan takes the place of one, that of the first goal from the top for which one is
+    /// applicable.
+    fn unwind(&mut self, place: u32) {
+        while let Some(top) = self.mind.pool.see(place).frames.last().copied() {
+            let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = Args::from_slice(self.mind.pool.see(place).args(top));
-                let (annotations, origin) = (None, failure.origin);
-                let of = Some(place);
+                let annotations = top.told.map(|who| Box::new(told_by(Value::Symbol(who))));
+                let (origin, of) = (self.mind.library.plan(top.plan).origin, Some(place));
                 let event = Event { on, args, annotations, of, origin, by: None, reply: None };
                 self.select(&event, of).map(|plan| (plan, event))
             });
@@ -219,55 +234,47 @@ impl<'p> Machine<'p> {
                 self.measure(|m| m.failed[usize::from(top.plan)] += 1);
             }
             if let Some((plan, event)) = selected {
-                self.put(place, plan, &event, None);
-                return true;
+                self.begin(place, plan, &event);
+                return;
             }
         }
         let (parent, reply) = (self.mind.pool.see(place).parent, self.mind.pool.see(place).reply);
-        let cause = failure.cause;
-        if parent.is_none() {
-            let number = self.mind.pool.see(place).number;
-            self.enter(number, Logged::Abandoned(failure));
-        }
         self.mind.pool.release(place);
         if let Some(reply) = reply {
             self.answer_nothing(reply);
         }
         if let Some(parent) = parent {
-            self.lose(parent, place, cause);
+            self.lose(parent, place);
         }
-        false
     }
 
-    /// Where the intention is, as the place of a failure.
-    fn failure(&mut self, place: u32, cause: Cause) -> Failure {
-        let origin = self.agent_origin();
+    /// What the plan on top is at, which fails.
+    fn failure(&self, place: u32, cause: Cause) -> Failure {
         let intention = self.mind.pool.see(place);
-        let Some(top) = intention.frames.last().copied() else {
-            return Failure { goal: None, plan: None, cause, origin };
-        };
+        // INVARIANT: whoever asks has seen to it that there is a plan.
+        let top = intention.frames[intention.frames.len() - 1];
         let plan = self.mind.library.plan(top.plan);
-        let code = self.mind.library.code(top.plan);
-        let at: Option<Span> = code.get(usize::from(top.at)).map(|l| l.origin);
-        let goal = intention.frames.iter().rev().find_map(|frame| {
-            let on = self.mind.library.plan(frame.plan).trigger.on;
-            match on {
-                TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => {
-                    Some((goal, Args::from_slice(intention.args(*frame))))
-                }
-                TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::TestAdded(_)
-                | TriggerOn::TestFailed(_)
-                | TriggerOn::Perceived(_) => None,
-            }
-        });
-        Failure { goal, plan: Some(top.plan), cause, origin: at.unwrap_or(plan.origin) }
+        let origin = self.mind.library.code(top.plan).get(usize::from(top.at)).map_or(plan.origin, |l| l.origin);
+        let args = Args::from_slice(intention.args(top));
+        Failure { on: plan.trigger.on, args, plan: top.plan, cause, origin }
     }
 
     pub fn answer_nothing(&mut self, reply: Reply) {
         if let Some(question) = reply.question {
-            self.say(reply.to, crate::event::Speech::Answer { question, answers: Vec::new() });
+            self.say(reply.to, Speech::Answer { question, content: reply.content, all: false, answers: None });
         }
+    }
+}
+
+/// What the failure of an event is, if there are plans for that.
+fn failed(on: TriggerOn) -> Option<TriggerOn> {
+    match on {
+        TriggerOn::GoalAdded(goal) => Some(TriggerOn::GoalFailed(goal)),
+        TriggerOn::TestAdded(belief) => Some(TriggerOn::TestFailed(belief)),
+        TriggerOn::GoalFailed(_)
+        | TriggerOn::TestFailed(_)
+        | TriggerOn::BeliefAdded(_)
+        | TriggerOn::BeliefRemoved(_)
+        | TriggerOn::Perceived(_) => None,
     }
 }

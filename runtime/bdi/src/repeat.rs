@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The first cycle at which a state is kept.
-const FIRST: u64 = 64;
+const FIRST: u64 = 1024;
 
 /// Words of states that may be compared for each cycle: large states that only look alike must not cost more than the
 /// run itself.
@@ -94,6 +94,9 @@ impl Repeats for Machine<'_> {
 
     fn state(&self) -> Vec<u64> {
         let mut out = Vec::new();
+        let order = self.mind.pool.in_order();
+        // Intentions are known by their rank: numbers and places differ from time to time.
+        let rank = |place: u32| order.iter().position(|p| *p == place).map_or(0, |at| at as u64 + 1);
         for rows in self.mind.beliefs.all() {
             out.push(rows.len() as u64);
             for row in rows.iter() {
@@ -102,30 +105,29 @@ impl Repeats for Machine<'_> {
             }
         }
         out.push(self.mind.events.len() as u64);
-        self.mind.events.iter().for_each(|e| event(&mut out, e));
+        self.mind.events.iter().for_each(|e| event(&mut out, e, &rank));
         out.push(self.inbox.len() as u64);
         self.inbox.iter().for_each(|i| incoming(&mut out, i));
         for places in [self.ready.iter().copied().collect::<Vec<_>>(), self.awaiting.clone()] {
             out.push(places.len() as u64);
-            out.extend(places.into_iter().map(u64::from));
+            out.extend(places.into_iter().map(rank));
         }
-        for (place, i) in self.mind.pool.iter() {
-            out.push(u64::from(place));
-            self.intention(&mut out, i);
+        for place in &order {
+            self.intention(&mut out, self.mind.pool.see(*place), &rank);
         }
         out.push(self.timers.len() as u64);
-        self.timers.iter().for_each(|t| self.timer(&mut out, t));
+        self.timers.iter().for_each(|t| self.timer(&mut out, t, &rank));
         out.push(self.dice.draws);
         out
     }
 }
 
 impl Machine<'_> {
-    fn timer(&self, out: &mut Vec<u64>, timer: &Timer) {
-        out.extend([(timer.due - self.mind.now) as u64, u64::from(timer.of)]);
+    fn timer(&self, out: &mut Vec<u64>, timer: &Timer, rank: &dyn Fn(u32) -> u64) {
+        out.extend([(timer.due - self.mind.now) as u64, rank(timer.of)]);
     }
 
-    fn intention(&self, out: &mut Vec<u64>, i: &Intention) {
+    fn intention(&self, out: &mut Vec<u64>, i: &Intention, rank: &dyn Fn(u32) -> u64) {
         let state = match i.state {
             State::Free => [0, 0],
             State::Ready => [1, 0],
@@ -151,10 +153,10 @@ impl Machine<'_> {
         }
         for d in &i.deadlines {
             out.push(u64::from(d.height));
-            self.timer(out, &d.timer);
+            self.timer(out, &d.timer, rank);
         }
-        out.push(i.parent.map_or(0, |p| u64::from(p) + 1));
-        out.extend(i.children.iter().map(|c| u64::from(*c)));
+        out.push(i.parent.map_or(0, rank));
+        out.extend(i.children.iter().map(|c| rank(*c)));
         let reply = i.reply.map(|r| [u64::from(r.to), u64::from(r.content.0), r.question.unwrap_or(0)]);
         out.extend(reply.unwrap_or_default());
     }
@@ -188,7 +190,7 @@ fn annotations(out: &mut Vec<u64>, all: &Annotations) {
     }
 }
 
-fn event(out: &mut Vec<u64>, e: &Event) {
+fn event(out: &mut Vec<u64>, e: &Event, rank: &dyn Fn(u32) -> u64) {
     use hrdsl_ir::bdi::TriggerOn as On;
     out.extend(match e.on {
         On::BeliefAdded(b) => [0, b.0],
@@ -201,7 +203,7 @@ fn event(out: &mut Vec<u64>, e: &Event) {
     }.map(u64::from));
     slots(out, &e.args);
     e.annotations.iter().for_each(|a| annotations(out, a));
-    out.push(e.of.map_or(0, |p| u64::from(p) + 1));
+    out.push(e.of.map_or(0, rank));
 }
 
 fn incoming(out: &mut Vec<u64>, i: &Incoming) {
@@ -221,9 +223,9 @@ fn incoming(out: &mut Vec<u64>, i: &Incoming) {
                     out.extend([10, *question, u64::from(content.0), u64::from(*all)]);
                     slots(out, args);
                 }
-                Speech::Answer { question, answers } => {
+                Speech::Answer { question, answers, .. } => {
                     out.extend([11, *question]);
-                    answers.iter().for_each(|a| slots(out, a));
+                    answers.iter().flatten().for_each(|a| slots(out, a));
                 }
             }
         }

@@ -8,7 +8,7 @@ use crate::{
     cycle::Machine,
     event::Event,
     query::{Fault, Solver},
-    unify::{undo, unify, unify_all, well_bound},
+    unify::{Slot, unify, unify_all, well_bound},
 };
 
 impl<'p> Machine<'p> {
@@ -21,7 +21,7 @@ impl<'p> Machine<'p> {
         for at in 0..self.mind.library.relevant(event.on).len() {
             let index = self.mind.library.relevant(event.on)[at];
             let verdict = self.attempt(index, event);
-            if let Verdict::Faulty(fault) = verdict {
+            if let (Verdict::Faulty(fault), None) = (verdict, selected) {
                 let origin = self.mind.library.plan(index).origin;
                 self.enter(number, Logged::Fault { plan: index, fault, origin });
             }
@@ -29,7 +29,9 @@ impl<'p> Machine<'p> {
                 let (on, args) = (event.on, event.args.clone());
                 self.enter(number, Logged::Tried { on, args, plan: index, verdict });
             }
-            self.measure_attempt(index, verdict);
+            if selected.is_none() {
+                self.measure_attempt(index, verdict);
+            }
             if verdict == Verdict::Applicable {
                 applicable += 1;
                 if selected.is_none() {
@@ -61,20 +63,12 @@ impl<'p> Machine<'p> {
             Ok(true) => {}
         }
         if !plan.trigger.annotations.is_empty() {
-            let own = own();
-            let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
-            let none = Annotations::new();
-            let held = match &event.annotations {
-                Some(held) => held,
-                None if is_goal => &own,
-                None => &none,
-            };
-            match self.annotated(plan, held) {
-                Err(fault) => return Verdict::Faulty(fault),
-                Ok(false) => return Verdict::Unlike,
-                Ok(true) => {}
-            }
+            return self.attempt_annotated(plan, event);
         }
+        self.verdict(plan)
+    }
+
+    fn verdict(&mut self, plan: &'p Plan) -> Verdict {
         match self.solver.solve(&self.mind, &mut self.dice, &plan.context) {
             Ok(true) => Verdict::Applicable,
             Ok(false) => Verdict::False { part: self.solver.farthest },
@@ -82,20 +76,39 @@ impl<'p> Machine<'p> {
         }
     }
 
-    /// Each annotation of the trigger takes the first of the event's that it matches.
-    fn annotated(&mut self, plan: &Plan, held: &Annotations) -> Result<bool, Fault> {
-        let Solver { slots, trail, .. } = &mut self.solver;
-        'terms: for (what, term) in &plan.trigger.annotations {
-            for (held, value) in held {
-                let mark = trail.len();
-                if held == what && unify(term, *value, 0, slots, trail)? {
-                    continue 'terms;
-                }
-                undo(slots, trail, mark);
+    /// Each way in which the trigger's annotations match the event's is tried, the last changing fastest.
+    fn attempt_annotated(&mut self, plan: &'p Plan, event: &Event) -> Verdict {
+        let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
+        let held: Annotations = match &event.annotations {
+            Some(held) => (**held).clone(),
+            None if is_goal => own(),
+            None => Annotations::new(),
+        };
+        let terms = &plan.trigger.annotations;
+        let before: Vec<Slot> = self.solver.slots.clone();
+        let mut verdict = Verdict::Unlike;
+        'ways: for mut way in 0..held.len().saturating_pow(terms.len() as u32) {
+            self.solver.with(&before);
+            let mut picked = vec![0; terms.len()];
+            for place in picked.iter_mut().rev() {
+                *place = way % held.len();
+                way /= held.len();
             }
-            return Ok(false);
+            for ((what, term), at) in terms.iter().zip(picked) {
+                let (kind, value) = held[at];
+                let Solver { slots, trail, .. } = &mut self.solver;
+                match unify(term, value, 0, slots, trail) {
+                    Err(error) => return Verdict::Faulty(Fault::NoValue(error)),
+                    Ok(likes) if likes && kind == *what => {}
+                    Ok(_) => continue 'ways,
+                }
+            }
+            verdict = self.verdict(plan);
+            if !matches!(verdict, Verdict::False { .. }) {
+                return verdict;
+            }
         }
-        Ok(true)
+        verdict
     }
 
     fn measure_attempt(&mut self, index: u16, verdict: Verdict) {

@@ -8,13 +8,13 @@ use hrdsl_ir::{
         Agent, Annotation, Assertion, BeliefId, ContentId, Context, Control, GoalId, Internal, Literal,
         Performative, StepKind, Term, TriggerOn,
     },
-    expr::{BinaryOp, Function, UnaryOp},
+    expr::{BinaryOp, EvalError, Function, UnaryOp},
     list::ListFunction,
     value::seconds,
 };
 
 use crate::{
-    Cause, Failure, LogEntry, Logged, Outcome, Verdict,
+    Cause, Failure, Fault, LogEntry, Logged, Outcome, Verdict,
     belief::Annotations,
     code::Op,
     cycle::Machine,
@@ -85,21 +85,27 @@ impl Names<'_, '_> {
             Logged::Tried { on, args, plan, verdict } => {
                 format!("{}: {}", self.on(*on, args), self.verdict(*plan, *verdict))
             }
-            Logged::Unhandled { on, args } => format!("{}: no plan is applicable", self.on(*on, args)),
-            Logged::Fault { plan, fault, .. } => format!("{} not tried: {fault}", self.plan(*plan)),
+            Logged::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
+            Logged::Fault { plan, fault, .. } => {
+                format!("fault in the context of {}: {}", self.plan(*plan), self.fault(*plan, *fault))
+            }
+            Logged::FaultyAnswer { fault, .. } => format!("fault in an answer: {fault}"),
             Logged::Step { plan, line, vars, outcome } => self.step(*plan, *line, vars, *outcome),
             Logged::Failed(failure) => format!("failed {}", self.failure(failure)),
-            Logged::Abandoned(_) => "gone: no plan handles the failure".to_owned(),
             Logged::Finished => "finished".to_owned(),
             Logged::Dropped => "dropped".to_owned(),
             Logged::Added { belief, args, annotations } => {
                 format!("+{}{}", call(self.belief(*belief), args), self.annotations(*belief, annotations))
             }
             Logged::Left { belief, args } => format!("-{}", call(self.belief(*belief), args)),
-            Logged::StillHeld { belief, args, from } => {
+            Logged::Taken { belief, args, source } => {
+                format!("-{}[source({source})]", call(self.belief(*belief), args))
+            }
+            Logged::StillHeld { belief, args, meant, from } => {
                 let from: Vec<String> = from.iter().map(ToString::to_string).collect();
                 let fact = call(self.belief(*belief), args);
-                format!("warning: -{fact} takes nothing away, it is held from {}", from.join(", "))
+                let (meant, from) = (slot(meant), from.join(", "));
+                format!("warning: -{fact} takes away {meant} only, it is held from {from}")
             }
             Logged::Refused { belief, args } => {
                 format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
@@ -114,18 +120,22 @@ impl Names<'_, '_> {
             }
             Logged::Asked { from, content, args, all } => {
                 let what = call(self.content(*content), args.iter().map(slot));
-                let how = if *all { "all of " } else { "" };
-                format!("is asked {how}{what} by {}", self.peer(*from))
+                let how = if *all { "ask_all" } else { "ask" };
+                format!("hears {how} {what} from {}", self.peer(*from))
             }
-            Logged::Answered { from, answers } => {
-                let tuple = |a: &Args| format!("({})", a.iter().map(slot).collect::<Vec<_>>().join(", "));
-                let all: Vec<String> = answers.iter().map(tuple).collect();
-                let all = if all.is_empty() { "nothing".to_owned() } else { all.join(" ") };
-                format!("is answered {all} by {}", self.peer(*from))
+            Logged::Answered { from, content, all, answers } => {
+                let one = |a: &Args| call(self.content(*content), a.iter().map(slot));
+                let each: Option<Vec<String>> = answers.as_ref().map(|a| a.iter().map(one).collect());
+                let what = match each {
+                    None => "nothing".to_owned(),
+                    Some(each) if *all => format!("[{}]", each.join(", ")),
+                    Some(each) => each.join(", "),
+                };
+                format!("hears answer {what} from {}", self.peer(*from))
             }
             Logged::Printed(text) => format!("prints {text}"),
-            Logged::Livelock => "livelock: the state repeats".to_owned(),
-            Logged::Endless => "endless: too many cycles at one instant".to_owned(),
+            Logged::Livelock => "livelock".to_owned(),
+            Logged::Endless => "cycle bound".to_owned(),
         }
     }
 
@@ -188,7 +198,7 @@ impl Names<'_, '_> {
         let label = self.plan(plan);
         match verdict {
             Verdict::Unlike => format!("{label} is for other arguments"),
-            Verdict::Faulty(fault) => format!("{label} cannot be tried, {fault}"),
+            Verdict::Faulty(fault) => format!("{label} cannot be tried, {}", self.fault(plan, fault)),
             Verdict::Applicable => format!("{label} is applicable"),
             Verdict::False { part } => {
                 let plan = &self.agent.plans[usize::from(plan)];
@@ -204,15 +214,32 @@ impl Names<'_, '_> {
     }
 
     fn failure(&self, failure: &Failure) -> String {
-        let goal = failure.goal.as_ref();
-        let goal = goal.map(|(g, args)| format!("!{} ", call(self.goal(*g), args.iter().map(slot))));
-        let plan = failure.plan.map(|p| format!("in {}", self.plan(p)));
-        let place = goal.unwrap_or_default() + &plan.unwrap_or_default();
-        let belief = match failure.cause {
-            Cause::NoAnswer(belief) => format!(" {}", self.belief(belief)),
-            _ => String::new(),
+        let on = self.on(failure.on, &failure.args);
+        let goal = match failure.on {
+            TriggerOn::GoalAdded(_)
+            | TriggerOn::GoalFailed(_)
+            | TriggerOn::TestAdded(_)
+            | TriggerOn::TestFailed(_) => &on[1..],
+            TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => on.as_str(),
         };
-        format!("{}: {}{belief}", place.trim_end(), failure.cause)
+        let cause = match failure.cause {
+            Cause::NoValue(error) => self.fault(failure.plan, Fault::NoValue(error)),
+            other => other.to_string(),
+        };
+        format!("{goal} in {}: {cause}", self.plan(failure.plan))
+    }
+
+    /// A fault with the name of the variable.
+    fn fault(&self, plan: u16, fault: Fault) -> String {
+        match fault {
+            Fault::NoValue(EvalError::Unbound(u16::MAX)) => "`_` has no value".to_owned(),
+            Fault::NoValue(EvalError::Unbound(var)) => {
+                let plan = self.agent.plans.get(usize::from(plan));
+                let name = plan.and_then(|p| p.vars.get(usize::from(var)));
+                format!("`{}` has no value", name.map_or("?", |n| n))
+            }
+            other => other.to_string(),
+        }
     }
 
     fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: Outcome) -> String {
@@ -223,6 +250,9 @@ impl Names<'_, '_> {
             (Some(Op::Plain(step)), _) => show.step(step),
             (Some(Op::Branch { .. }), Outcome::Holds(holds)) => format!("if {holds}"),
             (Some(Op::While { .. }), Outcome::Holds(holds)) => format!("while {holds}"),
+            (Some(Op::Branch { .. }), _) => "if".to_owned(),
+            (Some(Op::While { .. }), _) => "while".to_owned(),
+            (Some(Op::For { .. }), Outcome::Faulty) => "for".to_owned(),
             (_, Outcome::Answers(1)) => "for: 1 answer".to_owned(),
             (_, Outcome::Answers(n)) => format!("for: {n} answers"),
             (_, Outcome::Branches(n)) => format!("fork: {n} branches"),
@@ -342,6 +372,9 @@ impl Show<'_> {
     }
 
     fn pattern(&self, pattern: &EventPattern) -> String {
+        if pattern.args.iter().all(|a| *a == ArgPattern::Any) {
+            return self.event(pattern.event, []);
+        }
         let arg = |a: &ArgPattern| match a {
             ArgPattern::Any => "_".to_owned(),
             ArgPattern::Is(v) => v.to_string(),

@@ -21,8 +21,8 @@ use crate::{
 /// The multi-agent system of a run.
 ///
 /// After each batch of [`perceive`](Self::perceive) and [`stimulus_done`](Self::stimulus_done) the harness calls
-/// [`settle`](Self::settle) or [`run`](Self::run) at the same time, and at [`next_wake`](Self::next_wake) at the latest.
-/// Times never go back.
+/// [`settle`](Self::settle) at the same time, and does what the agents do, until they do nothing; at
+/// [`wake_of`](Self::wake_of) an agent it also calls [`expire`](Self::expire). Times never go back.
 #[derive(Debug)]
 pub struct Society<'p> {
     machines: Vec<Machine<'p>>,
@@ -105,7 +105,6 @@ impl<'p> Society<'p> {
 
     /// An event reaches an agent, which will take it in when it is next run.
     pub fn perceive(&mut self, agent: usize, event: EventId, args: &[Value]) {
-        self.repetition.forget();
         if let Some(machine) = self.machines.get_mut(agent) {
             machine.perceive(event, args);
         }
@@ -114,79 +113,86 @@ impl<'p> Society<'p> {
     /// The agent's action is finished, and its intention goes on when it is next run. A token that is not of an action in
     /// progress has no effect.
     pub fn stimulus_done(&mut self, agent: usize, token: ActionToken, now: Nanos) {
-        self.repetition.forget();
         self.pass(now);
         if let Some(machine) = self.machines.get_mut(agent) {
             machine.action_done(token);
         }
     }
 
-    /// Runs rounds until everybody waits or is done, then lets what is due by now expire, and so on; an event that comes
-    /// together with the end of an `await` wins. Appends what the agents do, in their order, with the agent's place.
-    pub fn run(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
-        self.rounds_until_quiet(now, true, out);
+    /// Does rounds until everybody waits or is done, or until somebody acts: then the caller does the actions and calls
+    /// again. Appends what the agents do, in their order, with the agent's place.
+    pub fn settle(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+        self.pass(now);
+        self.active.clear();
+        let working = (0u16..).zip(&self.machines).filter(|(_, m)| m.has_work());
+        self.active.extend(working.map(|(place, _)| place));
+        self.reason();
+        for (place, machine) in self.machines.iter_mut().enumerate() {
+            out.extend(machine.actions.drain(..).map(|action| (place, action)));
+        }
     }
 
-    /// As [`run`](Self::run), but nothing that is due by now expires yet: for a harness in which others may still make
-    /// events at this instant.
-    pub fn settle(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
-        self.rounds_until_quiet(now, false, out);
+    /// Ends what is due for an agent: a `wait`, an `await`, a question, a deadline. `false` if nothing is; otherwise the
+    /// agents are to be settled.
+    pub fn expire(&mut self, agent: usize, now: Nanos) -> bool {
+        self.pass(now);
+        let round = self.round;
+        let halted = self.halted.is_some();
+        self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {
+            machine.log.round = round;
+            machine.expire()
+        })
+    }
+
+    /// Settles, and lets what is due expire, until nothing is left to do at this instant but actions: for agents that are
+    /// alone in a run.
+    pub fn run(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+        loop {
+            let before = out.len();
+            self.settle(now, out);
+            if out.len() > before || self.halted.is_some() {
+                return;
+            }
+            let mut any = false;
+            for agent in 0..self.machines.len() {
+                any = self.expire(agent, now) || any;
+            }
+            if !any {
+                return;
+            }
+        }
     }
 
     fn pass(&mut self, now: Nanos) {
         if now > self.now {
             self.now = now;
             self.rounds = 0;
-            self.repetition.forget();
             self.machines.iter_mut().for_each(|m| m.advance(now));
         }
     }
 
-    fn rounds_until_quiet(&mut self, now: Nanos, expire: bool, out: &mut Vec<(usize, Action)>) {
-        self.pass(now);
-        loop {
-            self.active.clear();
-            let working = (0u16..).zip(&self.machines).filter(|(_, m)| m.has_work());
-            self.active.extend(working.map(|(place, _)| place));
-            self.reason();
-            if !(expire && self.halted.is_none() && self.expire()) {
-                break;
-            }
-        }
-        for (place, machine) in self.machines.iter_mut().enumerate() {
-            out.extend(machine.actions.drain(..).map(|action| (place, action)));
-        }
-    }
-
-    /// Lets what is due expire; `false` if nothing was.
-    fn expire(&mut self) -> bool {
-        let now = self.now;
-        let mut any = false;
-        for machine in &mut self.machines {
-            if machine.timers.first().is_some_and(|t| t.due <= now) {
-                machine.log.round = self.round;
-                any = machine.expire() || any;
-            }
-        }
-        any
-    }
-
     /// Rounds of the active agents and of those they speak to.
     fn reason(&mut self) {
+        self.repetition.forget();
+        let mut spoken = 0;
         while !self.active.is_empty() && self.halted.is_none() {
             self.round += 1;
             self.rounds += 1;
             if self.rounds > self.limit {
                 return self.halt(Status::Endless);
             }
+            self.settle_active();
+            self.deliver();
+            if self.machines.iter().any(|m| !m.actions.is_empty()) {
+                return;
+            }
+            spoken += 1;
             let mut repetition = std::mem::take(&mut self.repetition);
-            let repeats = repetition.seen(self.rounds, self);
+            let repeats = !self.active.is_empty() && repetition.seen(spoken, self);
             self.repetition = repetition;
             if repeats {
                 return self.halt(Status::Livelock);
             }
-            self.settle_active();
-            self.deliver();
         }
     }
 
@@ -233,12 +239,19 @@ impl<'p> Society<'p> {
 
     fn halt(&mut self, status: Status) {
         self.halted = Some(status);
+        self.active.truncate(1);
         let what = if status == Status::Livelock { Logged::Livelock } else { Logged::Endless };
         for place in &self.active {
             let machine = &mut self.machines[usize::from(*place)];
             machine.log.round = self.round;
             machine.enter(0, what.clone());
         }
+    }
+
+    /// The earliest time at which something of this agent is due.
+    #[must_use]
+    pub fn wake_of(&self, agent: usize) -> Option<Nanos> {
+        if self.halted.is_some() { None } else { self.machines.get(agent).and_then(Machine::next_wake) }
     }
 
     /// The earliest time at which a `wait`, an `await` or a deadline is over.

@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Span, Value,
-    bdi::{Assertion, BeliefId, Context, Literal, StepKind, Term, TriggerOn},
+    bdi::{Annotation, Assertion, BeliefId, Context, GoalId, Literal, StepKind, Term, TriggerOn, source_self},
+    expr::EvalError,
     value::nanos,
 };
 use smallvec::SmallVec;
@@ -15,7 +16,7 @@ use crate::{
     event::{Args, Event, Ground},
     intention::{Deadline, Loop, State, Timer},
     log::sources,
-    unify::{Slot, Trail, eval, known, unify_all, unify},
+    unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
 };
 
 /// What becomes of the intention after a step that did not fail.
@@ -67,7 +68,7 @@ impl<'p> Machine<'p> {
         }
     }
 
-    /// Executes lines up to the end of one step: the beginning of a loop, and the choice of its next answer, take no turn.
+    /// Executes lines up to the end of one step: the beginning of a `while` takes no turn.
     fn lines(&mut self, place: u32) -> Result<Flow, Cause> {
         loop {
             let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(Flow::Next) };
@@ -108,15 +109,8 @@ impl<'p> Machine<'p> {
                     self.jump(place, after);
                     return self.each_answer(here, condition, &variables);
                 }
-                Op::Next { end } => {
-                    let end = settle(code, *end);
-                    if self.next_answer(place) {
-                        self.jump(place, after);
-                    } else {
-                        self.jump(place, end);
-                        return Ok(Flow::Next);
-                    }
-                }
+                // The next answer of a `for` is found by `resume`, and so is the end of a branch.
+                Op::Next { .. } | Op::Join => return Ok(Flow::Next),
                 Op::Fork { branches, all, end } => {
                     let (branches, all, end) = (branches.clone(), *all, settle(code, *end));
                     self.jump(place, end);
@@ -124,13 +118,11 @@ impl<'p> Machine<'p> {
                     self.fork(here, &branches, all);
                     return Ok(Flow::Suspended);
                 }
-                // A branch that ends is found by `resume`.
-                Op::Join => return Ok(Flow::Next),
             }
         }
     }
 
-    fn jump(&mut self, place: u32, to: u16) {
+    pub fn jump(&mut self, place: u32, to: u16) {
         if let Some(top) = self.mind.pool.at(place).frames.last_mut() {
             top.next = to;
         }
@@ -167,18 +159,17 @@ impl<'p> Machine<'p> {
         otherwise: u16,
     ) -> Result<Flow, Cause> {
         self.jump(here.place, then);
-        let before = self.mind.pool.see(here.place).vars().to_vec();
-        let holds = self.holds(here.place, condition)?;
-        self.decided(here, holds, before);
-        if !holds {
+        if !self.decide(here, condition)? {
             self.jump(here.place, otherwise);
         }
         Ok(Flow::Next)
     }
 
-    fn decided(&mut self, here: Here, holds: bool, vars: Vec<Slot>) {
-        let Here { place, plan, line, .. } = here;
-        self.entry_of(place, || Logged::Step { plan, line, vars, outcome: Outcome::Holds(holds) });
+    /// The condition of a block; whether it holds is in the log.
+    fn decide(&mut self, here: Here, condition: &'p Context) -> Result<bool, Cause> {
+        let holds = self.holds(here.place, condition);
+        self.done(here, holds.as_ref().map_or(Outcome::Faulty, |h| Outcome::Holds(*h)));
+        holds
     }
 
     fn enter_loop(&mut self, place: u32, variables: &[u16], answers: Vec<Slot>) {
@@ -200,10 +191,7 @@ impl<'p> Machine<'p> {
     fn again(&mut self, here: Here, condition: &'p Context, body: u16, end: u16) -> Result<Flow, Cause> {
         self.jump(here.place, body);
         self.reopen(here.place);
-        let before = self.mind.pool.see(here.place).vars().to_vec();
-        let holds = self.holds(here.place, condition)?;
-        self.decided(here, holds, before);
-        if !holds {
+        if !self.decide(here, condition)? {
             self.mind.pool.at(here.place).loops.pop();
             self.jump(here.place, end);
         }
@@ -220,6 +208,21 @@ impl<'p> Machine<'p> {
         let vars = self.mind.pool.see(here.place).vars();
         let open: SmallVec<[u16; 4]> =
             variables.iter().copied().filter(|v| vars[usize::from(*v)].is_none()).collect();
+        let found = self.all_answers(condition, &open);
+        self.done(here, found.as_ref().map_or(Outcome::Faulty, |(count, _)| Outcome::Answers(*count)));
+        let (count, answers) = found?;
+        self.enter_loop(here.place, variables, answers);
+        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut() {
+            if l.open.is_empty() {
+                // Nothing is bound: only the number of answers matters.
+                l.answers = vec![None; count];
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// How many answers there are, and the values of these variables in each.
+    fn all_answers(&mut self, condition: &'p Context, open: &[u16]) -> Result<(usize, Vec<Slot>), Cause> {
         let mut answers = Vec::new();
         let mut count = 0;
         let mut found = self.solver.solve(&self.mind, &mut self.dice, condition)?;
@@ -230,20 +233,11 @@ impl<'p> Machine<'p> {
             found = !matches!(condition, Context::True | Context::Test(_))
                 && self.solver.again(&self.mind, &mut self.dice)?;
         }
-        self.done(here, Outcome::Answers(count));
-        self.enter_loop(here.place, variables, answers);
-        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut() {
-            l.used = 0;
-            if l.open.is_empty() {
-                // Nothing is bound: only the number of answers matters.
-                l.answers = vec![None; count];
-            }
-        }
-        Ok(Flow::Next)
+        Ok((count, answers))
     }
 
     /// Binds the loop's next answer; after the last the loop is over.
-    fn next_answer(&mut self, place: u32) -> bool {
+    pub fn next_answer(&mut self, place: u32) -> bool {
         self.reopen(place);
         let intention = self.mind.pool.at(place);
         let Some(l) = intention.loops.last_mut() else { return false };
@@ -265,21 +259,26 @@ impl<'p> Machine<'p> {
         let Some(frame) = parent.frames.last().copied() else { return };
         let (args, vars) = (parent.args(frame).to_vec(), parent.vars().to_vec());
         parent.state = State::Forked { left: branches.len() as u32, all };
-        let suspended = parent.suspended;
-        let mut children = SmallVec::new();
+        let atomic = parent.atomic > 0;
+        let mut children: SmallVec<[u32; 2]> = SmallVec::new();
         for start in branches {
             let child = self.mind.pool.adopt();
             children.push(child);
             let first = settle(self.mind.library.code(frame.plan), *start);
             let intention = self.mind.pool.at(child);
             intention.push(frame.plan, first, &args, &vars);
-            intention.frames[0].branch = true;
-            intention.frames[0].under = frame.under;
-            (intention.parent, intention.suspended) = (Some(here.place), suspended);
+            (intention.frames[0].branch, intention.frames[0].under) = (true, frame.under);
+            (intention.frames[0].told, intention.atomic) = (frame.told, u32::from(atomic));
+            intention.parent = Some(here.place);
+            self.mind.pool.count(child);
         }
-        self.mind.pool.at(here.place).children = children.clone();
+        self.mind.pool.at(here.place).children.clone_from(&children);
+        // At the front, too, the first branch is the first.
+        if atomic {
+            children.reverse();
+        }
         for child in children {
-            // An earlier branch that ended at once may have dropped it.
+            // A branch that ended at once may have dropped it.
             if self.mind.pool.see(child).parent == Some(here.place) {
                 self.resume(child);
             }
@@ -299,7 +298,7 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Suspended)
             }
             StepKind::Achieve { goal, args, within } => {
-                let args = given(args, slots)?;
+                let args = self.given_to(*goal, given(args, slots)?)?;
                 if let Some(within) = within {
                     self.set_deadline(place, within)?;
                 }
@@ -307,13 +306,13 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Suspended)
             }
             StepKind::Spawn { goal, args } => {
-                let args = given(args, slots)?;
+                let args = self.given_to(*goal, given(args, slots)?)?;
                 self.post_goal(here, TriggerOn::GoalAdded(*goal), args, None);
                 Ok(Flow::Next)
             }
             StepKind::Query(literal) => self.query(here, literal),
             StepKind::Test(condition) => {
-                if self.holds(place, condition)? { Ok(Flow::Next) } else { Err(Cause::NoMatch) }
+                if self.holds(place, condition)? { Ok(Flow::Next) } else { Err(Cause::NoAnswer) }
             }
             StepKind::Add(assertion) => {
                 let (args, annotations) = self.asserted(place, assertion)?;
@@ -346,7 +345,7 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Next)
             }
             StepKind::Control { what, goal } => self.control(place, *what, goal.as_ref()),
-            StepKind::Fail => Err(Cause::Told),
+            StepKind::Fail => Err(Cause::Fail),
             // INVARIANT: blocks are lines of their own.
             StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
                 Ok(Flow::Next)
@@ -357,6 +356,15 @@ impl<'p> Machine<'p> {
     fn post_goal(&mut self, here: Here, on: TriggerOn, args: Args, of: Option<u32>) {
         let by = Some((here.plan, here.site));
         self.post(Event { on, args, annotations: None, of, origin: here.origin, by, reply: None });
+    }
+
+    /// The arguments, as the goal's declaration has them, if it is declared.
+    fn given_to(&self, goal: GoalId, args: Args) -> Result<Args, Cause> {
+        let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
+        let Some(params) = declared.and_then(|g| g.params.as_ref()) else { return Ok(args) };
+        let ground = args.iter().copied().flatten().collect();
+        let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
+        Ok(typed.into_iter().map(Some).collect())
     }
 
     fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), Cause> {
@@ -382,7 +390,7 @@ impl<'p> Machine<'p> {
         let declared = self.mind.agent.map(|a| &a.beliefs[usize::from(assertion.belief.0)].annotations);
         for (what, value) in &assertion.annotations {
             let mut value = eval(value, slots)?;
-            if let hrdsl_ir::bdi::Annotation::Declared(at) = what {
+            if let Annotation::Declared(at) = what {
                 let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(Cause::OutOfRange)?;
                 let one = typed(std::slice::from_ref(param), Ground::from_slice(&[value]));
                 value = one.ok_or(Cause::OutOfRange)?[0];
@@ -402,8 +410,8 @@ impl<'p> Machine<'p> {
             return Ok(Flow::Next);
         }
         let on = TriggerOn::TestAdded(literal.belief);
-        if self.mind.library.relevant(on).is_empty() {
-            return Err(Cause::NoAnswer(literal.belief));
+        if !literal.annotations.is_empty() || !self.plans_answer(literal.belief) {
+            return Err(Cause::NoAnswer);
         }
         // A term that computes with a variable which this literal binds is compared with the answer.
         let slots = self.mind.pool.see(place).vars();
@@ -412,79 +420,95 @@ impl<'p> Machine<'p> {
         Ok(Flow::Suspended)
     }
 
+    /// Whether a plan is relevant to a query of the belief, or to its failure.
+    pub fn plans_answer(&self, belief: BeliefId) -> bool {
+        let on = [TriggerOn::TestAdded(belief), TriggerOn::TestFailed(belief)];
+        on.iter().any(|on| !self.mind.library.relevant(*on).is_empty())
+    }
+
     /// Takes one source away from the first fact that has it.
     fn forget(&mut self, place: u32, literal: &'p Literal) -> Result<Flow, Cause> {
-        let belief = literal.belief;
+        let own = Term::Expr(Expr::Const(Value::Symbol(source_self())));
+        let wanted = literal.annotations.iter().position(|(what, _)| *what == Annotation::Source);
+        let source = wanted.map_or(&own, |at| &literal.annotations[at].1);
+        let others = literal.annotations.iter().enumerate().filter(|(at, _)| Some(*at) != wanted);
+        let others: Vec<&(Annotation, Term)> = others.map(|(_, a)| a).collect();
+        let plain: Vec<&(Annotation, Term)> =
+            literal.annotations.iter().filter(|(what, _)| *what != Annotation::Source).collect();
         self.solver.with(self.mind.pool.see(place).vars());
-        let rows = self.matching(literal)?;
-        let source = self.source_of(literal);
-        for row in &rows {
-            let held = sources(self.mind.beliefs.of(belief).annotations(*row));
-            let gone = match source {
-                Some(Some(wanted)) => held.into_iter().find(|s| hrdsl_ir::list::same(*s, wanted)),
-                Some(None) => held.first().copied(),
-                None => {
-                    let own = Value::Symbol(hrdsl_ir::bdi::source_self());
-                    held.into_iter().find(|s| hrdsl_ir::list::same(*s, own))
-                }
-            };
-            if let Some(gone) = gone {
-                let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(*row));
-                if self.mind.beliefs.of_mut(belief).withdraw(*row, gone) {
-                    self.left(belief, &fact);
-                }
+        well_bound(&literal.args, &self.solver.slots)?;
+        let belief = literal.belief;
+        let mut kept = None;
+        for row in self.mind.beliefs.of(belief).iter().collect::<Vec<_>>() {
+            if let Some(gone) = self.source_of(literal, row, source, &others)? {
+                self.take(belief, row, gone);
                 return Ok(Flow::Next);
             }
+            if kept.is_none() && self.agrees(literal, row, &plain)? {
+                kept = Some(row);
+            }
         }
-        if let Some(row) = rows.first() {
+        if let Some(row) = kept {
             let facts = self.mind.beliefs.of(belief);
-            let (args, from) = (facts.row(*row).to_vec(), sources(facts.annotations(*row)));
-            let number = self.mind.pool.see(place).number;
-            self.enter(number, Logged::StillHeld { belief, args, from });
+            let (args, from) = (facts.row(row).to_vec(), sources(facts.annotations(row)));
+            let meant = known(source, &self.solver.slots);
+            // An entry of its own accord: the step may have been meant otherwise.
+            self.enter(0, Logged::StillHeld { belief, args, meant, from });
         }
         Ok(Flow::Next)
     }
 
-    /// The source that the literal names: `Some(None)` is any.
-    fn source_of(&self, literal: &Literal) -> Option<Option<Value>> {
-        let of = literal.annotations.iter().find(|(what, _)| *what == hrdsl_ir::bdi::Annotation::Source);
-        of.map(|(_, term)| known(term, &self.solver.slots))
-    }
-
-    /// The facts that match, oldest first, with the variables that the solver holds; nothing is bound.
-    fn matching(&mut self, literal: &'p Literal) -> Result<Vec<usize>, Cause> {
-        crate::unify::well_bound(&literal.args, &self.solver.slots)?;
-        let rows = self.mind.beliefs.of(literal.belief);
-        let mut found = Vec::new();
-        for row in rows.iter() {
-            let mut slots = self.solver.slots.clone();
-            let args = rows.row(row).iter().map(|v| Some(*v));
-            if !unify_all(&literal.args, args, 0, &mut slots, &mut Trail::new())? {
-                continue;
-            }
-            let mut all = true;
-            for (what, term) in &literal.annotations {
-                let mut one = false;
-                for (held, value) in rows.annotations(row) {
-                    let mut slots = slots.clone();
-                    one = one || (held == what && unify(term, *value, 0, &mut slots, &mut Trail::new())?);
+    /// The fact's first source that the term means, if the fact matches with it.
+    fn source_of(
+        &mut self,
+        literal: &Literal,
+        row: usize,
+        source: &Term,
+        others: &[&(Annotation, Term)],
+    ) -> Result<Option<Value>, Cause> {
+        let facts = self.mind.beliefs.of(literal.belief);
+        let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
+        let mark = trail.len();
+        let args = facts.row(row).iter().map(|v| Some(*v));
+        let mut found = None;
+        if unify_all(&literal.args, args, 0, slots, trail)? {
+            for one in sources(facts.annotations(row)) {
+                let here = trail.len();
+                if unify(source, one, 0, slots, trail)?
+                    && annotated(others, facts.annotations(row), slots, trail)?
+                {
+                    found = Some(one);
+                    break;
                 }
-                all = all && one;
-            }
-            if all {
-                found.push(row);
+                undo(slots, trail, here);
             }
         }
+        undo(&mut self.solver.slots, &mut self.solver.trail, mark);
         Ok(found)
+    }
+
+    /// Whether the fact matches, with these annotations; nothing is bound.
+    fn agrees(
+        &mut self,
+        literal: &Literal,
+        row: usize,
+        annotations: &[&(Annotation, Term)],
+    ) -> Result<bool, Cause> {
+        let facts = self.mind.beliefs.of(literal.belief);
+        let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
+        let mark = trail.len();
+        let args = facts.row(row).iter().map(|v| Some(*v));
+        let agrees = unify_all(&literal.args, args, 0, slots, trail)?
+            && annotated(annotations, facts.annotations(row), slots, trail)?;
+        undo(&mut self.solver.slots, &mut self.solver.trail, mark);
+        Ok(agrees)
     }
 
     fn replace(&mut self, place: u32, assertion: &Assertion) -> Result<Flow, Cause> {
         let (args, annotations) = self.asserted(place, assertion)?;
         let belief = assertion.belief;
         for row in self.mind.beliefs.of(belief).others(&args) {
-            let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
-            self.mind.beliefs.of_mut(belief).remove(row);
-            self.left(belief, &fact);
+            self.remove(belief, row);
         }
         self.believe(belief, &args, annotations);
         Ok(Flow::Next)
@@ -492,10 +516,12 @@ impl<'p> Machine<'p> {
 
     fn abolish(&mut self, place: u32, literal: &'p Literal) -> Result<Flow, Cause> {
         self.solver.with(self.mind.pool.see(place).vars());
-        for row in self.matching(literal)? {
-            let fact = Ground::from_slice(self.mind.beliefs.of(literal.belief).row(row));
-            self.mind.beliefs.of_mut(literal.belief).remove(row);
-            self.left(literal.belief, &fact);
+        well_bound(&literal.args, &self.solver.slots)?;
+        let annotations: Vec<&(Annotation, Term)> = literal.annotations.iter().collect();
+        for row in self.mind.beliefs.of(literal.belief).iter().collect::<Vec<_>>() {
+            if self.agrees(literal, row, &annotations)? {
+                self.remove(literal.belief, row);
+            }
         }
         Ok(Flow::Next)
     }
@@ -534,6 +560,24 @@ impl<'p> Machine<'p> {
         intention.deadlines.push(Deadline { height, timer });
         Ok(())
     }
+}
+
+/// Whether each term matches one of the annotations, in some way; what that binds is on the trail.
+pub(crate) fn annotated(
+    terms: &[&(Annotation, Term)],
+    held: &Annotations,
+    slots: &mut [Slot],
+    trail: &mut Trail,
+) -> Result<bool, EvalError> {
+    let Some(((what, term), rest)) = terms.split_first() else { return Ok(true) };
+    for (_, value) in held.iter().filter(|(w, _)| w == what) {
+        let mark = trail.len();
+        if unify(term, *value, 0, slots, trail)? && annotated(rest, held, slots, trail)? {
+            return Ok(true);
+        }
+        undo(slots, trail, mark);
+    }
+    Ok(false)
 }
 
 /// A value as it is printed: a string without its quotes.
