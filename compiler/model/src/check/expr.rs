@@ -5,9 +5,9 @@ use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
 
 use super::{Checker, Env, is_variable_name, item::Item};
 use crate::{
-    Dim, Expr, ExprKind, Function, Kind, Type, Unit, Value,
+    Dim, Elements, Expr, ExprKind, Function, Kind, Type, Unit, Value,
     noun::Noun,
-    report::{names, types},
+    report::{agents, names, types},
     value,
 };
 
@@ -15,7 +15,7 @@ pub(super) const FUNCTIONS: [(&str, Function); 4] =
     [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max), ("norm", Function::Norm)];
 
 /// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
-const MAX_TIME: f64 = 1e9;
+pub(super) const MAX_TIME: f64 = 1e9;
 
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
@@ -64,8 +64,88 @@ impl<'a> Checker<'a> {
                 let item = self.item(of, env);
                 return self.field(item, name);
             }
+            Syntax::Text(text) => {
+                Expr::value(Value::Text(crate::Text(Symbol::intern(text))), Kind::Text, span)
+            }
+            Syntax::List { items, rest } => self.list(items, rest.as_deref(), Kind::Unknown, span, env),
+            Syntax::Unify { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Internal(_) => {
+                self.no_value_here(e, env);
+                Expr::error(span)
+            }
             Syntax::Error => Expr::error(span),
         })
+    }
+
+    /// What belongs into a formula stands where a value is needed.
+    fn no_value_here(&mut self, e: &ast::Expr, env: &Env) {
+        let issue = match &e.kind {
+            Syntax::Unify { .. } => agents::no_binding(e.span, env.plan),
+            Syntax::Internal(call) => {
+                let what = format!("`.{}`", call.name.text);
+                let help = if env.plan {
+                    "it is a formula of its own: let it bind a variable, and use that: `.count(F, N) && N > 2`"
+                } else {
+                    "internal actions are part of the plans and rules of agents"
+                };
+                agents::no_formula(&what, e.span, help)
+            }
+            _ => agents::no_formula("a belief", e.span, "bind its value first: `b(X) && X …`"),
+        };
+        self.report(issue);
+    }
+
+    /// `[a, b | rest]`, whose elements are all of one kind; `element`: what they are to be.
+    fn list(
+        &mut self,
+        items: &[ast::Expr],
+        rest: Option<&ast::Expr>,
+        element: Kind,
+        span: Span,
+        env: &mut Env,
+    ) -> Expr {
+        let mut element = element;
+        let due = |element: Kind| if element == Kind::Int { Kind::Unknown } else { element };
+        let mut values = Vec::new();
+        for item in items {
+            let value = match &item.kind {
+                Syntax::List { items, rest } => {
+                    let inner = element.element().unwrap_or(Kind::Unknown);
+                    let value = self.list(items, rest.as_deref(), inner, item.span, env);
+                    self.fit(value, element, env)
+                }
+                _ => self.expr_of(item, due(element), env),
+            };
+            element = match (element, value.ty) {
+                (Kind::Int, Kind::Float(Dim::NUMBER)) => value.ty,
+                (Kind::Int, got) if got.with(Kind::Int).is_none() => {
+                    self.report(types::mismatch(Kind::Int, got, None, item.span));
+                    return Expr::error(span);
+                }
+                (known, got) => known.with(got).unwrap_or(known),
+            };
+            values.push(value);
+        }
+        let values: Vec<Expr> = values.into_iter().map(|v| self.fit(v, element, env)).collect();
+        let rest = rest.map(|r| self.expr_of(r, Kind::list(element), env));
+        if values.iter().chain(&rest).any(|v| v.kind == ExprKind::Error) {
+            return Expr::error(span);
+        }
+        let known = rest.as_ref().and_then(|r| r.ty.element()).and_then(|of| of.with(element));
+        let ty = Kind::list(known.unwrap_or(element));
+        let mut constants: Option<Vec<Value>> = values.iter().map(Expr::constant).collect();
+        if let Some(rest) = &rest {
+            constants = match (constants, rest.constant()) {
+                (Some(mut all), Some(Value::List(more))) => {
+                    all.extend(more.values());
+                    Some(all)
+                }
+                (Some(_) | None, _) => None,
+            };
+        }
+        match constants {
+            Some(all) => Expr::value(Value::List(Elements::new(&all)), ty, span),
+            None => Expr { kind: ExprKind::List(values, rest.map(Box::new)), ty, span },
+        }
     }
 
     /// A value of an enumeration by its bare name, where one of this enumeration is due.
@@ -89,6 +169,9 @@ impl<'a> Checker<'a> {
 
     /// An expression where a value of this kind is due, which may be written by its bare name.
     pub(super) fn item_due(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Item {
+        if let (Kind::List(of), Syntax::List { items, rest }) = (want, &e.kind) {
+            return Item::One(self.list(items, rest.as_deref(), of.element(), e.span, env));
+        }
         let Kind::Enum(of) = want else { return self.item(e, env) };
         if let Some(symbol) = self.symbol_of(e, of) {
             return Item::One(symbol);
@@ -142,10 +225,20 @@ impl<'a> Checker<'a> {
 
     /// A constant must lie in the range of its type.
     pub(super) fn in_range(&mut self, e: &Expr, ty: Type) {
-        if let (Type::Int { lo, hi }, Some(Value::Int(n))) = (ty, e.constant())
-            && !(lo..=hi).contains(&n)
-        {
-            self.report(types::out_of_range(Value::Int(n), lo, hi, e.span));
+        if let Some(value) = e.constant() {
+            self.value_in_range(value, ty, e.span);
+        }
+    }
+
+    fn value_in_range(&mut self, value: Value, ty: Type, span: Span) {
+        match (ty, value) {
+            (Type::Int { lo, hi }, Value::Int(n)) if !(lo..=hi).contains(&n) => {
+                self.report(types::out_of_range(value, lo, hi, span));
+            }
+            (Type::List(of), Value::List(list)) => {
+                list.values().iter().for_each(|v| self.value_in_range(*v, of.element(), span));
+            }
+            (_, _) => {}
         }
     }
 
@@ -201,7 +294,20 @@ impl<'a> Checker<'a> {
                 e
             }
             (Kind::Float(Dim::NUMBER), Kind::Int) => as_float(e),
-            (Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) | Kind::Unknown, _) => {
+            (Kind::List(_), Kind::List(_)) if want.with(e.ty).is_some() => {
+                self.learn(&e, want, env);
+                e
+            }
+            (
+                Kind::Bool
+                | Kind::Int
+                | Kind::Float(_)
+                | Kind::Enum(_)
+                | Kind::Text
+                | Kind::List(_)
+                | Kind::Unknown,
+                _,
+            ) => {
                 self.report(types::mismatch(want, e.ty, e.constant(), e.span));
                 Expr::error(e.span)
             }
@@ -358,7 +464,7 @@ impl<'a> Checker<'a> {
         match op {
             BinaryOp::And | BinaryOp::Or => Some(Kind::Bool),
             BinaryOp::Eq | BinaryOp::Ne => {
-                if !l.ty.is_number() && l.ty == r.ty {
+                if !l.ty.is_number() && l.ty.with(r.ty).is_some() {
                     return Some(Kind::Bool);
                 }
                 self.same(symbol(op), left, right).map(|_| Kind::Bool)
@@ -403,7 +509,9 @@ impl<'a> Checker<'a> {
         match (l.0, r.0) {
             (Kind::Unknown, other) | (other, Kind::Unknown) => Some(other),
             (a, b) if a == b => Some(a),
-            (Kind::Bool | Kind::Enum(_), _) | (_, Kind::Bool | Kind::Enum(_)) => {
+            (Kind::List(_), Kind::List(_)) if l.0.with(r.0).is_some() => l.0.with(r.0),
+            (Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_), _)
+            | (_, Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_)) => {
                 self.report(types::operands(op, (l.0, l.1), (r.0, r.1)));
                 None
             }

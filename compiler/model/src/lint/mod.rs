@@ -19,6 +19,7 @@ mod no_failure_plan;
 mod overflow;
 mod plan_terms;
 mod recursion_without_time;
+mod removes_nothing;
 mod shadowed_plan;
 mod time_stops;
 mod unreachable_location;
@@ -47,6 +48,7 @@ const RULES: &[Rule] = &[
     dead_plan::check,
     no_failure_plan::check,
     recursion_without_time::check,
+    removes_nothing::check,
     unreachable_location::check,
     time_stops::check,
     committed_cycle::check,
