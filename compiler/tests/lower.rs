@@ -4,14 +4,14 @@ use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
     ActorId, ArgPattern, EventId, EventPattern, Expr, List, Program, Symbol, Type, Unit, Value,
     bdi::{
-        Annotation, Assertion, BeliefId, ContentId, Context, Control, Fact, GoalId, Internal, Literal, Performative, Step,
-        StepKind, Subject, Term, TriggerOn,
+        Annotation, Assertion, BeliefId, ContentId, Context, Control, Fact, GoalId, Internal, Literal,
+        Performative, Step, StepKind, Subject, Term, TriggerOn,
     },
     coverage::{Condition, PointId},
     event::StimulusStep,
     expr::{BinaryOp, Function, UnaryOp},
-    monitor::{Effect, On},
     list::ListFunction,
+    monitor::{Effect, On},
     suite::{ChoiceKind, Explore, Method, ModelGoal, SearchGoal},
     ta::{ClockOp, LocationKind, ReceiveArg, Sync, Update},
     test::TestStep,
@@ -84,7 +84,10 @@ fn agents_number_variables_in_the_order_of_their_places() {
            plan on asked(X) when X { +away }\n}",
     );
     let a = &p.agents[0];
-    assert_eq!(a.initial_beliefs, [Fact { belief: BeliefId(0), args: vec![Value::Int(0)], annotations: vec![] }]);
+    assert_eq!(
+        a.initial_beliefs,
+        [Fact { belief: BeliefId(0), args: vec![Value::Int(0)], annotations: vec![] }]
+    );
     assert_eq!(a.initial_goals, [(GoalId(0), vec![Value::Int(3)])]);
     let go = &a.plans[0];
     assert_eq!((go.label.as_str(), go.trigger.on), ("go#1", TriggerOn::GoalAdded(GoalId(0))));
@@ -105,7 +108,10 @@ fn agents_number_variables_in_the_order_of_their_places() {
     assert_eq!(steps[1], &StepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)], within: None });
     assert_eq!(steps[2], &StepKind::Query(literal(1, vec![Term::Var(2)])));
     assert_eq!(steps[3], &StepKind::Remove(literal(0, vec![Term::Any])));
-    assert_eq!(steps[4], &StepKind::Replace(Assertion { belief: BeliefId(0), args: vec![Expr::Var(2)], annotations: vec![] }));
+    assert_eq!(
+        steps[4],
+        &StepKind::Replace(Assertion { belief: BeliefId(0), args: vec![Expr::Var(2)], annotations: vec![] })
+    );
     let no = &a.plans[1];
     assert_eq!((no.label.as_str(), no.trigger.on), ("no", TriggerOn::GoalFailed(GoalId(0))));
     let events = vec![pattern(0, &[TRUE]), pattern(0, &[ArgPattern::Any])];
@@ -151,15 +157,20 @@ fn beliefs_have_annotations_negations_percepts_and_rules() {
     assert_eq!((a.beliefs[1].percept, a.beliefs[0].percept), (Some(EventId(0)), None));
     assert_eq!(a.beliefs[3].annotations, a.beliefs[0].annotations);
     assert_eq!(a.beliefs[0].annotations[0].name, "sure");
-    let fact = |belief, n, annotations| Fact { belief: BeliefId(belief), args: vec![Value::Int(n)], annotations };
+    let fact =
+        |belief, n, annotations| Fact { belief: BeliefId(belief), args: vec![Value::Int(n)], annotations };
     let sourced = vec![
         (Annotation::Source, Value::Symbol(Symbol::intern("R"))),
         (Annotation::Declared(0), Value::Int(4)),
     ];
     assert_eq!(a.initial_beliefs, [fact(0, 1, vec![]), fact(3, 2, vec![]), fact(0, 3, sourced)]);
     let rule = &a.rules[0];
-    assert_eq!((rule.belief, &rule.args, &rule.vars[..]), (BeliefId(2), &vec![Term::Var(0)], &["N".into(), "S".into()][..]));
-    let sure = Literal { annotations: vec![(Annotation::Declared(0), Term::Var(1))], ..held(vec![Term::Var(0)]) };
+    assert_eq!(
+        (rule.belief, &rule.args, &rule.vars[..]),
+        (BeliefId(2), &vec![Term::Var(0)], &["N".into(), "S".into()][..])
+    );
+    let sure =
+        Literal { annotations: vec![(Annotation::Declared(0), Term::Var(1))], ..held(vec![Term::Var(0)]) };
     let more = Context::Test(op(BinaryOp::Gt, Expr::Var(1), Expr::int(2)));
     assert_eq!(rule.body, Context::And(vec![Context::Belief(sure), more]));
     assert_eq!((&a.rules[1].args, &a.rules[1].body), (&vec![Term::Expr(Expr::int(7))], &Context::True));
@@ -180,10 +191,7 @@ fn beliefs_have_annotations_negations_percepts_and_rules() {
 /// The same without places.
 fn bare(kind: StepKind) -> StepKind {
     let all = |steps: Vec<Step>| -> Vec<Step> {
-        steps
-            .into_iter()
-            .map(|s| Step { kind: bare(s.kind), origin: hrdsl_ir::Span::default() })
-            .collect()
+        steps.into_iter().map(|s| Step { kind: bare(s.kind), origin: hrdsl_ir::Span::default() }).collect()
     };
     match kind {
         StepKind::If { condition, then, otherwise } => {
@@ -250,7 +258,8 @@ fn formulas_match_lists_and_ask() {
     assert_eq!(got[3], asks(set));
     assert_eq!(got[4], asks(Internal::Member { element: Term::Var(7), list: Expr::Var(6) }));
     let one = Expr::Const(Value::List(List::of(&[Value::Int(1)])));
-    let nth = Internal::Apply { function: ListFunction::Nth, args: vec![Expr::int(0), one], out: Term::Var(8) };
+    let nth =
+        Internal::Apply { function: ListFunction::Nth, args: vec![Expr::int(0), one], out: Term::Var(8) };
     assert_eq!(got[5], asks(nth));
 }
 
@@ -316,7 +325,10 @@ fn goals_are_bounded_dropped_and_suspended() {
     assert_eq!(got[6], control(Control::FailGoal, Some((GoalId(0), vec![]))));
     assert_eq!(got[7], StepKind::Abolish(held(vec![Term::Any])));
     let annotations = vec![(Annotation::Declared(0), Expr::int(9))];
-    assert_eq!(got[8], StepKind::Add(Assertion { belief: BeliefId(0), args: vec![Expr::int(1)], annotations }));
+    assert_eq!(
+        got[8],
+        StepKind::Add(Assertion { belief: BeliefId(0), args: vec![Expr::int(1)], annotations })
+    );
     let any = vec![(Annotation::Source, Term::Any)];
     assert_eq!(got[9], StepKind::Remove(Literal { annotations: any, ..held(vec![Term::Any]) }));
     assert_eq!(got[10], StepKind::Fail);

@@ -12,7 +12,7 @@ mod types;
 mod value;
 pub mod world;
 
-pub use check::{INTERNAL_ACTIONS, InternalAction};
+pub use check::{INTERNAL_ACTIONS, InternalAction, Slot};
 pub use check::{resolve, resolve_part};
 pub use expr::{Expr, ExprKind, Function, Leaf, Term};
 pub use lint::lint;

@@ -16,6 +16,7 @@ mod internal;
 mod internal_table;
 mod item;
 mod layout;
+mod list;
 mod lookup;
 mod measure;
 mod message;
@@ -54,7 +55,7 @@ use crate::{
 };
 use env::Env;
 use given::{Given, Givens, Template};
-pub use internal_table::{INTERNAL_ACTIONS, InternalAction};
+pub use internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
 use item::Item;
 use layout::{Fields, RecordEntry};
 use table::{MAX_NAMES, Map, Refused, Table};

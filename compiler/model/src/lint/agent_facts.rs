@@ -150,7 +150,7 @@ impl<'a> AgentFacts<'a> {
     /// The messages of all agents that are about something of this one, with what it is.
     fn messages(&self) -> impl Iterator<Item = (AgentId, &'a Step, Subject)> {
         let (scenario, id) = (self.scenario, self.id);
-        agents(scenario).flat_map(move |sender| {
+        agents(scenario).filter(|_| !scenario.contents.is_empty()).flat_map(move |sender| {
             let from = sender.id;
             let steps: Vec<&'a Step> = sender.steps().collect();
             steps.into_iter().filter_map(move |step| {
@@ -178,6 +178,14 @@ impl<'a> AgentFacts<'a> {
                     }
                     _ => false,
                 }
+        })
+    }
+
+    /// Others may withdraw what they have told.
+    fn is_untold(&self, belief: BeliefId) -> bool {
+        self.messages().any(|(_, step, subject)| {
+            let untell = matches!(step.kind, StepKind::Send { performative: Performative::Untell, .. });
+            untell && subject == Subject::Belief(belief)
         })
     }
 
@@ -296,7 +304,10 @@ impl<'a> AgentFacts<'a> {
     /// What is certain of a belief's facts.
     pub fn held(&self, belief: BeliefId) -> Held {
         let changes: Vec<Change<'_>> = self.changes().filter(|c| c.belief() == belief).collect();
-        if self.is_foreign(belief) || changes.iter().any(|c| matches!(c, Change::Removes(..))) {
+        if self.is_foreign(belief)
+            || self.is_untold(belief)
+            || changes.iter().any(|c| matches!(c, Change::Removes(..)))
+        {
             return Held::Unknown;
         }
         let chosen: Vec<Option<ChoiceKind>> = self.suites(belief).map(|(_, how)| how).collect();
@@ -366,7 +377,7 @@ impl<'a> AgentFacts<'a> {
                     Change::Replaces(r, _) => r == b,
                     Change::Adds(..) => false,
                 });
-                (!goes && !self.is_foreign(b)) || !self.may_come_about(b, &args)
+                (!goes && !self.is_foreign(b) && !self.is_untold(b)) || !self.may_come_about(b, &args)
             }
             TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
                 let asks = |s: &Step| matches!(&s.kind, StepKind::Query(q) if q.belief == b && may_unify(&args, &of_args(&q.args), true));

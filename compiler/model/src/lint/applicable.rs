@@ -9,10 +9,10 @@ use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use super::{
     agent_facts::{AgentFacts, Change, Held, change},
     plan_terms::{alternatives, fold, same_value},
+    simple::{is_simple, is_simple_literal, is_simple_step},
 };
 use crate::{
-    Arg, BeliefId, Context, Expr, ExprKind, GoalId, Leaf, Literal, Param, Plan, StepKind, TriggerOn, Type,
-    Value,
+    Arg, BeliefId, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type, Value,
 };
 
 /// Steps of the search.
@@ -534,56 +534,4 @@ fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
         }
     }
     all
-}
-
-/// Whether a plan asks for nothing that is not looked into: annotations, lists, internal actions.
-fn is_simple(plan: &Plan) -> bool {
-    plan.annotations.is_empty() && is_simple_args(&plan.args) && is_simple_context(&plan.context)
-}
-
-fn is_simple_context(context: &Context) -> bool {
-    let mut simple = true;
-    context.each(&mut |part| {
-        simple &= match part {
-            Context::Belief(literal) => is_simple_literal(literal),
-            Context::Unify(..) | Context::Internal(..) => false,
-            Context::True | Context::Not(_) | Context::And(_) | Context::Or(_) | Context::Test(_) => true,
-        };
-    });
-    simple
-}
-
-fn is_simple_literal(literal: &Literal) -> bool {
-    literal.annotations.is_empty() && is_simple_args(&literal.args)
-}
-
-fn is_simple_args(args: &[Arg]) -> bool {
-    !args.iter().any(|a| matches!(a, Arg::List(..)))
-}
-
-/// Whether what a step binds and changes is known.
-fn is_simple_step(step: &crate::Step) -> bool {
-    match &step.kind {
-        StepKind::Query(literal) => is_simple_literal(literal),
-        StepKind::Do(..)
-        | StepKind::Achieve(..)
-        | StepKind::Spawn(..)
-        | StepKind::Add(_)
-        | StepKind::Remove(_)
-        | StepKind::Replace(_)
-        | StepKind::Abolish(_)
-        | StepKind::Await { .. }
-        | StepKind::Wait(_)
-        | StepKind::Print(_) => true,
-        StepKind::Test(_)
-        | StepKind::If { .. }
-        | StepKind::While { .. }
-        | StepKind::For { .. }
-        | StepKind::Fork { .. }
-        | StepKind::Send { .. }
-        | StepKind::Ask { .. }
-        | StepKind::AskAll { .. }
-        | StepKind::Control(..)
-        | StepKind::Fail => false,
-    }
 }

@@ -21,6 +21,7 @@ mod plan_terms;
 mod recursion_without_time;
 mod removes_nothing;
 mod shadowed_plan;
+mod simple;
 mod time_stops;
 mod unreachable_location;
 mod unused;

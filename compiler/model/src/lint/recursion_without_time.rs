@@ -83,17 +83,26 @@ struct Search<'a, 'i> {
 impl<'a> Search<'a, '_> {
     /// Follows the adoptions of a plan that are reached at the same instant with the same beliefs.
     fn from(&mut self, plan: &'a Plan, passed: &[Passed]) {
-        for step in all_steps(&plan.body) {
+        self.follow(plan, passed, &plan.body);
+    }
+
+    /// Whether something may change on the way through the steps.
+    fn follow(&mut self, plan: &'a Plan, passed: &[Passed], steps: &'a [Step]) -> bool {
+        for step in steps {
             if let StepKind::Achieve(goal, args, _) = &step.kind {
                 let args: Vec<Passed> = of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
                 self.way.push((plan, step.span));
                 self.adopted(*goal, &args, step.span);
                 self.way.pop();
             }
+            for block in step.blocks() {
+                self.follow(plan, passed, block);
+            }
             if self.progresses(step) {
-                return;
+                return true;
             }
         }
+        false
     }
 
     fn progresses(&mut self, step: &Step) -> bool {
