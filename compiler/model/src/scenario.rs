@@ -3,6 +3,8 @@
 //! It still has the language's own constructs (requirement patterns, stimuli on edges, parts' frames); lowering turns
 //! them into what the engines execute.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::LocationKind;
 use serde::Serialize;
@@ -612,7 +614,7 @@ impl Step {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Performative {
     Tell,
@@ -644,6 +646,8 @@ pub struct Content {
     pub arity: usize,
     /// By agent.
     pub of: Vec<Option<Subject>>,
+    /// What it is sent with, and by whom; `None` is a question that waits for its answer.
+    pub uses: BTreeSet<(Option<Performative>, AgentId)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

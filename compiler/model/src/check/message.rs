@@ -1,5 +1,7 @@
 //! Messages: what is sent to whom is checked against what the receiver has declared.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
@@ -65,6 +67,7 @@ impl Checker<'_> {
         let receiver = to.as_ref().map_or(&Receiver::Some, |(_, receiver)| receiver);
         let goal = matches!(performative, Performative::Achieve | Performative::Unachieve);
         let about = self.about(scope, receiver, what, goal, to.is_none())?;
+        self.used(scope, &about, Some(performative));
         let args = match performative {
             Performative::Tell | Performative::Achieve => {
                 self.told(&about, goal, env).into_iter().map(Arg::Expr).collect()
@@ -97,6 +100,7 @@ impl Checker<'_> {
             self.bind_names(what, env, &variable);
             return None;
         };
+        self.used(scope, &about, None);
         let args = self.asked_for(&about, false, env, true);
         Some(StepKind::Ask { to, content: about.id, args, within })
     }
@@ -115,6 +119,7 @@ impl Checker<'_> {
             self.out(out, Kind::list(Kind::Unknown), env);
             return None;
         };
+        self.used(scope, &about, None);
         let before = known(env);
         let args = self.asked_for(&about, false, env, true);
         let template = self.expr(template, env);
@@ -326,7 +331,8 @@ impl Checker<'_> {
         let name = format!("{sign}{}", literal.call.name.text);
         let same = |c: &Content| (c.name.as_str(), c.is_goal, c.arity) == (name.as_str(), is_goal, arity);
         let at = self.s.contents.iter().position(same).unwrap_or_else(|| {
-            self.s.contents.push(Content { name: name.clone(), is_goal, arity, of: Vec::new() });
+            let (of, uses) = (Vec::new(), BTreeSet::new());
+            self.s.contents.push(Content { name: name.clone(), is_goal, arity, of, uses });
             self.s.contents.len() - 1
         });
         let id = u16::try_from(at).ok().filter(|id| *id < u16::MAX);
@@ -335,6 +341,12 @@ impl Checker<'_> {
             self.report(super::too_many(message, literal.span));
         }
         id.map(ContentId)
+    }
+
+    fn used(&mut self, scope: &Scope, about: &About, how: Option<Performative>) {
+        if let Some(content) = self.s.contents.get_mut(usize::from(about.id.0)) {
+            content.uses.insert((how, scope.id));
+        }
     }
 
     /// The arguments of what is told or to be achieved.

@@ -147,46 +147,25 @@ impl<'a> AgentFacts<'a> {
         self.agent.plans.iter().flat_map(|p| all_steps(&p.body))
     }
 
-    /// The messages of all agents that are about something of this one, with what it is.
-    fn messages(&self) -> impl Iterator<Item = (AgentId, &'a Step, Subject)> {
-        let (scenario, id) = (self.scenario, self.id);
-        agents(scenario).filter(|_| !scenario.contents.is_empty()).flat_map(move |sender| {
-            let from = sender.id;
-            let steps: Vec<&'a Step> = sender.steps().collect();
-            steps.into_iter().filter_map(move |step| {
-                let (StepKind::Send { content, .. }
-                | StepKind::Ask { content, .. }
-                | StepKind::AskAll { content, .. }) = &step.kind
-                else {
-                    return None;
-                };
-                let content = scenario.contents.get(usize::from(content.0))?;
-                let subject = content.of.get(usize::from(id.0)).copied().flatten()?;
-                Some((from, step, subject))
-            })
-        })
+    /// What is sent about something of this agent, and by whom.
+    fn messages(&self, of: Subject) -> impl Iterator<Item = (Option<Performative>, AgentId)> {
+        let index = usize::from(self.id.0);
+        let about = self.scenario.contents.iter().filter(move |c| c.of.get(index) == Some(&Some(of)));
+        about.flat_map(|c| c.uses.iter().copied())
     }
 
     /// Others may add it: in messages, or as answers to the agent's own.
     pub fn is_told(&self, belief: BeliefId) -> bool {
-        self.messages().any(|(sender, step, subject)| {
-            subject == Subject::Belief(belief)
-                && match &step.kind {
-                    StepKind::Send { performative: Performative::Tell, .. } => true,
-                    StepKind::Send { performative: Performative::AskOne | Performative::AskAll, .. } => {
-                        sender == self.id
-                    }
-                    _ => false,
-                }
+        self.messages(Subject::Belief(belief)).any(|(how, sender)| match how {
+            Some(Performative::Tell) => true,
+            Some(Performative::AskOne | Performative::AskAll) => sender == self.id,
+            Some(Performative::Untell | Performative::Achieve | Performative::Unachieve) | None => false,
         })
     }
 
     /// Others may withdraw what they have told.
     fn is_untold(&self, belief: BeliefId) -> bool {
-        self.messages().any(|(_, step, subject)| {
-            let untell = matches!(step.kind, StepKind::Send { performative: Performative::Untell, .. });
-            untell && subject == Subject::Belief(belief)
-        })
+        self.messages(Subject::Belief(belief)).any(|(how, _)| how == Some(Performative::Untell))
     }
 
     /// It is perceived.
@@ -206,24 +185,13 @@ impl<'a> AgentFacts<'a> {
 
     /// Others ask for it, so that the plans for its query run.
     pub fn is_asked(&self, belief: BeliefId) -> bool {
-        self.messages().any(|(_, step, subject)| {
-            subject == Subject::Belief(belief)
-                && match &step.kind {
-                    StepKind::Ask { .. } | StepKind::AskAll { .. } => true,
-                    StepKind::Send { performative, .. } => {
-                        matches!(performative, Performative::AskOne | Performative::AskAll)
-                    }
-                    _ => false,
-                }
-        })
+        let asks = |how| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
+        self.messages(Subject::Belief(belief)).any(|(how, _)| asks(how))
     }
 
     /// Some message asks for the goal.
     fn is_requested(&self, goal: GoalId) -> bool {
-        self.messages().any(|(_, step, subject)| {
-            let achieve = matches!(step.kind, StepKind::Send { performative: Performative::Achieve, .. });
-            achieve && subject == Subject::Goal(goal)
-        })
+        self.messages(Subject::Goal(goal)).any(|(how, _)| how == Some(Performative::Achieve))
     }
 
     pub fn changes(&self) -> impl Iterator<Item = Change<'a>> {

@@ -163,17 +163,11 @@ fn reads_beliefs(context: &Context, read: &mut [bool]) {
 
 /// What agents tell this one is named, and what they ask it is read.
 fn of_messages(scenario: &Scenario, index: usize, read: &mut [bool], named: &mut [bool]) {
-    for step in scenario.agents.iter().flat_map(|a| &a.plans).flat_map(|p| all_steps(&p.body)) {
-        let (content, asks) = match &step.kind {
-            StepKind::Ask { content, .. } | StepKind::AskAll { content, .. } => (content, true),
-            StepKind::Send { content, performative, .. } => {
-                (content, matches!(performative, Performative::AskOne | Performative::AskAll))
-            }
-            _ => continue,
-        };
-        let subject = scenario.contents.get(usize::from(content.0)).and_then(|c| c.of.get(index));
-        if let Some(Some(Subject::Belief(belief))) = subject {
-            read[usize::from(belief.0)] |= asks;
+    let asks =
+        |how: Option<Performative>| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
+    for content in &scenario.contents {
+        if let Some(Some(Subject::Belief(belief))) = content.of.get(index) {
+            read[usize::from(belief.0)] |= content.uses.iter().any(|(how, _)| asks(*how));
             named[usize::from(belief.0)] = true;
         }
     }
