@@ -120,6 +120,19 @@ fn dictionary() -> String {
         "cylinder",
         "pairwise",
         "environment",
+        "~",
+        "int",
+        "string",
+        "[source(self)]",
+        "[H | T]",
+        "@p[atomic]",
+        ".findall(X, b(X), L)",
+        ".count(b(_), N)",
+        ".member(X, [1, 2])",
+        ".send(A, tell, b(1))",
+        ".ask(A, b(X), 5 s)",
+        ".drop_intention(g)",
+        "wise(3)",
     ];
     let words = KEYWORDS.iter().map(|k| k.word).chain(marks);
     let mut text =

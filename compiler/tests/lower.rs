@@ -2,13 +2,17 @@
 
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
-    ActorId, ArgPattern, EventId, EventPattern, Expr, Program, Type, Unit, Value,
-    bdi::{BeliefId, Context, Fact, GoalId, StepKind, Term, TriggerOn},
+    ActorId, ArgPattern, EventId, EventPattern, Expr, List, Program, Symbol, Type, Unit, Value,
+    bdi::{
+        Annotation, Assertion, BeliefId, ContentId, Context, Control, Fact, GoalId, Internal, Literal,
+        Performative, Step, StepKind, Subject, Term, TriggerOn,
+    },
     coverage::{Condition, PointId},
     event::StimulusStep,
     expr::{BinaryOp, Function, UnaryOp},
+    list::ListFunction,
     monitor::{Effect, On},
-    suite::{ChoiceKind, Explore, Method, SearchGoal},
+    suite::{ChoiceKind, Explore, Method, ModelGoal, SearchGoal},
     ta::{ClockOp, LocationKind, ReceiveArg, Sync, Update},
     test::TestStep,
     value::SECOND,
@@ -80,14 +84,18 @@ fn agents_number_variables_in_the_order_of_their_places() {
            plan on asked(X) when X { +away }\n}",
     );
     let a = &p.agents[0];
-    assert_eq!(a.initial_beliefs, [Fact { belief: BeliefId(0), args: vec![Value::Int(0)] }]);
+    assert_eq!(
+        a.initial_beliefs,
+        [Fact { belief: BeliefId(0), args: vec![Value::Int(0)], annotations: vec![] }]
+    );
     assert_eq!(a.initial_goals, [(GoalId(0), vec![Value::Int(3)])]);
     let go = &a.plans[0];
     assert_eq!((go.label.as_str(), go.trigger.on), ("go#1", TriggerOn::GoalAdded(GoalId(0))));
     assert_eq!(go.vars, ["L", "N", "M"]);
     assert_eq!(go.trigger.args, [Term::Var(0)]);
-    let belief = |b, arg| Context::Belief { belief: BeliefId(b), args: vec![arg] };
-    let away = Context::Belief { belief: BeliefId(2), args: vec![] };
+    let literal = |b, args| Literal { belief: BeliefId(b), args, annotations: vec![] };
+    let belief = |b, arg| Context::Belief(literal(b, vec![arg]));
+    let away = Context::Belief(literal(2, vec![]));
     let either = Context::Or(vec![belief(1, Term::Var(0)), belief(1, Term::Expr(Expr::int(3)))]);
     let less = Context::Test(op(BinaryOp::Lt, Expr::Var(1), Expr::Var(0)));
     assert_eq!(
@@ -97,18 +105,252 @@ fn agents_number_variables_in_the_order_of_their_places() {
     let steps: Vec<&StepKind> = go.body.iter().map(|s| &s.kind).collect();
     let sum = op(BinaryOp::Add, Expr::Var(1), Expr::Var(0));
     assert_eq!(steps[0], &StepKind::Do { event: EventId(1), args: vec![sum] });
-    assert_eq!(steps[1], &StepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)] });
-    assert_eq!(steps[2], &StepKind::Query { belief: BeliefId(1), args: vec![Term::Var(2)] });
-    assert_eq!(steps[3], &StepKind::Remove { belief: BeliefId(0), args: vec![Term::Any] });
-    assert_eq!(steps[4], &StepKind::Replace { belief: BeliefId(0), args: vec![Expr::Var(2)] });
+    assert_eq!(steps[1], &StepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)], within: None });
+    assert_eq!(steps[2], &StepKind::Query(literal(1, vec![Term::Var(2)])));
+    assert_eq!(steps[3], &StepKind::Remove(literal(0, vec![Term::Any])));
+    assert_eq!(
+        steps[4],
+        &StepKind::Replace(Assertion { belief: BeliefId(0), args: vec![Expr::Var(2)], annotations: vec![] })
+    );
     let no = &a.plans[1];
     assert_eq!((no.label.as_str(), no.trigger.on), ("no", TriggerOn::GoalFailed(GoalId(0))));
     let events = vec![pattern(0, &[TRUE]), pattern(0, &[ArgPattern::Any])];
-    assert_eq!(no.body[0].kind, StepKind::Await { events, within: Some(2 * SECOND) });
+    assert_eq!(no.body[0].kind, StepKind::Await { events, within: Some(Expr::float(2.0)) });
     assert_eq!(no.body[1].kind, StepKind::Wait { seconds: Expr::float(0.5) });
     assert_eq!(no.body[2].kind, StepKind::Spawn { goal: GoalId(0), args: vec![Expr::int(1)] });
     assert_eq!(a.plans[2].trigger.on, TriggerOn::Perceived(EventId(0)));
     assert_eq!(a.plans[2].context, Context::Test(Expr::Var(0)));
+}
+
+/// The agents of a scenario with these members of the first, beside one that takes messages.
+fn agents(members: &str) -> Program {
+    program(&format!(
+        "agent A plays person {{\n  belief b(n: 0..9) [sure: 0..100] = b(1), ~b(2), b(3)[source(R), sure(4)]\n  goal !go\n{members}\n}}\n\
+         agent R plays robot {{\n  belief b(n: 0..9)\n  belief c(s: string, l: [int])\n  plan +!help(_) {{ }}\n}}\n"
+    ))
+}
+
+/// The steps of the plan for `+!go`.
+fn steps(body: &str) -> Vec<StepKind> {
+    let p = agents(&format!("  plan +!go {{ {body} }}\n  plan +!sub(_) {{ }}\n  plan -!go {{ }}"));
+    p.agents[0].plans[0].body.iter().map(|s| s.kind.clone()).collect()
+}
+
+fn held(args: Vec<Term>) -> Literal {
+    Literal { belief: BeliefId(0), args, annotations: vec![] }
+}
+
+fn symbol(name: &str) -> Expr {
+    Expr::Const(Value::Symbol(Symbol::intern(name)))
+}
+
+#[test]
+fn beliefs_have_annotations_negations_percepts_and_rules() {
+    let p = agents(
+        "  belief light(ok: bool) on seen\n  belief near(n: 0..9)\n  rule near(N) when b(N)[sure(S)] && S > 2\n  rule near(7)\n\
+           goal give(n: 0..9, who: agent)\n  plan @x[atomic] +!give(N, R)[source(S)] when ~b(N) { b2(S == R) }\n\
+           plan -?near(N) { }\n  plan +!go { !give(1, R) }\n}\nevent seen(ok: bool) from robot\nevent b2(ok: bool) from person\nagent X plays person {",
+    );
+    let a = &p.agents[0];
+    let names: Vec<&str> = a.beliefs.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names, ["b", "light", "near", "~b"]);
+    assert_eq!((a.beliefs[1].percept, a.beliefs[0].percept), (Some(EventId(0)), None));
+    assert_eq!(a.beliefs[3].annotations, a.beliefs[0].annotations);
+    assert_eq!(a.beliefs[0].annotations[0].name, "sure");
+    let fact =
+        |belief, n, annotations| Fact { belief: BeliefId(belief), args: vec![Value::Int(n)], annotations };
+    let sourced = vec![
+        (Annotation::Source, Value::Symbol(Symbol::intern("R"))),
+        (Annotation::Declared(0), Value::Int(4)),
+    ];
+    assert_eq!(a.initial_beliefs, [fact(0, 1, vec![]), fact(3, 2, vec![]), fact(0, 3, sourced)]);
+    let rule = &a.rules[0];
+    assert_eq!(
+        (rule.belief, &rule.args, &rule.vars[..]),
+        (BeliefId(2), &vec![Term::Var(0)], &["N".into(), "S".into()][..])
+    );
+    let sure =
+        Literal { annotations: vec![(Annotation::Declared(0), Term::Var(1))], ..held(vec![Term::Var(0)]) };
+    let more = Context::Test(op(BinaryOp::Gt, Expr::Var(1), Expr::int(2)));
+    assert_eq!(rule.body, Context::And(vec![Context::Belief(sure), more]));
+    assert_eq!((&a.rules[1].args, &a.rules[1].body), (&vec![Term::Expr(Expr::int(7))], &Context::True));
+    let Some(params) = &a.goals[0].params else { panic!() };
+    assert_eq!((a.goals[0].arity, params[0].ty), (2, Type::Int { lo: 0, hi: 9 }));
+    let Type::Enum(agent) = params[1].ty else { panic!() };
+    let names: Vec<&str> = agent.values().iter().map(|v| v.name()).collect();
+    assert_eq!((agent.name(), &names[..]), ("agent", &["A", "X", "R", "self", "percept"][..]));
+    assert_eq!((a.goals[1].arity, &a.goals[1].params), (0, &None));
+    let give = &a.plans[0];
+    assert!(give.atomic && !a.plans[1].atomic);
+    assert_eq!(give.trigger.annotations, [(Annotation::Source, Term::Var(1))]);
+    // `R` is the agent.
+    assert_eq!(give.trigger.args, [Term::Var(0), Term::Expr(symbol("R"))]);
+    assert_eq!(a.plans[1].trigger.on, TriggerOn::TestFailed(BeliefId(2)));
+}
+
+/// The same without places.
+fn bare(kind: StepKind) -> StepKind {
+    let all = |steps: Vec<Step>| -> Vec<Step> {
+        steps.into_iter().map(|s| Step { kind: bare(s.kind), origin: hrdsl_ir::Span::default() }).collect()
+    };
+    match kind {
+        StepKind::If { condition, then, otherwise } => {
+            StepKind::If { condition, then: all(then), otherwise: all(otherwise) }
+        }
+        StepKind::While { condition, body } => StepKind::While { condition, body: all(body) },
+        StepKind::For { condition, body } => StepKind::For { condition, body: all(body) },
+        StepKind::Fork { branches, all: every } => {
+            StepKind::Fork { branches: branches.into_iter().map(all).collect(), all: every }
+        }
+        other => other,
+    }
+}
+
+#[test]
+fn blocks_keep_their_steps() {
+    let any = || Context::Belief(held(vec![Term::Any]));
+    let print = |n: i64| Step {
+        kind: StepKind::Print { args: vec![Expr::int(n)] },
+        origin: hrdsl_ir::Span::default(),
+    };
+    let got = steps(
+        "if b(_) { .print(1) } else if b(_) { .print(2) } while b(_) { .print(3) } for b(_) { .print(4) }\n\
+         fork { .print(5) } and { .print(6) }; fork { .print(7) } or { }",
+    );
+    let inner = StepKind::If { condition: any(), then: vec![print(2)], otherwise: vec![] };
+    let inner = Step { kind: inner, origin: hrdsl_ir::Span::default() };
+    let want = vec![
+        StepKind::If { condition: any(), then: vec![print(1)], otherwise: vec![inner] },
+        StepKind::While { condition: any(), body: vec![print(3)] },
+        StepKind::For { condition: any(), body: vec![print(4)] },
+        StepKind::Fork { branches: vec![vec![print(5)], vec![print(6)]], all: true },
+        StepKind::Fork { branches: vec![vec![print(7)], vec![]], all: false },
+    ];
+    let got: Vec<StepKind> = got.into_iter().map(bare).collect();
+    assert_eq!(got, want);
+}
+
+#[test]
+fn formulas_match_lists_and_ask() {
+    let got = steps(
+        "?([H, _ | T] = [1, 2, 3] && X = H + 1 && not b(X)); .count(b(_), N); .findall([M, N], b(M), L);\n\
+         .setof(M, b(M), K); .member(E0, K); .nth(0, [1], E)",
+    );
+    let list = Expr::Const(Value::List(List::of(&[Value::Int(1), Value::Int(2), Value::Int(3)])));
+    let pattern = Term::List(vec![Term::Var(0), Term::Any], Some(Box::new(Term::Var(1))));
+    let absent = Context::Not(Box::new(Context::Belief(held(vec![Term::Var(2)]))));
+    let sum = op(BinaryOp::Add, Expr::Var(0), Expr::int(1));
+    let first = vec![Context::Unify(pattern, list), Context::Unify(Term::Var(2), sum), absent];
+    assert_eq!(got[0], StepKind::Test(Context::And(first)));
+    let asks = |i: Internal| StepKind::Test(Context::Internal(Box::new(i)));
+    let formula = |arg| Context::Belief(held(vec![arg]));
+    assert_eq!(got[1], asks(Internal::Count { formula: formula(Term::Any), out: Term::Var(3) }));
+    let template = Expr::List(vec![Expr::Var(4), Expr::Var(3)], None);
+    let all = Internal::FindAll { template, formula: formula(Term::Var(4)), set: false, out: Term::Var(5) };
+    assert_eq!(got[2], asks(all));
+    // The variable of the formula is open again.
+    let set = Internal::FindAll {
+        template: Expr::Var(4),
+        formula: formula(Term::Var(4)),
+        set: true,
+        out: Term::Var(6),
+    };
+    assert_eq!(got[3], asks(set));
+    assert_eq!(got[4], asks(Internal::Member { element: Term::Var(7), list: Expr::Var(6) }));
+    let one = Expr::Const(Value::List(List::of(&[Value::Int(1)])));
+    let nth =
+        Internal::Apply { function: ListFunction::Nth, args: vec![Expr::int(0), one], out: Term::Var(8) };
+    assert_eq!(got[5], asks(nth));
+}
+
+#[test]
+fn messages_are_about_what_each_agent_has() {
+    let p = agents(
+        "  plan +!go {\n    .send(R, tell, b(1)); .send(R, untell, b(_)); .broadcast(achieve, help(2));\n\
+             .ask(R, b(X), 5 s); .ask_all(R, S, c(S, _), L); .send(R, tell, ~b(X)); .print(L)\n  }\n  plan -!go { }",
+    );
+    let names: Vec<&str> = p.contents.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["b", "help", "c", "~b"]);
+    let belief = |id| Some(Subject::Belief(BeliefId(id)));
+    assert_eq!(p.contents[0].of, [belief(0), belief(0)]);
+    assert_eq!(p.contents[1].of, [None, Some(Subject::Goal(GoalId(0)))]);
+    assert_eq!(p.contents[2].of, [None, belief(1)]);
+    assert_eq!(p.contents[3].of, [belief(1), belief(2)]);
+    let body: Vec<&StepKind> = p.agents[0].plans[0].body.iter().map(|s| &s.kind).collect();
+    let to = || Some(symbol("R"));
+    let send = |to, performative, content, arg| StepKind::Send {
+        to,
+        performative,
+        content: ContentId(content),
+        args: vec![arg],
+    };
+    let one = || Term::Expr(Expr::int(1));
+    assert_eq!(body[0], &send(to(), Performative::Tell, 0, one()));
+    assert_eq!(body[1], &send(to(), Performative::Untell, 0, Term::Any));
+    assert_eq!(body[2], &send(None, Performative::Achieve, 1, Term::Expr(Expr::int(2))));
+    let ask = StepKind::Ask {
+        to: symbol("R"),
+        content: ContentId(0),
+        args: vec![Term::Var(0)],
+        within: Some(Expr::float(5.0)),
+    };
+    assert_eq!(body[3], &ask);
+    let all = StepKind::AskAll {
+        to: symbol("R"),
+        template: Expr::Var(1),
+        content: ContentId(2),
+        args: vec![Term::Var(1), Term::Any],
+        out: Term::Var(2),
+        within: None,
+    };
+    assert_eq!(body[4], &all);
+    assert_eq!(body[5], &send(to(), Performative::Tell, 3, Term::Expr(Expr::Var(0))));
+}
+
+#[test]
+fn goals_are_bounded_dropped_and_suspended() {
+    let got = steps(
+        "!sub(1) within 2 s; .drop_intention(sub(_)); .drop_desire(sub); .drop_all_events; .suspend; .resume(sub(2));\n\
+         .fail_goal(go); .abolish(b(_)); +b(1)[sure(9)]; -b(_)[source(_)]; .fail",
+    );
+    let within = Some(Expr::float(2.0));
+    assert_eq!(got[0], StepKind::Achieve { goal: GoalId(1), args: vec![Expr::int(1)], within });
+    let control = |what, goal| StepKind::Control { what, goal };
+    let sub = |arg| Some((GoalId(1), vec![arg]));
+    assert_eq!(got[1], control(Control::DropIntention, sub(Term::Any)));
+    assert_eq!(got[2], control(Control::DropDesire, sub(Term::Any)));
+    assert_eq!(got[3], control(Control::DropEvent, None));
+    assert_eq!(got[4], control(Control::Suspend, None));
+    assert_eq!(got[5], control(Control::Resume, sub(Term::Expr(Expr::int(2)))));
+    assert_eq!(got[6], control(Control::FailGoal, Some((GoalId(0), vec![]))));
+    assert_eq!(got[7], StepKind::Abolish(held(vec![Term::Any])));
+    let annotations = vec![(Annotation::Declared(0), Expr::int(9))];
+    assert_eq!(
+        got[8],
+        StepKind::Add(Assertion { belief: BeliefId(0), args: vec![Expr::int(1)], annotations })
+    );
+    let any = vec![(Annotation::Source, Term::Any)];
+    assert_eq!(got[9], StepKind::Remove(Literal { annotations: any, ..held(vec![Term::Any]) }));
+    assert_eq!(got[10], StepKind::Fail);
+}
+
+#[test]
+fn suites_by_agents_reach_and_stop() {
+    let p = program(
+        "event e from person\nagent A plays person { goal !g  plan +!g { e } }\ncover c = count(e) bins no = 0, some = 1..\n\
+         cross x = c { bin \"some\" when c.some }\n\
+         suite s by agents A { explore wise(3)\n stop after 20\n minimise\n reach each plan\n reach each context\n reach each edge\n\
+           reach each message\n reach each path\n reach each bin of x }\nsuite t by agents A { explore pairwise }\nsuite u by agents A { explore learn }",
+    );
+    let Method::Agents { explore, stop_after, goals, minimise, .. } = &p.suites[0].method else { panic!() };
+    assert_eq!((*explore, *stop_after, *minimise), (Explore::Wise(3), Some(20), true));
+    use ModelGoal::{Bins, Contexts, Edges, Messages, Paths, Plans};
+    assert_eq!(goals[..], [Plans, Contexts, Edges, Messages, Paths, Bins { cross: 0 }]);
+    let explore = |i: usize| match &p.suites[i].method {
+        Method::Agents { explore, .. } => *explore,
+        Method::Search { .. } | Method::Random { .. } => panic!(),
+    };
+    assert_eq!((explore(1), explore(2)), (Explore::Wise(2), Explore::Learn));
 }
 
 #[test]
@@ -376,7 +618,10 @@ fn coverage_suites_and_tests() {
     let some = Condition::And(vec![Condition::Not(Box::new(at(0))), Condition::Or(vec![at(1), at(2)])]);
     assert_eq!((&x.bins[0].when, x.ignore.as_slice()), (&some, &[at(2)][..]));
 
-    let Method::Agents { players, choose, explore } = &p.suites[0].method else { panic!() };
+    let Method::Agents { players, choose, explore, stop_after, goals, minimise } = &p.suites[0].method else {
+        panic!()
+    };
+    assert_eq!((*stop_after, goals.as_slice(), *minimise), (None, &[][..], false));
     assert_eq!((players.len(), *explore), (2, Explore::Random));
     assert_eq!((choose[0].how, choose[1].how), (ChoiceKind::OnePer(1), ChoiceKind::Any));
     assert_eq!(

@@ -25,6 +25,8 @@ pub enum ExprKind {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     If(Box<Expr>, Box<Expr>, Box<Expr>),
     Call(Function, Vec<Expr>),
+    /// `[a, b | rest]`
+    List(Vec<Expr>, Option<Box<Expr>>),
     /// Has a diagnostic.
     Error,
 }
@@ -89,6 +91,7 @@ impl Expr {
             | ExprKind::Binary(..)
             | ExprKind::If(..)
             | ExprKind::Call(..)
+            | ExprKind::List(..)
             | ExprKind::Error => None,
         }
     }
@@ -109,6 +112,10 @@ impl Expr {
                 b.each(f);
             }
             ExprKind::Call(_, args) => args.iter().for_each(|a| a.each(f)),
+            ExprKind::List(items, rest) => {
+                items.iter().for_each(|e| e.each(f));
+                rest.iter().for_each(|e| e.each(f));
+            }
         }
     }
 }

@@ -12,10 +12,11 @@ mod types;
 mod value;
 pub mod world;
 
+pub use check::{INTERNAL_ACTIONS, InternalAction, Slot};
 pub use check::{resolve, resolve_part};
 pub use expr::{Expr, ExprKind, Function, Leaf, Term};
 pub use lint::lint;
 pub use nearest::{distance, nearest};
 pub use scenario::*;
-pub use types::{Dim, Kind, Type, UNITS, Unit};
-pub use value::{FoldError, Value};
+pub use types::{Dim, Kind, Of, Type, UNITS, Unit};
+pub use value::{Elements, FoldError, Text, Value};

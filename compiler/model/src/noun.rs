@@ -41,6 +41,8 @@ pub(crate) enum Noun {
     Suite,
     Method,
     Explore,
+    /// What a suite by agents can reach each of.
+    Reach,
     Test,
     Part,
     PartInstance,
@@ -54,6 +56,10 @@ pub(crate) enum Noun {
     Signal,
     Action,
     Coordinate,
+    /// Of a belief: `source`.
+    Annotation,
+    InternalAction,
+    Performative,
 }
 
 impl Noun {
@@ -73,6 +79,7 @@ impl Noun {
             Noun::Player => "agents and automata".to_owned(),
             Noun::RequirementKind => "kinds of requirement".to_owned(),
             Noun::Explore => "ways to explore".to_owned(),
+            Noun::Reach => "things that a suite by agents reaches".to_owned(),
             Noun::Cross => "cross products".to_owned(),
             Noun::Motion => "kinds of body".to_owned(),
             Noun::PartInstance => "parts of the world".to_owned(),
@@ -112,6 +119,9 @@ impl Noun {
             | Noun::Gripper
             | Noun::Current
             | Noun::Signal
+            | Noun::Annotation
+            | Noun::InternalAction
+            | Noun::Performative
             | Noun::Action => format!("{self}s"),
         }
     }
@@ -154,6 +164,10 @@ impl fmt::Display for Noun {
             Noun::Suite => "suite",
             Noun::Method => "method",
             Noun::Explore => "way to explore",
+            Noun::Reach => "thing that a suite by agents reaches",
+            Noun::Annotation => "annotation",
+            Noun::InternalAction => "internal action",
+            Noun::Performative => "performative",
             Noun::Test => "test",
             Noun::Part => "part",
             Noun::PartInstance => "part of the world",

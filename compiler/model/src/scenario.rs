@@ -3,6 +3,8 @@
 //! It still has the language's own constructs (requirement patterns, stimuli on edges, parts' frames); lowering turns
 //! them into what the engines execute.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::LocationKind;
 use serde::Serialize;
@@ -31,6 +33,8 @@ ids! {
     BeliefId,
     /// Index into [`Agent::goals`].
     GoalId,
+    /// Index into [`Scenario::contents`].
+    ContentId,
     /// Index into [`Scenario::automata`].
     AutomatonId,
     /// Index into [`Automaton::locations`].
@@ -65,6 +69,7 @@ pub struct Scenario {
     pub enums: Vec<Enum>,
     pub events: Vec<Event>,
     pub agents: Vec<Agent>,
+    pub contents: Vec<Content>,
     pub shared: Vec<Var>,
     pub automata: Vec<Automaton>,
     pub networks: Vec<Network>,
@@ -207,9 +212,11 @@ pub struct EventPattern {
 pub struct Agent {
     pub name: String,
     pub actor: ActorId,
+    /// Those declared, then the strong negations of some of them.
     pub beliefs: Vec<Belief>,
     pub goals: Vec<Goal>,
-    pub initial_beliefs: Vec<(BeliefId, Vec<Value>)>,
+    pub rules: Vec<Rule>,
+    pub initial_beliefs: Vec<Fact>,
     pub initial_goals: Vec<(GoalId, Vec<Value>)>,
     pub plans: Vec<Plan>,
     pub span: Span,
@@ -217,8 +224,15 @@ pub struct Agent {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Belief {
+    /// A strong negation's begins with `~`.
     pub name: String,
     pub params: Vec<Param>,
+    /// What its facts may have besides `source`, each with one value.
+    pub annotations: Vec<Param>,
+    /// It holds the arguments of the latest such event that was perceived.
+    pub percept: Option<EventId>,
+    /// It is the strong negation of this one.
+    pub negates: Option<BeliefId>,
     pub span: Span,
 }
 
@@ -226,13 +240,42 @@ pub struct Belief {
 pub struct Goal {
     pub name: String,
     pub arity: u16,
+    /// If its arguments' types are declared.
+    pub params: Option<Vec<Param>>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rule {
+    pub belief: BeliefId,
+    pub args: Vec<Arg>,
+    pub body: Context,
+    pub vars: Vec<String>,
+    pub span: Span,
+    pub head: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Annotation {
+    Source,
+    /// Index into [`Belief::annotations`].
+    Declared(u16),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fact {
+    pub belief: BeliefId,
+    pub args: Vec<Value>,
+    pub annotations: Vec<(Annotation, Value)>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
     pub label: String,
+    pub atomic: bool,
     pub trigger: TriggerOn,
     pub args: Vec<Arg>,
+    pub annotations: Vec<(Annotation, Arg)>,
     pub context: Context,
     pub body: Vec<Step>,
     pub vars: Vec<String>,
@@ -250,10 +293,24 @@ pub enum TriggerOn {
     Achieve(GoalId),
     Failed(GoalId),
     Test(BeliefId),
+    TestFailed(BeliefId),
     Perceived(EventId),
 }
 
-/// An argument that is matched.
+impl TriggerOn {
+    /// The belief that it is about.
+    #[must_use]
+    pub fn belief(self) -> Option<BeliefId> {
+        match self {
+            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+                Some(b)
+            }
+            TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => None,
+        }
+    }
+}
+
+/// A term that is matched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arg {
@@ -261,17 +318,166 @@ pub enum Arg {
     /// Bound here, or compared if it has a value already.
     Var(u16),
     Expr(Expr),
+    /// `[A, _ | Rest]`
+    List(Vec<Arg>, Option<Box<Arg>>),
+}
+
+impl Arg {
+    /// Calls `f` with each variable that is bound or compared as a whole.
+    pub fn each_var(&self, f: &mut dyn FnMut(u16)) {
+        match self {
+            Arg::Any | Arg::Expr(_) => {}
+            Arg::Var(i) => f(*i),
+            Arg::List(items, rest) => {
+                items.iter().for_each(|a| a.each_var(f));
+                rest.iter().for_each(|a| a.each_var(f));
+            }
+        }
+    }
+}
+
+/// A belief that is matched.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Literal {
+    pub belief: BeliefId,
+    pub args: Vec<Arg>,
+    pub annotations: Vec<(Annotation, Arg)>,
+    pub span: Span,
+}
+
+/// A belief that is made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Assertion {
+    pub belief: BeliefId,
+    pub args: Vec<Expr>,
+    pub annotations: Vec<(Annotation, Expr)>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Context {
     True,
-    Belief(BeliefId, Vec<Arg>, Span),
+    Belief(Literal),
     Not(Box<Context>),
     And(Vec<Context>),
     Or(Vec<Context>),
     Test(Expr),
+    /// `X = e`
+    Unify(Arg, Expr),
+    Internal(Box<Internal>, Span),
+}
+
+impl Context {
+    /// Calls `f` with the formula and each formula in it, the whole first.
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Context)) {
+        f(self);
+        match self {
+            Context::Not(inner) => inner.each(f),
+            Context::And(all) | Context::Or(all) => all.iter().for_each(|c| c.each(f)),
+            Context::Internal(action, _) => action.formula().iter().for_each(|c| c.each(f)),
+            Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
+        }
+    }
+
+    /// The variables that it may bind.
+    #[must_use]
+    pub fn binds(&self) -> Vec<u16> {
+        let mut vars = Vec::new();
+        let mut add = |var| vars.push(var);
+        match self {
+            Context::True | Context::Not(_) | Context::Test(_) => {}
+            Context::And(all) | Context::Or(all) => return all.iter().flat_map(Context::binds).collect(),
+            Context::Belief(literal) => {
+                literal.args.iter().for_each(|a| a.each_var(&mut add));
+                literal.annotations.iter().for_each(|(_, a)| a.each_var(&mut add));
+            }
+            Context::Unify(term, _) => term.each_var(&mut add),
+            Context::Internal(action, _) => action.terms().into_iter().for_each(|a| a.each_var(&mut add)),
+        }
+        vars
+    }
+}
+
+/// An internal action that asks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Internal {
+    FindAll { template: Expr, formula: Context, set: bool, out: Arg },
+    Count { formula: Context, out: Arg },
+    Member { element: Arg, list: Expr },
+    Apply { function: ListFunction, args: Vec<Expr>, out: Arg },
+    Holds { function: ListFunction, args: Vec<Expr> },
+    Intend { goal: GoalId, args: Vec<Arg> },
+    Desire { goal: GoalId, args: Vec<Arg> },
+    Suspended { goal: GoalId, args: Vec<Arg> },
+    Random { from: Option<Expr>, out: Arg },
+    Shuffle { list: Expr, out: Arg },
+    Time { out: Arg },
+    MyName { out: Arg },
+    AllNames { out: Arg },
+}
+
+impl Internal {
+    /// The formula that it asks.
+    #[must_use]
+    pub fn formula(&self) -> Option<&Context> {
+        match self {
+            Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => Some(formula),
+            Internal::Member { .. }
+            | Internal::Apply { .. }
+            | Internal::Holds { .. }
+            | Internal::Intend { .. }
+            | Internal::Desire { .. }
+            | Internal::Suspended { .. }
+            | Internal::Random { .. }
+            | Internal::Shuffle { .. }
+            | Internal::Time { .. }
+            | Internal::MyName { .. }
+            | Internal::AllNames { .. } => None,
+        }
+    }
+
+    /// What it matches.
+    #[must_use]
+    pub fn terms(&self) -> Vec<&Arg> {
+        match self {
+            Internal::FindAll { out, .. }
+            | Internal::Count { out, .. }
+            | Internal::Member { element: out, .. }
+            | Internal::Apply { out, .. }
+            | Internal::Random { out, .. }
+            | Internal::Shuffle { out, .. }
+            | Internal::Time { out }
+            | Internal::MyName { out }
+            | Internal::AllNames { out } => vec![out],
+            Internal::Holds { .. } => Vec::new(),
+            Internal::Intend { args, .. }
+            | Internal::Desire { args, .. }
+            | Internal::Suspended { args, .. } => args.iter().collect(),
+        }
+    }
+}
+
+/// Functions of lists and strings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ListFunction {
+    Length,
+    Concat,
+    Nth,
+    Reverse,
+    Sort,
+    Min,
+    Max,
+    Delete,
+    Union,
+    Intersection,
+    Difference,
+    ToText,
+    Empty,
+    Prefix,
+    Suffix,
+    Sublist,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -284,18 +490,171 @@ pub struct Step {
 #[serde(rename_all = "snake_case")]
 pub enum StepKind {
     Do(EventId, Vec<Expr>),
-    Achieve(GoalId, Vec<Expr>),
+    /// The time is in seconds.
+    Achieve(GoalId, Vec<Expr>, Option<Expr>),
     Spawn(GoalId, Vec<Expr>),
-    Query(BeliefId, Vec<Arg>),
-    Add(BeliefId, Vec<Expr>),
-    Remove(BeliefId, Vec<Arg>),
-    Replace(BeliefId, Vec<Expr>),
+    Query(Literal),
+    /// `?(F)`, `X = e`, an internal action that asks
+    Test(Context),
+    Add(Assertion),
+    Remove(Literal),
+    Replace(Assertion),
+    Abolish(Literal),
     /// `within` in seconds
     Await {
         events: Vec<EventPattern>,
-        within: Option<f64>,
+        within: Option<Expr>,
     },
     Wait(Expr),
+    If {
+        condition: Context,
+        then: Vec<Step>,
+        otherwise: Vec<Step>,
+    },
+    While {
+        condition: Context,
+        body: Vec<Step>,
+    },
+    For {
+        condition: Context,
+        body: Vec<Step>,
+    },
+    Fork {
+        branches: Vec<Vec<Step>>,
+        all: bool,
+    },
+    /// Without `to`: to all others.
+    Send {
+        to: Option<Expr>,
+        performative: Performative,
+        content: ContentId,
+        args: Vec<Arg>,
+    },
+    Ask {
+        to: Expr,
+        content: ContentId,
+        args: Vec<Arg>,
+        within: Option<Expr>,
+    },
+    AskAll {
+        to: Expr,
+        template: Expr,
+        content: ContentId,
+        args: Vec<Arg>,
+        out: Arg,
+        within: Option<Expr>,
+    },
+    Print(Vec<Expr>),
+    Control(Control, Option<(GoalId, Vec<Arg>)>),
+    Fail,
+}
+
+/// Calls `f` with each step, those within blocks too, in the order of the text.
+pub fn each_step<'a>(steps: &'a [Step], f: &mut dyn FnMut(&'a Step)) {
+    for step in steps {
+        f(step);
+        step.blocks().into_iter().for_each(|block| each_step(block, f));
+    }
+}
+
+impl Step {
+    /// The steps within it.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<&[Step]> {
+        match &self.kind {
+            StepKind::If { then, otherwise, .. } => vec![then, otherwise],
+            StepKind::While { body, .. } | StepKind::For { body, .. } => vec![body],
+            StepKind::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
+            StepKind::Do(..)
+            | StepKind::Achieve(..)
+            | StepKind::Spawn(..)
+            | StepKind::Query(_)
+            | StepKind::Test(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait(_)
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print(_)
+            | StepKind::Control(..)
+            | StepKind::Fail => Vec::new(),
+        }
+    }
+
+    /// The formula that it asks.
+    #[must_use]
+    pub fn condition(&self) -> Option<&Context> {
+        match &self.kind {
+            StepKind::Test(condition)
+            | StepKind::If { condition, .. }
+            | StepKind::While { condition, .. }
+            | StepKind::For { condition, .. } => Some(condition),
+            StepKind::Do(..)
+            | StepKind::Achieve(..)
+            | StepKind::Spawn(..)
+            | StepKind::Query(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait(_)
+            | StepKind::Fork { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print(_)
+            | StepKind::Control(..)
+            | StepKind::Fail => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Performative {
+    Tell,
+    Untell,
+    Achieve,
+    Unachieve,
+    AskOne,
+    AskAll,
+}
+
+/// What an internal action does to goals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    DropIntention,
+    DropDesire,
+    DropEvent,
+    SucceedGoal,
+    FailGoal,
+    Suspend,
+    Resume,
+}
+
+/// What messages are about: a belief or a goal by name and number of arguments.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Content {
+    pub name: String,
+    pub is_goal: bool,
+    pub arity: usize,
+    /// By agent.
+    pub of: Vec<Option<Subject>>,
+    /// What it is sent with, and by whom; `None` is a question that waits for its answer.
+    pub uses: BTreeSet<(Option<Performative>, AgentId)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    Belief(BeliefId),
+    Goal(GoalId),
 }
 
 // ── Automata ──
@@ -484,9 +843,25 @@ pub struct Suite {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    Agents { players: Vec<Player>, choose: Vec<Choice>, explore: Explore },
-    Search { network: NetworkId, goals: Vec<SearchGoal> },
-    Random { stimuli: Vec<EventId>, awaits: Vec<EventPattern>, length: (u32, u32), pause: (f64, f64) },
+    Agents {
+        players: Vec<Player>,
+        choose: Vec<Choice>,
+        explore: Explore,
+        /// End when so many belief sets in a row reached nothing new.
+        stop_after: Option<u32>,
+        goals: Vec<ModelGoal>,
+        minimise: bool,
+    },
+    Search {
+        network: NetworkId,
+        goals: Vec<SearchGoal>,
+    },
+    Random {
+        stimuli: Vec<EventId>,
+        awaits: Vec<EventPattern>,
+        length: (u32, u32),
+        pause: (f64, f64),
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -515,8 +890,22 @@ pub enum ChoiceKind {
 #[serde(rename_all = "snake_case")]
 pub enum Explore {
     Exhaustive,
-    Pairwise,
+    /// Every so many values occur together.
+    Wise(u8),
     Random,
+    Learn,
+}
+
+/// What a suite by agents reaches each of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelGoal {
+    Bins(CrossId),
+    Plans,
+    Contexts,
+    Edges,
+    Messages,
+    Paths,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,6 +1,9 @@
 //! Types and dimensions: what a value is, and in which unit a quantity is counted.
 
-use std::fmt;
+use std::{
+    fmt,
+    sync::{Mutex, PoisonError},
+};
 
 use serde::Serialize;
 
@@ -103,6 +106,70 @@ pub enum Type {
     Float(Dim),
     /// One of the values of an enumeration.
     Enum(Enumeration),
+    /// A string; of agents only.
+    Text,
+    /// A list of values of one type; of agents only.
+    List(Of<Type>),
+}
+
+/// What the elements of a list are, kept once, so that a type stays as small as a number.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub struct Of<T: 'static>(&'static T);
+
+impl<T> Clone for Of<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Of<T> {}
+
+impl<T> PartialEq for Of<T> {
+    fn eq(&self, other: &Self) -> bool {
+        // INVARIANT: equal ones are one; see [`kept`].
+        std::ptr::eq(self.0, other.0)
+    }
+}
+
+impl<T> Eq for Of<T> {}
+
+/// The one place where this is kept; there are few of them.
+fn kept<T: PartialEq>(known: &Mutex<Vec<&'static T>>, of: T) -> Of<T> {
+    let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(same) = known.iter().find(|t| ***t == of) {
+        return Of(same);
+    }
+    let of: &'static T = Box::leak(Box::new(of));
+    known.push(of);
+    Of(of)
+}
+
+static TYPES: Mutex<Vec<&'static Type>> = Mutex::new(Vec::new());
+static KINDS: Mutex<Vec<&'static Kind>> = Mutex::new(Vec::new());
+
+impl Of<Type> {
+    #[must_use]
+    pub fn new(of: Type) -> Self {
+        kept(&TYPES, of)
+    }
+
+    #[must_use]
+    pub fn element(self) -> Type {
+        *self.0
+    }
+}
+
+impl Of<Kind> {
+    #[must_use]
+    pub fn new(of: Kind) -> Self {
+        kept(&KINDS, of)
+    }
+
+    #[must_use]
+    pub fn element(self) -> Kind {
+        *self.0
+    }
 }
 
 /// A declared type, perhaps of several parts. Everything behind the checker knows the parts alone.
@@ -125,6 +192,8 @@ impl Type {
             Type::Int { .. } => Kind::Int,
             Type::Float(dim) => Kind::Float(dim),
             Type::Enum(id) => Kind::Enum(id),
+            Type::Text => Kind::Text,
+            Type::List(of) => Kind::list(of.element().kind()),
         }
     }
 
@@ -133,7 +202,7 @@ impl Type {
     pub fn range(self) -> Option<(i64, i64)> {
         match self {
             Type::Int { lo, hi } => Some((lo, hi)),
-            Type::Bool | Type::Float(_) | Type::Enum(_) => None,
+            Type::Bool | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_) => None,
         }
     }
 
@@ -141,8 +210,18 @@ impl Type {
     #[must_use]
     pub fn is_finite(self) -> bool {
         match self {
-            Type::Bool | Type::Int { .. } | Type::Enum(_) => true,
-            Type::Float(_) => false,
+            Type::Int { lo, hi } => (lo, hi) != (i64::MIN, i64::MAX),
+            Type::Bool | Type::Enum(_) => true,
+            Type::Float(_) | Type::Text | Type::List(_) => false,
+        }
+    }
+
+    /// Whether it is known to agents only: a string or a list.
+    #[must_use]
+    pub fn is_of_agents(self) -> bool {
+        match self {
+            Type::Text | Type::List(_) => true,
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) => false,
         }
     }
 
@@ -152,13 +231,15 @@ impl Type {
         match name {
             "bool" => Some(Type::Bool),
             "float" => Some(Type::Float(Dim::NUMBER)),
+            "int" => Some(Type::Int { lo: i64::MIN, hi: i64::MAX }),
+            "string" => Some(Type::Text),
             _ => NAMED.iter().find(|n| n.1 == name).map(|n| Type::Float(n.0)),
         }
     }
 
     /// The names that [`Type::named`] knows.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        ["bool", "float"].into_iter().chain(NAMED.iter().map(|n| n.1))
+        ["bool", "int", "float", "string"].into_iter().chain(NAMED.iter().map(|n| n.1))
     }
 }
 
@@ -170,18 +251,61 @@ pub enum Kind {
     Int,
     Float(Dim),
     Enum(Enumeration),
+    Text,
+    List(Of<Kind>),
     /// Not known: a goal's argument, or an expression that already has a diagnostic. It fits everywhere.
     Unknown,
 }
 
 impl Kind {
+    /// A list of such elements.
+    #[must_use]
+    pub fn list(of: Kind) -> Kind {
+        Kind::List(Of::<Kind>::new(of))
+    }
+
+    /// What the elements are, if it may be a list.
+    #[must_use]
+    pub fn element(self) -> Option<Kind> {
+        match self {
+            Kind::List(of) => Some(of.element()),
+            Kind::Unknown => Some(Kind::Unknown),
+            Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) | Kind::Text => None,
+        }
+    }
+
+    /// What is known if something is of both kinds; `None`: nothing is.
+    #[must_use]
+    pub fn with(self, other: Kind) -> Option<Kind> {
+        match (self, other) {
+            (Kind::Unknown, known) | (known, Kind::Unknown) => Some(known),
+            (Kind::List(a), Kind::List(b)) => a.element().with(b.element()).map(Kind::list),
+            (a, b) => (a == b).then_some(a),
+        }
+    }
+
+    /// The type's name, as it is declared.
+    fn type_name(self) -> String {
+        match self {
+            Kind::Bool => "bool".to_owned(),
+            Kind::Int => "int".to_owned(),
+            Kind::Float(dim) => {
+                NAMED.iter().find(|n| n.0 == dim).map_or_else(|| dim.to_string(), |n| n.1.to_owned())
+            }
+            Kind::Enum(of) => of.name().to_owned(),
+            Kind::Text => "string".to_owned(),
+            Kind::List(of) => format!("[{}]", of.element().type_name()),
+            Kind::Unknown => "_".to_owned(),
+        }
+    }
+
     /// The dimension of a number; a whole number is a bare number.
     #[must_use]
     pub fn dim(self) -> Option<Dim> {
         match self {
             Kind::Int => Some(Dim::NUMBER),
             Kind::Float(dim) => Some(dim),
-            Kind::Bool | Kind::Enum(_) | Kind::Unknown => None,
+            Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => None,
         }
     }
 
@@ -190,7 +314,7 @@ impl Kind {
     pub fn is_number(self) -> bool {
         match self {
             Kind::Int | Kind::Float(_) | Kind::Unknown => true,
-            Kind::Bool | Kind::Enum(_) => false,
+            Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) => false,
         }
     }
 
@@ -207,6 +331,9 @@ impl fmt::Display for Kind {
             Kind::Int => f.write_str("a whole number"),
             Kind::Float(dim) => dim.fmt(f),
             Kind::Enum(of) => write!(f, "a value of `{of}`"),
+            Kind::Text => f.write_str("a string"),
+            Kind::List(of) if of.element() == Kind::Unknown => f.write_str("a list"),
+            Kind::List(_) => write!(f, "a list `{}`", self.type_name()),
             Kind::Unknown => f.write_str("a value"),
         }
     }

@@ -1,6 +1,10 @@
 //! Values, and the folding of constants. The operators mean what they mean at run time; the compiler's tests compare the two.
 
-use std::fmt;
+use std::{
+    collections::BTreeMap,
+    fmt,
+    sync::{Mutex, PoisonError},
+};
 
 use hrdsl_source::Symbol;
 use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
@@ -8,7 +12,7 @@ use serde::Serialize;
 
 use crate::Function;
 
-/// A value of a scalar type; quantities in SI units.
+/// A value of a scalar type, quantities in SI units; of an agent also a string or a list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -16,6 +20,48 @@ pub enum Value {
     Int(i64),
     Float(f64),
     Symbol(Symbol),
+    Text(Text),
+    List(Elements),
+}
+
+/// A string.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(transparent)]
+pub struct Text(pub Symbol);
+
+impl fmt::Display for Text {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.0.name())
+    }
+}
+
+/// The elements of a list that is written in the text, kept once, so that a value stays as small as a number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Elements(&'static [Value]);
+
+/// By how they are written; a text holds few.
+static LISTS: Mutex<BTreeMap<String, &'static [Value]>> = Mutex::new(BTreeMap::new());
+
+impl Elements {
+    #[must_use]
+    pub fn new(values: &[Value]) -> Self {
+        let mut known = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = || -> &'static [Value] { Box::leak(values.into()) };
+        Self(known.entry(format!("{values:?}")).or_insert_with(make))
+    }
+
+    #[must_use]
+    pub fn values(self) -> &'static [Value] {
+        self.0
+    }
+}
+
+impl fmt::Display for Elements {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values: Vec<String> = self.0.iter().map(Value::to_string).collect();
+        write!(f, "[{}]", values.join(", "))
+    }
 }
 
 /// Why a constant has no value.
@@ -44,7 +90,7 @@ impl Value {
         match self {
             Value::Int(n) => Some(n as f64),
             Value::Float(x) => Some(x),
-            Value::Bool(_) | Value::Symbol(_) => None,
+            Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
         }
     }
 }
@@ -56,6 +102,8 @@ impl fmt::Display for Value {
             Value::Int(n) => write!(f, "{n}"),
             Value::Float(x) => write!(f, "{x}"),
             Value::Symbol(symbol) => write!(f, "{symbol}"),
+            Value::Text(text) => write!(f, "{text}"),
+            Value::List(list) => write!(f, "{list}"),
         }
     }
 }
@@ -66,6 +114,7 @@ pub(crate) fn unary(op: UnaryOp, v: Value) -> Result<Value, FoldError> {
         (UnaryOp::Neg, Value::Int(n)) => n.checked_neg().map(Value::Int).ok_or(FoldError::Overflow),
         (UnaryOp::Neg, Value::Float(x)) => Ok(Value::Float(-x)),
         (UnaryOp::Not, Value::Int(_) | Value::Float(_))
+        | (UnaryOp::Not | UnaryOp::Neg, Value::Text(_) | Value::List(_))
         | (UnaryOp::Neg, Value::Bool(_))
         | (UnaryOp::Not | UnaryOp::Neg, Value::Symbol(_)) => Err(FoldError::Type),
     }
@@ -75,9 +124,11 @@ pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldErro
     match (a, b) {
         (Value::Bool(a), Value::Bool(b)) => bools(op, a, b),
         (Value::Int(a), Value::Int(b)) => ints(op, a, b),
-        (Value::Symbol(_), Value::Symbol(_)) => match op {
-            BinaryOp::Eq => Ok(Value::Bool(a == b)),
-            BinaryOp::Ne => Ok(Value::Bool(a != b)),
+        (Value::Symbol(_), Value::Symbol(_))
+        | (Value::Text(_), Value::Text(_))
+        | (Value::List(_), Value::List(_)) => match op {
+            BinaryOp::Eq => Ok(Value::Bool(same(a, b))),
+            BinaryOp::Ne => Ok(Value::Bool(!same(a, b))),
             BinaryOp::Add
             | BinaryOp::Sub
             | BinaryOp::Mul
@@ -90,13 +141,22 @@ pub(crate) fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, FoldErro
             | BinaryOp::And
             | BinaryOp::Or => Err(FoldError::Type),
         },
-        (Value::Bool(_) | Value::Symbol(_), _) | (_, Value::Bool(_) | Value::Symbol(_)) => {
-            Err(FoldError::Type)
-        }
+        (Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_), _)
+        | (_, Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)) => Err(FoldError::Type),
         (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
             let (Some(a), Some(b)) = (a.number(), b.number()) else { return Err(FoldError::Type) };
             floats(op, a, b)
         }
+    }
+}
+
+/// Equal at run time: `1` and `1.0` are, and lists element by element.
+pub(crate) fn same(a: Value, b: Value) -> bool {
+    match (a, b) {
+        (Value::List(a), Value::List(b)) => {
+            a.0.len() == b.0.len() && a.0.iter().zip(b.0).all(|(a, b)| same(*a, *b))
+        }
+        (_, _) => a == b || matches!((a.number(), b.number()), (Some(x), Some(y)) if x == y),
     }
 }
 

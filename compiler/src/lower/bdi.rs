@@ -1,28 +1,42 @@
 //! Agents.
 
 use hrdsl_ir::{
-    ActorId, EventId,
+    ActorId, EventId, Expr,
     bdi::{
-        Agent, Belief, BeliefId, Context, Fact, Goal, GoalId, Plan, Step, StepKind, Term, Trigger, TriggerOn,
+        Agent, Annotation, Assertion, Belief, BeliefId, Content, ContentId, Context, Control, Fact, Goal,
+        GoalId, Internal, Literal, Performative, Plan, Rule, Step, StepKind, Subject, Term, Trigger,
+        TriggerOn,
     },
-    value::nanos,
+    list::ListFunction,
 };
 use hrdsl_model as model;
 
 use super::{expr, vocabulary};
 
 pub(crate) fn agent(a: &model::Agent) -> Agent {
-    let belief =
-        |b: &model::Belief| Belief { name: b.name.clone(), params: expr::params(&b.params), origin: b.span };
-    let fact = |(belief, args): &(model::BeliefId, Vec<model::Value>)| Fact {
-        belief: BeliefId(belief.0),
-        args: expr::values(args),
+    let belief = |b: &model::Belief| Belief {
+        name: b.name.clone(),
+        params: expr::params(&b.params),
+        annotations: expr::params(&b.annotations),
+        percept: b.percept.map(|e| EventId(e.0)),
+        origin: b.span,
+    };
+    let goal = |g: &model::Goal| Goal {
+        name: g.name.clone(),
+        arity: g.arity,
+        params: g.params.as_deref().map(expr::params),
+    };
+    let fact = |f: &model::Fact| Fact {
+        belief: belief_id(f.belief),
+        args: expr::values(&f.args),
+        annotations: f.annotations.iter().map(|(a, v)| (annotation(*a), expr::value(*v))).collect(),
     };
     Agent {
         name: a.name.clone(),
         actor: ActorId(a.actor.0),
         beliefs: a.beliefs.iter().map(belief).collect(),
-        goals: a.goals.iter().map(|g| Goal { name: g.name.clone(), arity: g.arity }).collect(),
+        goals: a.goals.iter().map(goal).collect(),
+        rules: a.rules.iter().map(rule).collect(),
         initial_beliefs: a.initial_beliefs.iter().map(fact).collect(),
         initial_goals: a.initial_goals.iter().map(|(g, args)| (GoalId(g.0), expr::values(args))).collect(),
         plans: a.plans.iter().map(plan).collect(),
@@ -30,62 +44,243 @@ pub(crate) fn agent(a: &model::Agent) -> Agent {
     }
 }
 
+pub(crate) fn content(c: &model::Content) -> Content {
+    let subject = |s: &Option<model::Subject>| match s {
+        Some(model::Subject::Belief(b)) => Some(Subject::Belief(belief_id(*b))),
+        Some(model::Subject::Goal(g)) => Some(Subject::Goal(GoalId(g.0))),
+        None => None,
+    };
+    Content { name: c.name.clone(), of: c.of.iter().map(subject).collect() }
+}
+
+fn belief_id(belief: model::BeliefId) -> BeliefId {
+    BeliefId(belief.0)
+}
+
+fn annotation(a: model::Annotation) -> Annotation {
+    match a {
+        model::Annotation::Source => Annotation::Source,
+        model::Annotation::Declared(i) => Annotation::Declared(i),
+    }
+}
+
+fn rule(r: &model::Rule) -> Rule {
+    Rule {
+        belief: belief_id(r.belief),
+        args: terms(&r.args),
+        body: context(&r.body),
+        vars: r.vars.clone(),
+        origin: r.span,
+    }
+}
+
 fn plan(p: &model::Plan) -> Plan {
     let on = match p.trigger {
-        model::TriggerOn::Added(b) => TriggerOn::BeliefAdded(BeliefId(b.0)),
-        model::TriggerOn::Removed(b) => TriggerOn::BeliefRemoved(BeliefId(b.0)),
+        model::TriggerOn::Added(b) => TriggerOn::BeliefAdded(belief_id(b)),
+        model::TriggerOn::Removed(b) => TriggerOn::BeliefRemoved(belief_id(b)),
         model::TriggerOn::Achieve(g) => TriggerOn::GoalAdded(GoalId(g.0)),
         model::TriggerOn::Failed(g) => TriggerOn::GoalFailed(GoalId(g.0)),
-        model::TriggerOn::Test(b) => TriggerOn::TestAdded(BeliefId(b.0)),
+        model::TriggerOn::Test(b) => TriggerOn::TestAdded(belief_id(b)),
+        model::TriggerOn::TestFailed(b) => TriggerOn::TestFailed(belief_id(b)),
         model::TriggerOn::Perceived(e) => TriggerOn::Perceived(EventId(e.0)),
     };
     Plan {
         label: p.label.clone(),
-        trigger: Trigger { on, args: terms(&p.args) },
+        atomic: p.atomic,
+        trigger: Trigger { on, args: terms(&p.args), annotations: annotations(&p.annotations) },
         context: context(&p.context),
-        body: p.body.iter().map(|s| Step { kind: step(&s.kind), origin: s.span }).collect(),
+        body: steps(&p.body),
         vars: p.vars.clone(),
         origin: p.span,
     }
 }
 
-fn terms(args: &[model::Arg]) -> Vec<Term> {
-    let term = |arg: &model::Arg| match arg {
+// ── terms and formulas ──
+
+fn term(arg: &model::Arg) -> Term {
+    match arg {
         model::Arg::Any => Term::Any,
         model::Arg::Var(i) => Term::Var(*i),
         model::Arg::Expr(e) => Term::Expr(expr::local(e)),
-    };
+        model::Arg::List(items, rest) => {
+            Term::List(terms(items), rest.as_ref().map(|rest| Box::new(term(rest))))
+        }
+    }
+}
+
+fn terms(args: &[model::Arg]) -> Vec<Term> {
     args.iter().map(term).collect()
+}
+
+fn annotations(all: &[(model::Annotation, model::Arg)]) -> Vec<(Annotation, Term)> {
+    all.iter().map(|(a, arg)| (annotation(*a), term(arg))).collect()
+}
+
+fn literal(l: &model::Literal) -> Literal {
+    Literal { belief: belief_id(l.belief), args: terms(&l.args), annotations: annotations(&l.annotations) }
+}
+
+fn assertion(a: &model::Assertion) -> Assertion {
+    Assertion {
+        belief: belief_id(a.belief),
+        args: expr::locals(&a.args),
+        annotations: a.annotations.iter().map(|(a, e)| (annotation(*a), expr::local(e))).collect(),
+    }
 }
 
 fn context(c: &model::Context) -> Context {
     match c {
         model::Context::True => Context::True,
-        model::Context::Belief(b, args, _) => Context::Belief { belief: BeliefId(b.0), args: terms(args) },
+        model::Context::Belief(l) => Context::Belief(literal(l)),
         model::Context::Not(c) => Context::Not(Box::new(context(c))),
         model::Context::And(cs) => Context::And(cs.iter().map(context).collect()),
         model::Context::Or(cs) => Context::Or(cs.iter().map(context).collect()),
         model::Context::Test(e) => Context::Test(expr::local(e)),
+        model::Context::Unify(arg, e) => Context::Unify(term(arg), expr::local(e)),
+        model::Context::Internal(action, _) => Context::Internal(Box::new(internal(action))),
     }
 }
 
+fn internal(action: &model::Internal) -> Internal {
+    use model::Internal as From;
+    match action {
+        From::FindAll { template, formula, set, out } => Internal::FindAll {
+            template: expr::local(template),
+            formula: context(formula),
+            set: *set,
+            out: term(out),
+        },
+        From::Count { formula, out } => Internal::Count { formula: context(formula), out: term(out) },
+        From::Member { element, list } => {
+            Internal::Member { element: term(element), list: expr::local(list) }
+        }
+        From::Apply { function: f, args, out } => {
+            Internal::Apply { function: function(*f), args: expr::locals(args), out: term(out) }
+        }
+        From::Holds { function: f, args } => {
+            Internal::Holds { function: function(*f), args: expr::locals(args) }
+        }
+        From::Intend { goal, args } => Internal::Intend { goal: GoalId(goal.0), args: terms(args) },
+        From::Desire { goal, args } => Internal::Desire { goal: GoalId(goal.0), args: terms(args) },
+        From::Suspended { goal, args } => Internal::Suspended { goal: GoalId(goal.0), args: terms(args) },
+        From::Random { from, out } => {
+            Internal::Random { from: from.as_ref().map(expr::local), out: term(out) }
+        }
+        From::Shuffle { list, out } => Internal::Shuffle { list: expr::local(list), out: term(out) },
+        From::Time { out } => Internal::Time { out: term(out) },
+        From::MyName { out } => Internal::MyName { out: term(out) },
+        From::AllNames { out } => Internal::AllNames { out: term(out) },
+    }
+}
+
+fn function(f: model::ListFunction) -> ListFunction {
+    use model::ListFunction as From;
+    match f {
+        From::Length => ListFunction::Length,
+        From::Concat => ListFunction::Concat,
+        From::Nth => ListFunction::Nth,
+        From::Reverse => ListFunction::Reverse,
+        From::Sort => ListFunction::Sort,
+        From::Min => ListFunction::Min,
+        From::Max => ListFunction::Max,
+        From::Delete => ListFunction::Delete,
+        From::Union => ListFunction::Union,
+        From::Intersection => ListFunction::Intersection,
+        From::Difference => ListFunction::Difference,
+        From::ToText => ListFunction::ToText,
+        From::Empty => ListFunction::Empty,
+        From::Prefix => ListFunction::Prefix,
+        From::Suffix => ListFunction::Suffix,
+        From::Sublist => ListFunction::Sublist,
+    }
+}
+
+// ── steps ──
+
+fn steps(all: &[model::Step]) -> Vec<Step> {
+    all.iter().map(|s| Step { kind: step(&s.kind), origin: s.span }).collect()
+}
+
+fn optional(e: &Option<model::Expr>) -> Option<Expr> {
+    e.as_ref().map(expr::local)
+}
+
 fn step(s: &model::StepKind) -> StepKind {
-    let belief = |b: &model::BeliefId| BeliefId(b.0);
+    use model::StepKind as From;
     match s {
-        model::StepKind::Do(e, args) => StepKind::Do { event: EventId(e.0), args: expr::locals(args) },
-        model::StepKind::Achieve(g, args) => {
-            StepKind::Achieve { goal: GoalId(g.0), args: expr::locals(args) }
+        From::Do(e, args) => StepKind::Do { event: EventId(e.0), args: expr::locals(args) },
+        From::Achieve(g, args, within) => {
+            StepKind::Achieve { goal: GoalId(g.0), args: expr::locals(args), within: optional(within) }
         }
-        model::StepKind::Spawn(g, args) => StepKind::Spawn { goal: GoalId(g.0), args: expr::locals(args) },
-        model::StepKind::Query(b, args) => StepKind::Query { belief: belief(b), args: terms(args) },
-        model::StepKind::Remove(b, args) => StepKind::Remove { belief: belief(b), args: terms(args) },
-        model::StepKind::Add(b, args) => StepKind::Add { belief: belief(b), args: expr::locals(args) },
-        model::StepKind::Replace(b, args) => {
-            StepKind::Replace { belief: belief(b), args: expr::locals(args) }
+        From::Spawn(g, args) => StepKind::Spawn { goal: GoalId(g.0), args: expr::locals(args) },
+        From::Query(l) => StepKind::Query(literal(l)),
+        From::Test(c) => StepKind::Test(context(c)),
+        From::Add(a) => StepKind::Add(assertion(a)),
+        From::Remove(l) => StepKind::Remove(literal(l)),
+        From::Replace(a) => StepKind::Replace(assertion(a)),
+        From::Abolish(l) => StepKind::Abolish(literal(l)),
+        From::Await { events, within } => {
+            StepKind::Await { events: vocabulary::patterns(events), within: optional(within) }
         }
-        model::StepKind::Await { events, within } => {
-            StepKind::Await { events: vocabulary::patterns(events), within: within.map(nanos) }
+        From::Wait(time) => StepKind::Wait { seconds: expr::local(time) },
+        From::If { condition, then, otherwise } => {
+            StepKind::If { condition: context(condition), then: steps(then), otherwise: steps(otherwise) }
         }
-        model::StepKind::Wait(time) => StepKind::Wait { seconds: expr::local(time) },
+        From::While { condition, body } => {
+            StepKind::While { condition: context(condition), body: steps(body) }
+        }
+        From::For { condition, body } => StepKind::For { condition: context(condition), body: steps(body) },
+        From::Fork { branches, all } => {
+            StepKind::Fork { branches: branches.iter().map(|b| steps(b)).collect(), all: *all }
+        }
+        From::Send { to, performative: p, content, args } => StepKind::Send {
+            to: optional(to),
+            performative: performative(*p),
+            content: ContentId(content.0),
+            args: terms(args),
+        },
+        From::Ask { to, content, args, within } => StepKind::Ask {
+            to: expr::local(to),
+            content: ContentId(content.0),
+            args: terms(args),
+            within: optional(within),
+        },
+        From::AskAll { to, template, content, args, out, within } => StepKind::AskAll {
+            to: expr::local(to),
+            template: expr::local(template),
+            content: ContentId(content.0),
+            args: terms(args),
+            out: term(out),
+            within: optional(within),
+        },
+        From::Print(args) => StepKind::Print { args: expr::locals(args) },
+        From::Control(what, goal) => StepKind::Control {
+            what: control(*what),
+            goal: goal.as_ref().map(|(g, args)| (GoalId(g.0), terms(args))),
+        },
+        From::Fail => StepKind::Fail,
+    }
+}
+
+fn performative(p: model::Performative) -> Performative {
+    match p {
+        model::Performative::Tell => Performative::Tell,
+        model::Performative::Untell => Performative::Untell,
+        model::Performative::Achieve => Performative::Achieve,
+        model::Performative::Unachieve => Performative::Unachieve,
+        model::Performative::AskOne => Performative::AskOne,
+        model::Performative::AskAll => Performative::AskAll,
+    }
+}
+
+fn control(what: model::Control) -> Control {
+    match what {
+        model::Control::DropIntention => Control::DropIntention,
+        model::Control::DropDesire => Control::DropDesire,
+        model::Control::DropEvent => Control::DropEvent,
+        model::Control::SucceedGoal => Control::SucceedGoal,
+        model::Control::FailGoal => Control::FailGoal,
+        model::Control::Suspend => Control::Suspend,
+        model::Control::Resume => Control::Resume,
     }
 }

@@ -10,6 +10,8 @@ pub(crate) fn value(v: model::Value) -> ir::Value {
         model::Value::Int(n) => ir::Value::Int(n),
         model::Value::Float(x) => ir::Value::Float(x),
         model::Value::Symbol(symbol) => ir::Value::Symbol(symbol),
+        model::Value::Text(text) => ir::Value::Text(ir::Text { text: text.0 }),
+        model::Value::List(list) => ir::Value::List(ir::List::of(&values(list.values()))),
     }
 }
 
@@ -17,12 +19,14 @@ pub(crate) fn values(vs: &[model::Value]) -> Vec<ir::Value> {
     vs.iter().copied().map(value).collect()
 }
 
-pub(crate) fn ty(ty: model::Type) -> ir::Type {
-    match ty {
+pub(crate) fn ty(of: model::Type) -> ir::Type {
+    match of {
         model::Type::Bool => ir::Type::Bool,
         model::Type::Int { lo, hi } => ir::Type::Int { lo, hi },
         model::Type::Float(dim) => ir::Type::Float(unit(dim)),
         model::Type::Enum(of) => ir::Type::Enum(of),
+        model::Type::Text => ir::Type::Text,
+        model::Type::List(of) => ir::Type::List(ir::ListOf::new(ty(of.element()))),
     }
 }
 
@@ -84,6 +88,11 @@ pub(crate) fn expr(e: &model::Expr, read: &mut dyn FnMut(Source) -> Expr) -> Exp
                 model::Function::Norm => ir::expr::Function::Norm,
             };
             Expr::Call(f, args.iter().map(|a| expr(a, read)).collect())
+        }
+        ExprKind::List(items, rest) => {
+            let items = items.iter().map(|a| expr(a, read)).collect();
+            let rest = rest.as_ref().map(|r| Box::new(expr(r, read)));
+            Expr::List(items, rest)
         }
         // INVARIANT: a scenario with errors is not lowered.
         ExprKind::Error => Expr::bool(false),

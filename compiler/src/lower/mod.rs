@@ -25,6 +25,7 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
         actors: vocabulary::actors(scenario),
         events: vocabulary::events(scenario),
         agents: scenario.agents.iter().map(bdi::agent).collect(),
+        contents: scenario.contents.iter().map(bdi::content).collect(),
         shared: scenario.shared.iter().map(ta::var).collect(),
         automata: scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect(),
         networks: scenario.networks.iter().map(ta::network).collect(),

@@ -173,7 +173,9 @@ fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Optio
             };
             let unit = match a.ty {
                 Kind::Float(dim) => expr::unit(dim),
-                Kind::Int | Kind::Bool | Kind::Enum(_) | Kind::Unknown => Unit::None,
+                Kind::Int | Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
+                    Unit::None
+                }
             };
             let (a, b) = (reader.expr(a), reader.expr(b));
             let (small, large) = if smaller_first == positive { (a, b) } else { (b, a) };
@@ -185,6 +187,7 @@ fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Optio
         | ExprKind::Term(_)
         | ExprKind::If(..)
         | ExprKind::Call(..)
+        | ExprKind::List(..)
         | ExprKind::Error => None,
     }
 }

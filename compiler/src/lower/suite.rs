@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     EventId,
     bdi::{AgentId, BeliefId},
-    suite::{Choice, ChoiceKind, Explore, Method, PlayerRef, SearchGoal, Suite},
+    suite::{Choice, ChoiceKind, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite},
     ta::AutomatonId,
     value::nanos,
 };
@@ -24,14 +24,18 @@ pub(crate) fn suite(s: &model::Suite) -> Suite {
 
 fn method(m: &model::Method) -> Method {
     match m {
-        model::Method::Agents { players, choose, explore } => Method::Agents {
+        model::Method::Agents { players, choose, explore, stop_after, goals, minimise } => Method::Agents {
             players: players.iter().map(|p| player(*p)).collect(),
             choose: choose.iter().map(choice).collect(),
             explore: match explore {
                 model::Explore::Exhaustive => Explore::Exhaustive,
-                model::Explore::Pairwise => Explore::Pairwise,
+                model::Explore::Wise(t) => Explore::Wise(*t),
                 model::Explore::Random => Explore::Random,
+                model::Explore::Learn => Explore::Learn,
             },
+            stop_after: *stop_after,
+            goals: goals.iter().map(|g| model_goal(*g)).collect(),
+            minimise: *minimise,
         },
         model::Method::Search { network, goals } => {
             Method::Search { network: network.0, goals: goals.iter().map(|g| goal(*g)).collect() }
@@ -61,6 +65,17 @@ fn choice(c: &model::Choice) -> Choice {
         model::ChoiceKind::Any => ChoiceKind::Any,
     };
     Choice { agent: AgentId(c.agent.0), belief: BeliefId(c.belief.0), how }
+}
+
+fn model_goal(g: model::ModelGoal) -> ModelGoal {
+    match g {
+        model::ModelGoal::Bins(cross) => ModelGoal::Bins { cross: cross.0 },
+        model::ModelGoal::Plans => ModelGoal::Plans,
+        model::ModelGoal::Contexts => ModelGoal::Contexts,
+        model::ModelGoal::Edges => ModelGoal::Edges,
+        model::ModelGoal::Messages => ModelGoal::Messages,
+        model::ModelGoal::Paths => ModelGoal::Paths,
+    }
 }
 
 fn goal(g: model::SearchGoal) -> SearchGoal {

@@ -24,9 +24,13 @@ pub(crate) fn var(v: &model::Var) -> Var {
         model::Value::Int(n) => n,
         model::Value::Symbol(symbol) => match v.ty {
             model::Type::Enum(of) => of.index_of(symbol).map_or(0, |i| i as i64),
-            model::Type::Bool | model::Type::Int { .. } | model::Type::Float(_) => 0,
+            model::Type::Bool
+            | model::Type::Int { .. }
+            | model::Type::Float(_)
+            | model::Type::Text
+            | model::Type::List(_) => 0,
         },
-        model::Value::Float(_) => 0,
+        model::Value::Float(_) | model::Value::Text(_) | model::Value::List(_) => 0,
     };
     Var { init, ..bounded(&v.name, v.ty) }
 }
@@ -36,8 +40,8 @@ fn bounded(name: &str, ty: model::Type) -> Var {
     let (lo, hi, is_bool, enumeration) = match expr::ty(ty) {
         Type::Int { lo, hi } => (lo, hi, false, None),
         Type::Enum(e) => (0, e.values().len() as i64 - 1, false, Some(e)),
-        // INVARIANT: the checker has ruled floats out.
-        Type::Bool | Type::Float(_) => (0, 1, true, None),
+        // INVARIANT: the checker has ruled out what is not finite.
+        Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => (0, 1, true, None),
     };
     Var { name: name.to_owned(), lo, hi, init: lo, is_bool, enumeration }
 }

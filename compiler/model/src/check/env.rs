@@ -154,8 +154,8 @@ impl Env {
 
     /// A variable is of this kind, which was not known before.
     pub fn refine(&mut self, leaf: Leaf, ty: Kind) {
-        if let Some(local) = self.locals.iter_mut().find(|l| l.leaf == Some(leaf) && l.ty == Kind::Unknown) {
-            local.ty = ty;
+        if let Some(local) = self.locals.iter_mut().find(|l| l.leaf == Some(leaf)) {
+            local.ty = local.ty.with(ty).unwrap_or(local.ty);
         }
     }
 }

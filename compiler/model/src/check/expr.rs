@@ -15,7 +15,7 @@ pub(super) const FUNCTIONS: [(&str, Function); 4] =
     [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max), ("norm", Function::Norm)];
 
 /// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
-const MAX_TIME: f64 = 1e9;
+pub(super) const MAX_TIME: f64 = 1e9;
 
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
@@ -64,6 +64,14 @@ impl<'a> Checker<'a> {
                 let item = self.item(of, env);
                 return self.field(item, name);
             }
+            Syntax::Text(text) => {
+                Expr::value(Value::Text(crate::Text(Symbol::intern(text))), Kind::Text, span)
+            }
+            Syntax::List { items, rest } => self.list(items, rest.as_deref(), Kind::Unknown, span, env),
+            Syntax::Unify { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Internal(_) => {
+                self.no_value_here(e, env);
+                Expr::error(span)
+            }
             Syntax::Error => Expr::error(span),
         })
     }
@@ -89,6 +97,9 @@ impl<'a> Checker<'a> {
 
     /// An expression where a value of this kind is due, which may be written by its bare name.
     pub(super) fn item_due(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Item {
+        if let (Kind::List(of), Syntax::List { items, rest }) = (want, &e.kind) {
+            return Item::One(self.list(items, rest.as_deref(), of.element(), e.span, env));
+        }
         let Kind::Enum(of) = want else { return self.item(e, env) };
         if let Some(symbol) = self.symbol_of(e, of) {
             return Item::One(symbol);
@@ -142,10 +153,20 @@ impl<'a> Checker<'a> {
 
     /// A constant must lie in the range of its type.
     pub(super) fn in_range(&mut self, e: &Expr, ty: Type) {
-        if let (Type::Int { lo, hi }, Some(Value::Int(n))) = (ty, e.constant())
-            && !(lo..=hi).contains(&n)
-        {
-            self.report(types::out_of_range(Value::Int(n), lo, hi, e.span));
+        if let Some(value) = e.constant() {
+            self.value_in_range(value, ty, e.span);
+        }
+    }
+
+    fn value_in_range(&mut self, value: Value, ty: Type, span: Span) {
+        match (ty, value) {
+            (Type::Int { lo, hi }, Value::Int(n)) if !(lo..=hi).contains(&n) => {
+                self.report(types::out_of_range(value, lo, hi, span));
+            }
+            (Type::List(of), Value::List(list)) => {
+                list.values().iter().for_each(|v| self.value_in_range(*v, of.element(), span));
+            }
+            (_, _) => {}
         }
     }
 
@@ -201,7 +222,20 @@ impl<'a> Checker<'a> {
                 e
             }
             (Kind::Float(Dim::NUMBER), Kind::Int) => as_float(e),
-            (Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) | Kind::Unknown, _) => {
+            (Kind::List(_), Kind::List(_)) if want.with(e.ty).is_some() => {
+                self.learn(&e, want, env);
+                e
+            }
+            (
+                Kind::Bool
+                | Kind::Int
+                | Kind::Float(_)
+                | Kind::Enum(_)
+                | Kind::Text
+                | Kind::List(_)
+                | Kind::Unknown,
+                _,
+            ) => {
                 self.report(types::mismatch(want, e.ty, e.constant(), e.span));
                 Expr::error(e.span)
             }
@@ -358,7 +392,7 @@ impl<'a> Checker<'a> {
         match op {
             BinaryOp::And | BinaryOp::Or => Some(Kind::Bool),
             BinaryOp::Eq | BinaryOp::Ne => {
-                if !l.ty.is_number() && l.ty == r.ty {
+                if !l.ty.is_number() && l.ty.with(r.ty).is_some() {
                     return Some(Kind::Bool);
                 }
                 self.same(symbol(op), left, right).map(|_| Kind::Bool)
@@ -403,7 +437,9 @@ impl<'a> Checker<'a> {
         match (l.0, r.0) {
             (Kind::Unknown, other) | (other, Kind::Unknown) => Some(other),
             (a, b) if a == b => Some(a),
-            (Kind::Bool | Kind::Enum(_), _) | (_, Kind::Bool | Kind::Enum(_)) => {
+            (Kind::List(_), Kind::List(_)) if l.0.with(r.0).is_some() => l.0.with(r.0),
+            (Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_), _)
+            | (_, Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_)) => {
                 self.report(types::operands(op, (l.0, l.1), (r.0, r.1)));
                 None
             }

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Code, Diagnostic, Span, Symbol};
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
 
 use super::{Checker, Env, item::Item, table::Map};
@@ -98,7 +98,7 @@ pub(super) fn is_kind_word(text: &str) -> bool {
 fn kind_of_param(param: &ast::Param) -> Option<Noun> {
     match &param.ty {
         TypeExpr::Named(name) => kind_word(&name.text),
-        TypeExpr::Range(..) | TypeExpr::Array(..) | TypeExpr::Error => None,
+        TypeExpr::Range(..) | TypeExpr::Array(..) | TypeExpr::List(_) | TypeExpr::Error => None,
     }
 }
 
@@ -352,6 +352,8 @@ impl<'a> Checker<'a> {
                     let value = if great { values.last() } else { values.first() };
                     value.map_or(Value::Bool(false), |v| Value::Symbol(*v))
                 }
+                Type::Text => Value::Text(crate::Text(Symbol::intern(if great { "b" } else { "a" }))),
+                Type::List(_) => Value::List(crate::Elements::new(&[])),
             };
             Item::One(Expr::value(value, ty.kind(), span))
         };

@@ -300,7 +300,7 @@ impl Checker<'_> {
                 Layout::Scalar(Type::Int { .. } | Type::Float(_)) => {
                     axes(usize::from(*n)).iter().map(|a| (*a).to_owned()).collect()
                 }
-                Layout::Scalar(Type::Bool | Type::Enum(_))
+                Layout::Scalar(Type::Bool | Type::Enum(_) | Type::Text | Type::List(_))
                 | Layout::Record(_)
                 | Layout::Array(..)
                 | Layout::Unknown => Vec::new(),

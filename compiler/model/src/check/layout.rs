@@ -7,7 +7,7 @@ use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
 
 use super::{Checker, Env, table::Table};
 use crate::{
-    Enum, Kind, Param, Type, Value,
+    Enum, Kind, Of, Param, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
@@ -178,6 +178,16 @@ impl<'a> Checker<'a> {
             TypeExpr::Named(name) => self.named_type(name)?,
             TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
             TypeExpr::Array(..) => self.array_type(ty)?,
+            TypeExpr::List(of) => match self.layout(of)? {
+                Layout::Scalar(of) => Layout::Scalar(Type::List(Of::<Type>::new(of))),
+                Layout::Unknown => return None,
+                other @ (Layout::Record(_) | Layout::Array(..)) => {
+                    let got = self.shown_layout(&other);
+                    let issue = types::other_shape("the type of one value", &got, type_span(of));
+                    self.report(issue.help("the elements of a list are single values, or lists"));
+                    return None;
+                }
+            },
         };
         let size = self.size(&layout);
         if size > MAX_PARTS {
@@ -217,7 +227,30 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Parameters of what is not an agent's: neither strings nor lists.
+    pub(super) fn plain_fields(&mut self, params: &[SyntaxParam]) -> Fields {
+        let fields = self.fields(params);
+        for (param, (_, layout)) in params.iter().zip(fields.iter()) {
+            self.plain(layout, &param.name.text, type_span(&param.ty));
+        }
+        fields
+    }
+
+    /// Says if a string or list is in something that no agent has.
+    pub(super) fn plain(&mut self, layout: &Layout, name: &str, span: Span) -> bool {
+        let mut leaves = Vec::new();
+        self.leaves(name, layout, &mut leaves);
+        let found = leaves.into_iter().find(|(_, ty)| ty.is_of_agents());
+        if let Some((name, ty)) = &found {
+            self.report(types::of_agents_only(name, *ty, span));
+        }
+        found.is_none()
+    }
+
     fn named_type(&mut self, name: &Name) -> Option<Layout> {
+        if name.text == "agent" {
+            return Some(Layout::Scalar(Type::Enum(self.agent_names)));
+        }
         if let Some(ty) = Type::named(&name.text) {
             return Some(Layout::Scalar(ty));
         }
@@ -252,7 +285,7 @@ impl<'a> Checker<'a> {
 
     pub(super) fn type_names(&self) -> Vec<String> {
         let own = self.enums.names().chain(self.record_names.names()).map(str::to_owned);
-        Type::names().map(str::to_owned).chain(own).collect()
+        Type::names().chain(["agent"]).map(str::to_owned).chain(own).collect()
     }
 
     fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
@@ -277,6 +310,7 @@ pub(super) fn type_span(ty: &TypeExpr) -> Span {
             TypeExpr::Error => size.span,
             of => type_span(of).to(size.span),
         },
+        TypeExpr::List(of) => type_span(of),
         TypeExpr::Error => Span::default(),
     }
 }

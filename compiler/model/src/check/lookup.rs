@@ -94,6 +94,11 @@ impl<'a> Checker<'a> {
             }
             None => {}
         }
+        if env.plan
+            && let Some(symbol) = self.agent_names.symbol(&name.text)
+        {
+            return Some(Item::One(symbol_value(self.agent_names, symbol, name.span)));
+        }
         self.signal_named(name, env).map(Item::One)
     }
 
@@ -130,6 +135,7 @@ impl<'a> Checker<'a> {
     /// A name that has no value here.
     fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
         let names = self.names_with_value(env);
+        self.unbound.insert(name.text.clone());
         if let Some(help) = self.values_of_type(name) {
             let is = if self.enums.get(&name.text).is_some() { Noun::Enum } else { Noun::Record };
             let noun = env.noun.unwrap_or(Noun::Constant);
@@ -150,6 +156,9 @@ impl<'a> Checker<'a> {
         let given = self.given.iter().flat_map(|given| given.iter());
         names.extend(given.filter(|(_, g)| matches!(g, Given::Value(_))).map(|(n, _)| n.clone()));
         names.extend(self.signal_names(env));
+        if env.plan {
+            names.extend(self.near(self.agent_names.values().iter().map(|s| s.name())));
+        }
         names
     }
 
@@ -250,7 +259,15 @@ fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
         | Syntax::Float(_)
         | Syntax::Quantity { .. }
         | Syntax::Any
+        | Syntax::Text(_)
+        | Syntax::Internal(_)
         | Syntax::Error => {}
+        Syntax::List { items, rest } => items.iter().chain(rest.as_deref()).for_each(|e| names_in(e, names)),
+        Syntax::Strong(of) | Syntax::Annotated { of, .. } => names_in(of, names),
+        Syntax::Unify { left, right } => {
+            names_in(left, names);
+            names_in(right, names);
+        }
         Syntax::Path(path) => names.extend(path.names.first()),
         Syntax::Call { args, .. } => args.iter().for_each(|a| names_in(a, names)),
         Syntax::Unary { operand, .. } => names_in(operand, names),

@@ -5,31 +5,42 @@ mod args;
 mod assign;
 mod automaton;
 mod combine;
+mod context;
 mod coverage;
 mod due;
 mod edge;
 mod env;
 mod expr;
 mod given;
+mod internal;
+mod internal_table;
 mod item;
 mod layout;
+mod list;
 mod lookup;
 mod measure;
+mod message;
 mod places;
 mod plan;
 mod range;
 mod requirement;
+mod rule;
+mod steps;
 mod stimulus;
 mod suite;
 mod system;
 mod table;
+mod terms;
 mod test;
 mod unread;
 mod vocabulary;
 mod world;
 mod world_parts;
 
-use std::{collections::BTreeSet, rc::Rc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    rc::Rc,
+};
 
 use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
@@ -44,6 +55,7 @@ use crate::{
 };
 use env::Env;
 use given::{Given, Givens, Template};
+pub use internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
 use item::Item;
 use layout::{Fields, RecordEntry};
 use table::{MAX_NAMES, Map, Refused, Table};
@@ -191,6 +203,16 @@ pub(crate) struct Checker<'a> {
     /// The beliefs of each agent, and their parameters as declared.
     beliefs: Vec<Table>,
     belief_fields: Vec<Vec<Fields>>,
+    /// The goals of each agent.
+    goal_tables: Vec<Map<String, agent::GoalEntry>>,
+    /// By agent and belief: what its rules need of its arguments.
+    modes: BTreeMap<(u16, u16), Vec<rule::Mode>>,
+    /// The goals that some message asks somebody to achieve, by name.
+    asked_goals: BTreeSet<&'a str>,
+    /// The names of all agents, `self` and `percept`.
+    agent_names: Enumeration,
+    /// The variables without a value that were read since this was emptied.
+    unbound: BTreeSet<String>,
     has_world: bool,
     /// The parts that are being taken apart, the outermost first.
     open_parts: Vec<&'a str>,
@@ -253,6 +275,11 @@ impl<'a> Checker<'a> {
             automaton_decls: Vec::new(),
             beliefs: Vec::new(),
             belief_fields: Vec::new(),
+            goal_tables: Vec::new(),
+            modes: BTreeMap::new(),
+            asked_goals: BTreeSet::new(),
+            agent_names: Enumeration::intern("agent", &["self", "percept"]),
+            unbound: BTreeSet::new(),
             has_world,
             open_parts: Vec::new(),
             missing_modules: false,

@@ -90,8 +90,12 @@ fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
     for member in &agent.members {
         match &member.kind {
             AgentMember::Belief { name, .. } => places.beliefs.push(name.span),
-            AgentMember::Plan(plan) => places.triggers.push(plan.trigger.call.span),
-            AgentMember::Goal(_) | AgentMember::Allow(_) | AgentMember::Error => {}
+            AgentMember::Plan(plan) => places.triggers.push(plan.trigger.literal.span),
+            AgentMember::Rule { .. }
+            | AgentMember::GoalType { .. }
+            | AgentMember::Goal(_)
+            | AgentMember::Allow(_)
+            | AgentMember::Error => {}
         }
     }
     places

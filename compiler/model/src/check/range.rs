@@ -12,7 +12,10 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
     }
     match &e.kind {
         ExprKind::Const(Value::Int(n)) => Some((*n, *n)),
-        ExprKind::Const(Value::Bool(_) | Value::Float(_) | Value::Symbol(_))
+        ExprKind::Const(
+            Value::Bool(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_),
+        )
+        | ExprKind::List(..)
         | ExprKind::Term(_)
         | ExprKind::Error => None,
         ExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),

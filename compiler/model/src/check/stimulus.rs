@@ -85,7 +85,9 @@ impl Checker<'_> {
                 Type::Int { lo: lo.unwrap_or(0), hi: hi.unwrap_or(0) }
             }
             Kind::Float(dim) => Type::Float(dim),
-            Kind::Bool | Kind::Enum(_) | Kind::Unknown => Type::Float(Dim::NUMBER),
+            Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
+                Type::Float(Dim::NUMBER)
+            }
         };
         if lo.ty == Kind::Unknown {
             // Its range has a diagnostic; nothing follows from its type.
@@ -245,6 +247,12 @@ impl Checker<'_> {
             | Syntax::Int(_)
             | Syntax::Float(_)
             | Syntax::Quantity { .. }
+            | Syntax::Text(_)
+            | Syntax::List { .. }
+            | Syntax::Strong(_)
+            | Syntax::Annotated { .. }
+            | Syntax::Internal(_)
+            | Syntax::Unify { .. }
             | Syntax::Any
             | Syntax::Call { .. } => {
                 self.report(not_a_point(e.span));

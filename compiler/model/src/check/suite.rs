@@ -7,8 +7,8 @@ use hrdsl_syntax::ast::{
 
 use super::{Checker, Env, NOBODY};
 use crate::{
-    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, NetworkId, Player, Role,
-    SearchGoal, Suite, Value,
+    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, ModelGoal, NetworkId,
+    Player, Role, SearchGoal, Suite, Value,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -19,6 +19,9 @@ struct Said {
     choose: Vec<Choice>,
     explore: Option<Explore>,
     goals: Vec<SearchGoal>,
+    reached: Vec<ModelGoal>,
+    stop_after: Option<u32>,
+    minimise: bool,
     stimuli: Vec<EventId>,
     awaits: Vec<EventPattern>,
     length: Option<(u32, u32)>,
@@ -57,8 +60,9 @@ impl Checker<'_> {
         }
         let method = match &suite.method {
             SyntaxMethod::Agents(_) => {
-                let explore = said.explore.unwrap_or(Explore::Pairwise);
-                Method::Agents { players, choose: said.choose, explore }
+                let explore = said.explore.unwrap_or(Explore::Wise(2));
+                let Said { choose, reached: goals, stop_after, minimise, .. } = said;
+                Method::Agents { players, choose, explore, stop_after, goals, minimise }
             }
             SyntaxMethod::Search(_) => {
                 if !suite.members.iter().any(is_goal) {
@@ -132,7 +136,20 @@ impl Checker<'_> {
     /// Some members belong to one method only.
     fn fits_method(&mut self, member: &SuiteMember, method: &SyntaxMethod) -> bool {
         let needs = match &member.kind {
-            Member::Choose { .. } | Member::Explore(_) | Member::Horizon(_) => "agents",
+            Member::Choose { .. }
+            | Member::Explore(_)
+            | Member::StopAfter(_)
+            | Member::Minimise
+            | Member::Horizon(_) => "agents",
+            Member::ReachEach(word) if matches!(method, SyntaxMethod::Search(_)) => {
+                self.choice(Noun::Reach, word, &["bin of …", "location", "edge"]);
+                return false;
+            }
+            Member::ReachEach(_) => "agents",
+            // Both.
+            Member::ReachBins(_) | Member::ReachEdges if matches!(method, SyntaxMethod::Agents(_)) => {
+                return true;
+            }
             Member::ReachBins(_) | Member::ReachLocations | Member::ReachEdges => "search",
             Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
             Member::Tests(_) | Member::Patience(_) | Member::Error => return true,
@@ -154,10 +171,17 @@ impl Checker<'_> {
             Member::Choose { any, belief, agent, per } => {
                 said.choose.extend(self.choose(*any, belief, agent, per.as_ref(), players));
             }
-            Member::Explore(name) => {
-                let ways = [Explore::Exhaustive, Explore::Pairwise, Explore::Random];
-                let chosen = self.choice(Noun::Explore, name, &["exhaustive", "pairwise", "random"]);
-                said.explore = chosen.map(|i| ways[i]);
+            Member::Explore(call) => said.explore = self.explore(call),
+            Member::StopAfter(e) => {
+                let count = self.count(e, "the number of sets without anything new", 1);
+                said.stop_after = count.and_then(|n| u32::try_from(n).ok());
+            }
+            Member::Minimise => said.minimise = true,
+            Member::ReachEach(word) => {
+                let goals = [ModelGoal::Plans, ModelGoal::Contexts, ModelGoal::Messages, ModelGoal::Paths];
+                let words = ["plan", "context", "message", "path", "edge", "bin of …"];
+                let found = self.choice(Noun::Reach, word, &words);
+                said.reached.extend(found.and_then(|i| goals.get(i)));
             }
             Member::Tests(e) => {
                 said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
@@ -165,14 +189,20 @@ impl Checker<'_> {
             Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
             Member::Patience(e) => said.patience = self.time(e, "the patience", true),
             Member::ReachBins(name) => match self.crosses.get(&name.text) {
-                Some(id) => said.goals.push(SearchGoal::Bins(CrossId(id))),
+                Some(id) => {
+                    said.goals.push(SearchGoal::Bins(CrossId(id)));
+                    said.reached.push(ModelGoal::Bins(CrossId(id)));
+                }
                 None => {
                     let all: Vec<String> = self.crosses.names().map(str::to_owned).collect();
                     self.unknown(Noun::Cross, name, &all, None);
                 }
             },
             Member::ReachLocations => said.goals.push(SearchGoal::Locations),
-            Member::ReachEdges => said.goals.push(SearchGoal::Edges),
+            Member::ReachEdges => {
+                said.goals.push(SearchGoal::Edges);
+                said.reached.push(ModelGoal::Edges);
+            }
             Member::Stimuli(names) => {
                 for name in names {
                     said.stimuli.extend(self.test_stimulus(name));
@@ -183,6 +213,28 @@ impl Checker<'_> {
             Member::Pause(range) => said.pause = self.pause(range),
             Member::Error => {}
         }
+    }
+
+    /// `pairwise`, `wise(3)`, …
+    fn explore(&mut self, call: &ast::Call) -> Option<Explore> {
+        let words = ["exhaustive", "pairwise", "random", "learn", "wise"];
+        let way = self.choice(Noun::Explore, &call.name, &words)?;
+        let args = call.args.as_deref().unwrap_or_default();
+        let ways = [Explore::Exhaustive, Explore::Wise(2), Explore::Random, Explore::Learn];
+        let want = usize::from(words[way] == "wise");
+        if args.len() != want {
+            let issue = types::counts(Noun::Explore, words[way], want, args.len(), call.span);
+            let usage = if want == 1 { "wise(3)" } else { words[way] };
+            self.report(issue.help(format!("write `explore {usage}`")));
+            return None;
+        }
+        let Some(strength) = args.first() else { return ways.get(way).copied() };
+        let t = self.count(strength, "how many values occur together", 2)?;
+        if t > 6 {
+            self.report(types::must_be("how many values occur together", "2 to 6", strength.span));
+            return None;
+        }
+        u8::try_from(t).ok().map(Explore::Wise)
     }
 
     fn choose(
@@ -206,7 +258,7 @@ impl Checker<'_> {
         }
         let table = &self.beliefs[usize::from(id.0)];
         let Some(belief_id) = table.get(&belief.text).map(crate::BeliefId) else {
-            let all: Vec<String> = table.names().map(str::to_owned).collect();
+            let all: Vec<String> = table.names().filter(|n| !n.starts_with('~')).map(str::to_owned).collect();
             self.unknown(Noun::Belief, belief, &all, None);
             return None;
         };
@@ -281,5 +333,12 @@ impl Checker<'_> {
 }
 
 fn is_goal(member: &SuiteMember) -> bool {
-    matches!(member.kind, Member::ReachBins(_) | Member::ReachLocations | Member::ReachEdges | Member::Error)
+    matches!(
+        member.kind,
+        Member::ReachBins(_)
+            | Member::ReachLocations
+            | Member::ReachEdges
+            | Member::ReachEach(_)
+            | Member::Error
+    )
 }

@@ -56,13 +56,16 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::RequirementKind
         | Noun::Method
         | Noun::Explore
+        | Noun::Reach
+        | Noun::InternalAction
+        | Noun::Performative
         | Noun::Motion
         | Noun::Shape
         | Noun::Action
         | Noun::Coordinate => false,
         // Declared in one piece with the place that uses them.
         Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
-        Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location => members,
+        Noun::Annotation | Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location => members,
         Noun::Variable => items || members,
         Noun::Actor
         | Noun::Type

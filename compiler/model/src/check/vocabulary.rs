@@ -2,11 +2,14 @@
 
 use std::rc::Rc;
 
-use hrdsl_source::Span;
+use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
 use super::{
-    Checker, ConstEntry, ConstState, Declared, Env, NOBODY, given::template, layout::Fields, table::Table,
+    Checker, ConstEntry, ConstState, Declared, Env, NOBODY,
+    given::template,
+    layout::Fields,
+    table::{Map, Table},
 };
 use crate::{
     Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, Player, Role,
@@ -17,7 +20,19 @@ use crate::{
 };
 
 impl<'a> Checker<'a> {
+    /// The names of all agents, `self` and `percept`: the values of the type `agent`.
+    fn name_agents(&mut self) {
+        let named = self.each_item().filter_map(|(item, _)| match item {
+            ItemKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
+            ItemKind::Instance(instance) if instance.sort == Sort::Agent => Some(instance.name.text.as_str()),
+            _ => None,
+        });
+        let names: Vec<&str> = named.chain(["self", "percept"]).collect();
+        self.agent_names = Enumeration::intern("agent", &names);
+    }
+
     pub(super) fn vocabulary(&mut self) {
+        self.name_agents();
         for (item, _) in self.each_item() {
             match item {
                 ItemKind::Actor { name, role } => self.declare_actor(name, role),
@@ -111,14 +126,14 @@ impl<'a> Checker<'a> {
         let from = self.actor(&event.from);
         let to: Vec<ActorId> = event.to.iter().filter_map(|a| self.actor(a)).collect();
         for one in &event.names {
-            let fields = self.fields(&one.params);
+            let fields = self.plain_fields(&one.params);
             let span = if event.names.len() == 1 { span } else { one.name.span };
             self.push_event(&one.name, fields, from, to.clone(), None, span);
         }
     }
 
     fn declare_stimulus(&mut self, stimulus: &'a ast::Stimulus, span: Span) {
-        let fields = self.fields(&stimulus.params);
+        let fields = self.plain_fields(&stimulus.params);
         let by = self.actor(&stimulus.by);
         if let Some(actor) = by.filter(|a| self.role_of(*a) == Role::System) {
             let issue = roles::stimulus_by_system(self.actor_name(actor), stimulus.by.span);
@@ -174,12 +189,14 @@ impl<'a> Checker<'a> {
         let plays = &agent.syntax.plays;
         let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
         self.beliefs.push(Table::default());
+        self.goal_tables.push(Map::default());
         self.belief_fields.push(Vec::new());
         self.s.agents.push(Agent {
             name: name.text.clone(),
             actor,
             beliefs: Vec::new(),
             goals: Vec::new(),
+            rules: Vec::new(),
             initial_beliefs: Vec::new(),
             initial_goals: Vec::new(),
             plans: Vec::new(),
@@ -242,7 +259,9 @@ impl<'a> Checker<'a> {
     /// A variable of an automaton or shared: of finite types, each part with a value at the start.
     pub(super) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
         let span = var.name.span;
-        let layout = self.layout(&var.ty).filter(|l| self.finite_layout(l, "a variable of automata", span));
+        let layout = self.layout(&var.ty).filter(|l| {
+            self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of automata", span)
+        });
         let layout = layout.unwrap_or(Layout::Unknown);
         let mut values = Vec::new();
         if let Some(e) = &var.init {
@@ -267,7 +286,7 @@ impl<'a> Checker<'a> {
 /// What a variable holds that is given no value.
 fn nearest_to_zero(ty: Type) -> Value {
     match ty {
-        Type::Bool | Type::Float(_) => Value::Bool(false),
+        Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => Value::Bool(false),
         Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
         Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
     }

@@ -329,7 +329,9 @@ impl<'a> Checker<'a> {
         let Member::Signal { name, ty, to, value } = &p.member.kind else { return };
         self.check_free(&Env::constants(), Noun::Signal, name);
         let to: Vec<ActorId> = to.iter().filter_map(|a| self.actor(a)).collect();
-        let ty = self.ty(ty);
+        let ty = self.ty(ty).filter(|of| {
+            self.plain(&crate::types::Layout::Scalar(*of), &name.text, super::layout::type_span(ty))
+        });
         let mut env = Env::measured(&p.prefix);
         let value = match ty {
             Some(ty) => self.expr_for(value, ty, &mut env),

@@ -1,8 +1,8 @@
 //! What the rules on plans ask about an agent: which beliefs come about and how, which goals are adopted, by whom.
 
 use crate::{
-    Agent, AgentId, Arg, Belief, BeliefId, ChoiceKind, Context, GoalId, Method, Plan, Player, Scenario, Step,
-    StepKind, Suite, TriggerOn, nearest::nearest,
+    Agent, AgentId, Arg, Belief, BeliefId, ChoiceKind, Context, GoalId, Method, Performative, Plan, Player,
+    Scenario, Step, StepKind, Subject, Suite, TriggerOn, each_step, nearest::nearest,
 };
 use hrdsl_source::{Diagnostic, Span};
 
@@ -55,9 +55,13 @@ pub(crate) fn agents(scenario: &Scenario) -> impl Iterator<Item = AgentFacts<'_>
 pub(crate) fn literals(context: &Context) -> Vec<Literal<'_>> {
     fn collect<'a>(context: &'a Context, negated: bool, all: &mut Vec<Literal<'a>>) {
         match context {
-            Context::True | Context::Test(_) => {}
-            Context::Belief(belief, args, span) => {
-                all.push(Literal { belief: *belief, args, span: *span, negated });
+            Context::True | Context::Test(_) | Context::Unify(..) => {}
+            Context::Belief(b) => {
+                let (belief, args, span) = (b.belief, b.args.as_slice(), b.span);
+                all.push(Literal { belief, args, span, negated });
+            }
+            Context::Internal(action, _) => {
+                action.formula().iter().for_each(|inner| collect(inner, negated, all));
             }
             Context::Not(inner) => collect(inner, !negated, all),
             Context::And(parts) | Context::Or(parts) => {
@@ -88,16 +92,34 @@ impl Change<'_> {
 
 pub(crate) fn change(step: &Step) -> Option<Change<'_>> {
     match &step.kind {
-        StepKind::Add(b, args) => Some(Change::Adds(*b, of_exprs(args))),
-        StepKind::Replace(b, args) => Some(Change::Replaces(*b, of_exprs(args))),
-        StepKind::Remove(b, args) => Some(Change::Removes(*b, of_args(args))),
+        StepKind::Add(a) => Some(Change::Adds(a.belief, of_exprs(&a.args))),
+        StepKind::Replace(a) => Some(Change::Replaces(a.belief, of_exprs(&a.args))),
+        StepKind::Remove(l) | StepKind::Abolish(l) => Some(Change::Removes(l.belief, of_args(&l.args))),
         StepKind::Do(..)
         | StepKind::Achieve(..)
         | StepKind::Spawn(..)
         | StepKind::Query(..)
+        | StepKind::Test(_)
         | StepKind::Await { .. }
-        | StepKind::Wait(_) => None,
+        | StepKind::Wait(_)
+        | StepKind::If { .. }
+        | StepKind::While { .. }
+        | StepKind::For { .. }
+        | StepKind::Fork { .. }
+        | StepKind::Send { .. }
+        | StepKind::Ask { .. }
+        | StepKind::AskAll { .. }
+        | StepKind::Print(_)
+        | StepKind::Control(..)
+        | StepKind::Fail => None,
     }
+}
+
+/// The steps, those within blocks too, in the order of the text.
+pub(crate) fn all_steps(steps: &[Step]) -> Vec<&Step> {
+    let mut all = Vec::new();
+    each_step(steps, &mut |step| all.push(step));
+    all
 }
 
 /// How a goal is adopted.
@@ -122,7 +144,54 @@ impl<'a> AgentFacts<'a> {
     }
 
     fn steps(&self) -> impl Iterator<Item = &'a Step> {
-        self.agent.plans.iter().flat_map(|p| &p.body)
+        self.agent.plans.iter().flat_map(|p| all_steps(&p.body))
+    }
+
+    /// What is sent about something of this agent, and by whom.
+    fn messages(&self, of: Subject) -> impl Iterator<Item = (Option<Performative>, AgentId)> {
+        let index = usize::from(self.id.0);
+        let about = self.scenario.contents.iter().filter(move |c| c.of.get(index) == Some(&Some(of)));
+        about.flat_map(|c| c.uses.iter().copied())
+    }
+
+    /// Others may add it: in messages, or as answers to the agent's own.
+    pub fn is_told(&self, belief: BeliefId) -> bool {
+        self.messages(Subject::Belief(belief)).any(|(how, sender)| match how {
+            Some(Performative::Tell) => true,
+            Some(Performative::AskOne | Performative::AskAll) => sender == self.id,
+            Some(Performative::Untell | Performative::Achieve | Performative::Unachieve) | None => false,
+        })
+    }
+
+    /// Others may withdraw what they have told.
+    fn is_untold(&self, belief: BeliefId) -> bool {
+        self.messages(Subject::Belief(belief)).any(|(how, _)| how == Some(Performative::Untell))
+    }
+
+    /// It is perceived.
+    pub fn is_percept(&self, belief: BeliefId) -> bool {
+        self.belief(belief).percept.is_some()
+    }
+
+    /// Some rule derives it.
+    pub fn is_derived(&self, belief: BeliefId) -> bool {
+        self.agent.rules.iter().any(|r| r.belief == belief)
+    }
+
+    /// It comes about without a plan, in a way of which nothing more is known.
+    fn is_foreign(&self, belief: BeliefId) -> bool {
+        self.is_percept(belief) || self.is_derived(belief) || self.is_told(belief)
+    }
+
+    /// Others ask for it, so that the plans for its query run.
+    pub fn is_asked(&self, belief: BeliefId) -> bool {
+        let asks = |how| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
+        self.messages(Subject::Belief(belief)).any(|(how, _)| asks(how))
+    }
+
+    /// Some message asks for the goal.
+    fn is_requested(&self, goal: GoalId) -> bool {
+        self.messages(Subject::Goal(goal)).any(|(how, _)| how == Some(Performative::Achieve))
     }
 
     pub fn changes(&self) -> impl Iterator<Item = Change<'a>> {
@@ -147,7 +216,7 @@ impl<'a> AgentFacts<'a> {
 
     fn initial(&self, belief: BeliefId) -> impl Iterator<Item = Vec<Term<'a>>> {
         let agent = self.agent;
-        agent.initial_beliefs.iter().filter(move |(b, _)| *b == belief).map(|(_, args)| of_values(args))
+        agent.initial_beliefs.iter().filter(move |f| f.belief == belief).map(|f| of_values(&f.args))
     }
 
     /// It holds before any plan has run, in some run.
@@ -162,19 +231,20 @@ impl<'a> AgentFacts<'a> {
 
     /// It holds at some time, in some run.
     pub fn comes_about(&self, belief: BeliefId) -> bool {
-        self.is_given(belief) || self.is_added(belief)
+        self.is_given(belief) || self.is_added(belief) || self.is_foreign(belief)
     }
 
     /// The beliefs that only plans add which need them, each other's way round too. What nothing adds at all is taken to
     /// hold here: it is said elsewhere.
     pub fn only_from_themselves(&self) -> Vec<BeliefId> {
         let all = || (0..).map(BeliefId).take(self.agent.beliefs.len());
-        let mut known: Vec<bool> = all().map(|b| self.is_given(b) || !self.is_added(b)).collect();
+        let mut known: Vec<bool> =
+            all().map(|b| self.is_given(b) || !self.is_added(b) || self.is_foreign(b)).collect();
         loop {
             let is_known = |b: BeliefId| known[usize::from(b.0)];
             let mut more = Vec::new();
             for plan in self.agent.plans.iter().filter(|p| needs_only(p, &is_known)) {
-                more.extend(plan.body.iter().filter_map(change).filter_map(|c| match c {
+                more.extend(all_steps(&plan.body).into_iter().filter_map(change).filter_map(|c| match c {
                     Change::Adds(b, _) | Change::Replaces(b, _) if !is_known(b) => Some(b),
                     Change::Adds(..) | Change::Replaces(..) | Change::Removes(..) => None,
                 }));
@@ -189,6 +259,7 @@ impl<'a> AgentFacts<'a> {
     /// A fact that these arguments of a plan match comes about.
     pub fn may_come_about(&self, belief: BeliefId, args: &[Term<'_>]) -> bool {
         self.is_chosen(belief)
+            || self.is_foreign(belief)
             || self.initial(belief).any(|fact| may_unify(args, &fact, true))
             || self.changes().any(|c| match c {
                 Change::Adds(b, made) | Change::Replaces(b, made) => {
@@ -201,7 +272,10 @@ impl<'a> AgentFacts<'a> {
     /// What is certain of a belief's facts.
     pub fn held(&self, belief: BeliefId) -> Held {
         let changes: Vec<Change<'_>> = self.changes().filter(|c| c.belief() == belief).collect();
-        if changes.iter().any(|c| matches!(c, Change::Removes(..))) {
+        if self.is_foreign(belief)
+            || self.is_untold(belief)
+            || changes.iter().any(|c| matches!(c, Change::Removes(..)))
+        {
             return Held::Unknown;
         }
         let chosen: Vec<Option<ChoiceKind>> = self.suites(belief).map(|(_, how)| how).collect();
@@ -236,23 +310,27 @@ impl<'a> AgentFacts<'a> {
     pub fn adoptions(&self, goal: GoalId) -> impl Iterator<Item = Adoption<'a>> {
         let agent = self.agent;
         let initial = agent.initial_goals.iter().filter(move |(g, _)| *g == goal).map(|_| Adoption::Root);
-        let by = asking(agent, move |kind| matches!(kind, StepKind::Achieve(g, _) if *g == goal));
+        let by = asking(agent, move |kind| matches!(kind, StepKind::Achieve(g, ..) if *g == goal));
         let spawns = asking(agent, move |kind| matches!(kind, StepKind::Spawn(g, _) if *g == goal));
+        let asked = self.is_requested(goal).then_some(Adoption::Root);
+        let initial = initial.chain(asked);
         initial.chain(by.map(|(plan, at)| Adoption::By(plan, at))).chain(spawns.map(|_| Adoption::Root))
     }
 
     /// The plans that ask for a belief, with the number of the step.
     pub fn askers(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Plan, usize)> {
-        asking(self.agent, move |kind| matches!(kind, StepKind::Query(b, _) if *b == belief))
+        asking(self.agent, move |kind| matches!(kind, StepKind::Query(l) if l.belief == belief))
     }
 
     /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
     pub fn is_unadopted(&self, plan: &Plan) -> bool {
         match plan.trigger {
             TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => !self.is_adopted(goal),
-            TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Test(_) | TriggerOn::Perceived(_) => {
-                false
-            }
+            TriggerOn::Added(_)
+            | TriggerOn::Removed(_)
+            | TriggerOn::Test(_)
+            | TriggerOn::TestFailed(_)
+            | TriggerOn::Perceived(_) => false,
         }
     }
 
@@ -267,11 +345,12 @@ impl<'a> AgentFacts<'a> {
                     Change::Replaces(r, _) => r == b,
                     Change::Adds(..) => false,
                 });
-                !goes || !self.may_come_about(b, &args)
+                (!goes && !self.is_foreign(b) && !self.is_untold(b)) || !self.may_come_about(b, &args)
             }
-            TriggerOn::Test(b) => !self.steps().any(|s| {
-                matches!(&s.kind, StepKind::Query(q, asked) if *q == b && may_unify(&args, &of_args(asked), true))
-            }),
+            TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+                let asks = |s: &Step| matches!(&s.kind, StepKind::Query(q) if q.belief == b && may_unify(&args, &of_args(&q.args), true));
+                !self.is_asked(b) && !self.steps().any(asks)
+            }
             TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => false,
         }
     }
@@ -302,20 +381,33 @@ impl<'a> AgentFacts<'a> {
 fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
     let trigger = match plan.trigger {
         TriggerOn::Added(b) | TriggerOn::Removed(b) => is_known(b),
-        TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Test(_) | TriggerOn::Perceived(_) => true,
+        TriggerOn::Achieve(_)
+        | TriggerOn::Failed(_)
+        | TriggerOn::Test(_)
+        | TriggerOn::TestFailed(_)
+        | TriggerOn::Perceived(_) => true,
     };
     let holds = |part: &&Context| match part {
-        Context::Belief(b, ..) => is_known(*b),
-        Context::True | Context::Not(_) | Context::And(_) | Context::Or(_) | Context::Test(_) => true,
+        Context::Belief(literal) => is_known(literal.belief),
+        Context::True
+        | Context::Not(_)
+        | Context::And(_)
+        | Context::Or(_)
+        | Context::Test(_)
+        | Context::Unify(..)
+        | Context::Internal(..) => true,
     };
     trigger && alternatives(&plan.context).is_none_or(|all| all.iter().any(|parts| parts.iter().all(holds)))
 }
 
-/// The steps of some kind, with their plans.
+/// The steps of some kind, with their plans; of one within a block the number of the block.
 fn asking(agent: &Agent, is: impl Fn(&StepKind) -> bool + Copy) -> impl Iterator<Item = (&Plan, usize)> {
     agent.plans.iter().flat_map(move |plan| {
         let steps = plan.body.iter().enumerate();
-        steps.filter(move |(_, step)| is(&step.kind)).map(move |(at, _)| (plan, at))
+        steps.flat_map(move |(at, step)| {
+            let found = all_steps(std::slice::from_ref(step)).into_iter().filter(move |s| is(&s.kind));
+            found.map(move |_| (plan, at))
+        })
     })
 }
 

@@ -9,6 +9,7 @@ use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use super::{
     agent_facts::{AgentFacts, Change, Held, change},
     plan_terms::{alternatives, fold, same_value},
+    simple::{is_simple, is_simple_literal, is_simple_step},
 };
 use crate::{
     Arg, BeliefId, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type, Value,
@@ -83,7 +84,7 @@ impl World {
             Type::Bool => vec![Value::Bool(false), Value::Bool(true)],
             Type::Int { lo, hi } if hi.saturating_sub(lo) < LARGE => (lo..=hi).map(Value::Int).collect(),
             Type::Enum(of) => of.values().iter().map(|v| Value::Symbol(*v)).collect(),
-            Type::Int { .. } | Type::Float(_) => return Ok(Sym::Named(name)),
+            Type::Int { .. } | Type::Float(_) | Type::Text | Type::List(_) => return Ok(Sym::Named(name)),
         };
         let answer = self.ask(Question::Which(name, values.clone()))?;
         Ok(Sym::Value(values[answer]))
@@ -172,6 +173,14 @@ fn always(is_so: &dyn Fn(&World) -> Asked<bool>, world: &mut World) -> bool {
 
 /// Whether an achieve or query step has a plan or fact whenever it is reached.
 pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> bool {
+    let answers = match &plan.body[at].kind {
+        StepKind::Achieve(goal, ..) => facts.plans(TriggerOn::Achieve(*goal)).all(is_simple),
+        StepKind::Query(literal) => is_simple_literal(literal),
+        _ => true,
+    };
+    if !answers || !is_simple(plan) || !plan.body[..at].iter().all(is_simple_step) {
+        return true;
+    }
     let is_so = |world: &World| {
         let mut here = Place::enter(facts, plan, world);
         if !here.selected(plan, at)? {
@@ -180,18 +189,30 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> boo
         }
         here.facts_since(plan, at)?;
         match &plan.body[at].kind {
-            StepKind::Achieve(goal, args) => {
+            StepKind::Achieve(goal, args, _) => {
                 let args: Vec<Sym> = args.iter().map(|e| here.sym(e)).collect::<Asked<_>>()?;
                 here.has_plan(*goal, &args)
             }
-            StepKind::Query(belief, args) => here.literal(*belief, args),
+            StepKind::Query(l) => here.literal(l.belief, &l.args),
             StepKind::Do(..)
             | StepKind::Spawn(..)
-            | StepKind::Add(..)
-            | StepKind::Remove(..)
-            | StepKind::Replace(..)
+            | StepKind::Test(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_) => Ok(true),
+            | StepKind::Wait(_)
+            | StepKind::If { .. }
+            | StepKind::While { .. }
+            | StepKind::For { .. }
+            | StepKind::Fork { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print(_)
+            | StepKind::Control(..)
+            | StepKind::Fail => Ok(true),
         }
     };
     always(&is_so, &mut World { known: Vec::new(), budget: BUDGET })
@@ -227,7 +248,9 @@ impl<'a> Place<'a> {
 
     fn head(&mut self, plan: &Plan) -> Asked<()> {
         let params: &[Param] = match plan.trigger {
-            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => &self.facts.belief(b).params,
+            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+                &self.facts.belief(b).params
+            }
             TriggerOn::Perceived(e) => &self.facts.scenario.events[usize::from(e.0)].params,
             TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
         };
@@ -250,23 +273,33 @@ impl<'a> Place<'a> {
     fn facts_since(&mut self, plan: &Plan, at: usize) -> Asked<()> {
         for step in &plan.body[..at] {
             match &step.kind {
-                StepKind::Query(_, args) => {
-                    for arg in args {
-                        if let Arg::Var(var) = arg {
-                            let name = format!("{}.{var}", self.name);
-                            self.vars[usize::from(*var)].get_or_insert(Sym::Named(name));
-                        }
+                StepKind::Query(literal) => {
+                    for var in super::plan_terms::vars_of(&literal.args) {
+                        let name = format!("{}.{var}", self.name);
+                        self.vars[usize::from(var)].get_or_insert(Sym::Named(name));
                     }
                 }
-                StepKind::Add(belief, args) | StepKind::Replace(belief, args) => {
-                    let args: Vec<Sym> = args.iter().map(|e| self.sym(e)).collect::<Asked<_>>()?;
-                    self.added.push((*belief, args));
+                StepKind::Add(made) | StepKind::Replace(made) => {
+                    let args: Vec<Sym> = made.args.iter().map(|e| self.sym(e)).collect::<Asked<_>>()?;
+                    self.added.push((made.belief, args));
                 }
-                StepKind::Remove(belief, _) => self.added.retain(|(b, _)| b != belief),
-                StepKind::Do(..) | StepKind::Achieve(..) | StepKind::Await { .. } | StepKind::Wait(_) => {
-                    self.added.clear();
-                }
-                StepKind::Spawn(..) => {}
+                StepKind::Remove(l) | StepKind::Abolish(l) => self.added.retain(|(b, _)| *b != l.belief),
+                StepKind::Spawn(..) | StepKind::Print(_) => {}
+                // Time may pass. Others than these are not simple.
+                StepKind::Do(..)
+                | StepKind::Achieve(..)
+                | StepKind::Test(_)
+                | StepKind::Await { .. }
+                | StepKind::Wait(_)
+                | StepKind::If { .. }
+                | StepKind::While { .. }
+                | StepKind::For { .. }
+                | StepKind::Fork { .. }
+                | StepKind::Send { .. }
+                | StepKind::Ask { .. }
+                | StepKind::AskAll { .. }
+                | StepKind::Control(..)
+                | StepKind::Fail => self.added.clear(),
             }
         }
         Ok(())
@@ -292,7 +325,7 @@ impl<'a> Place<'a> {
     fn matches(&mut self, args: &[Arg], values: &[Sym]) -> Asked<bool> {
         for (arg, value) in args.iter().zip(values) {
             let wanted = match arg {
-                Arg::Any => continue,
+                Arg::Any | Arg::List(..) => continue,
                 Arg::Var(var) => match &self.vars[usize::from(*var)] {
                     Some(known) => known.clone(),
                     None => {
@@ -324,7 +357,7 @@ impl<'a> Place<'a> {
     fn conjunction(&mut self, parts: &[&Context]) -> Asked<bool> {
         for part in parts {
             let holds = match part {
-                Context::Belief(belief, args, _) => self.literal(*belief, args)?,
+                Context::Belief(l) => self.literal(l.belief, &l.args)?,
                 Context::Not(inner) => {
                     let before = self.vars.clone();
                     let holds = self.formula(inner)?;
@@ -333,6 +366,8 @@ impl<'a> Place<'a> {
                 }
                 Context::Test(e) => self.test(e)?,
                 Context::True | Context::And(_) | Context::Or(_) => self.formula(part)?,
+                // Not simple.
+                Context::Unify(..) | Context::Internal(..) => true,
             };
             if !holds {
                 return Ok(false);
@@ -393,7 +428,7 @@ impl<'a> Place<'a> {
 
     fn known(&self, arg: &Arg) -> Asked<Option<Sym>> {
         match arg {
-            Arg::Any => Ok(None),
+            Arg::Any | Arg::List(..) => Ok(None),
             Arg::Var(var) => Ok(self.vars[usize::from(*var)].clone()),
             Arg::Expr(e) => self.sym(e).map(Some),
         }
@@ -455,6 +490,9 @@ impl<'a> Place<'a> {
             ExprKind::Binary(op, a, b) => format!("{op:?}({})", all(&[a, b])?),
             ExprKind::If(c, a, b) => format!("if({})", all(&[c, a, b])?),
             ExprKind::Call(f, args) => format!("{f:?}({})", all(&args.iter().collect::<Vec<_>>())?),
+            ExprKind::List(items, rest) => {
+                format!("list({})", all(&items.iter().chain(rest.as_deref()).collect::<Vec<_>>())?)
+            }
             ExprKind::Const(_) | ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => "?".to_owned(),
         }))
     }
@@ -462,7 +500,7 @@ impl<'a> Place<'a> {
 
 /// No variable comes twice.
 fn distinct(args: &[Arg]) -> bool {
-    let vars: Vec<u16> = super::plan_terms::vars_of(args).collect();
+    let vars: Vec<u16> = super::plan_terms::vars_of(args);
     vars.iter().enumerate().all(|(i, var)| !vars[..i].contains(var))
 }
 
@@ -471,15 +509,27 @@ fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
     let mut all: Vec<BeliefId> = Vec::new();
     for step in &plan.body[..at] {
         match &step.kind {
-            StepKind::Do(..) | StepKind::Achieve(..) | StepKind::Await { .. } | StepKind::Wait(_) => {
-                all.extend(facts.changes().map(|c| c.belief()));
-            }
-            StepKind::Query(b, _) if facts.plans(TriggerOn::Test(*b)).next().is_some() => {
-                all.extend(facts.changes().map(|c| c.belief()));
-            }
-            StepKind::Query(..) | StepKind::Spawn(..) => {}
-            StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) => {
+            StepKind::Query(l) if facts.plans(TriggerOn::Test(l.belief)).next().is_none() => {}
+            StepKind::Spawn(..) | StepKind::Print(_) => {}
+            StepKind::Add(_) | StepKind::Remove(_) | StepKind::Replace(_) | StepKind::Abolish(_) => {
                 all.extend(change(step).map(|c: Change<'_>| c.belief()));
+            }
+            StepKind::Do(..)
+            | StepKind::Achieve(..)
+            | StepKind::Query(_)
+            | StepKind::Test(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait(_)
+            | StepKind::If { .. }
+            | StepKind::While { .. }
+            | StepKind::For { .. }
+            | StepKind::Fork { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Control(..)
+            | StepKind::Fail => {
+                all.extend(facts.changes().map(|c| c.belief()));
             }
         }
     }

@@ -3,11 +3,11 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
-    agent_facts::{AgentFacts, agents, any_args, literals},
+    agent_facts::{AgentFacts, agents, all_steps, any_args, literals},
     dead_plan::never_runs,
     facts::Facts,
 };
-use crate::{BeliefId, Scenario, StepKind, TriggerOn};
+use crate::{BeliefId, Context, Scenario, StepKind, TriggerOn};
 
 /// A place that tests a belief.
 struct Read {
@@ -35,17 +35,29 @@ fn reads(facts: &AgentFacts<'_>, belief: BeliefId) -> Vec<Read> {
     let answered = facts.plans(TriggerOn::Test(belief)).next().is_some();
     let mut all = Vec::new();
     for plan in facts.agent.plans.iter().filter(|p| !never_runs(facts, p)) {
-        for literal in literals(&plan.context).iter().filter(|l| l.belief == belief) {
-            let name = Some(literal.name_span(name));
-            all.push(Read { span: literal.span, name, negated: literal.negated });
+        let steps = all_steps(&plan.body);
+        let conditions = steps.iter().filter_map(|s| s.condition());
+        for formula in [&plan.context].into_iter().chain(conditions) {
+            all.extend(reads_in(formula, belief, name));
         }
-        for step in &plan.body {
-            if matches!(step.kind, StepKind::Query(b, _) if b == belief) && !answered {
+        for step in steps {
+            if matches!(&step.kind, StepKind::Query(l) if l.belief == belief) && !answered {
                 all.push(Read { span: step.span, name: None, negated: false });
             }
         }
     }
+    for rule in &facts.agent.rules {
+        all.extend(reads_in(&rule.body, belief, name));
+    }
     all
+}
+
+fn reads_in<'c>(formula: &'c Context, belief: BeliefId, name: &'c str) -> impl Iterator<Item = Read> + 'c {
+    literals(formula).into_iter().filter(move |l| l.belief == belief).map(move |l| Read {
+        span: l.span,
+        name: Some(l.name_span(name)),
+        negated: l.negated,
+    })
 }
 
 /// One diagnostic for all places that test the belief. `circular`: plans add it that need it themselves.

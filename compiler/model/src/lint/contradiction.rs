@@ -44,11 +44,20 @@ fn constant(parts: &[&Context]) -> Option<Contradiction> {
             Context::Test(e) => (e, false),
             Context::Not(inner) => match inner.as_ref() {
                 Context::Test(e) => (e, true),
-                Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => {
-                    return None;
-                }
+                Context::True
+                | Context::Belief(..)
+                | Context::Not(_)
+                | Context::And(_)
+                | Context::Or(_)
+                | Context::Unify(..)
+                | Context::Internal(..) => return None,
             },
-            Context::True | Context::Belief(..) | Context::And(_) | Context::Or(_) => return None,
+            Context::True
+            | Context::Belief(..)
+            | Context::And(_)
+            | Context::Or(_)
+            | Context::Unify(..)
+            | Context::Internal(..) => return None,
         };
         (e.constant() == Some(crate::Value::Bool(fails))).then(|| Contradiction {
             span: e.span,
@@ -63,13 +72,19 @@ fn negated_belief(plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
     let bound = bound_before(plan, parts);
     parts.iter().zip(&bound).find_map(|(part, bound)| {
         let Context::Not(inner) = part else { return None };
-        let Context::Belief(belief, denied, span) = inner.as_ref() else { return None };
+        // One with annotations may be absent while others are held.
+        let Context::Belief(denied) = inner.as_ref() else { return None };
+        if !denied.annotations.is_empty() {
+            return None;
+        }
         parts.iter().find_map(|part| match part {
-            Context::Belief(b, held, at) if b == belief && denies(denied, held, bound) => {
+            Context::Belief(held)
+                if held.belief == denied.belief && denies(&denied.args, &held.args, bound) =>
+            {
                 Some(Contradiction {
-                    span: *span,
+                    span: denied.span,
                     why: "this cannot be absent".to_owned(),
-                    with: Some((*at, "since the context needs it here".to_owned())),
+                    with: Some((held.span, "since the context needs it here".to_owned())),
                 })
             }
             Context::Belief(..)
@@ -77,7 +92,9 @@ fn negated_belief(plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
             | Context::Not(_)
             | Context::And(_)
             | Context::Or(_)
-            | Context::Test(_) => None,
+            | Context::Test(_)
+            | Context::Unify(..)
+            | Context::Internal(..) => None,
         })
     })
 }
@@ -95,7 +112,9 @@ fn denies(denied: &[Arg], held: &[Arg], bound: &[u16]) -> bool {
                 true
             }
         },
-        (denied @ (Term::Var(_) | Term::Const(_) | Term::Other(_)), held) => same_term(denied, held),
+        (denied @ (Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part), held) => {
+            same_term(denied, held)
+        }
     })
 }
 
@@ -104,7 +123,7 @@ fn same_term(a: Term<'_>, b: Term<'_>) -> bool {
         (Term::Var(a), Term::Var(b)) => a == b,
         (Term::Const(a), Term::Const(b)) => same_value(a, b),
         (Term::Other(a), Term::Other(b)) => alike(a, b),
-        (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_), _) => false,
+        (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part, _) => false,
     }
 }
 
@@ -118,9 +137,20 @@ fn tests<'a>(parts: &[&'a Context]) -> Vec<(&'a Expr, bool)> {
         Context::Test(e) => Some((e, true)),
         Context::Not(inner) => match inner.as_ref() {
             Context::Test(e) => Some((e, false)),
-            Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => None,
+            Context::True
+            | Context::Belief(..)
+            | Context::Not(_)
+            | Context::And(_)
+            | Context::Or(_)
+            | Context::Unify(..)
+            | Context::Internal(..) => None,
         },
-        Context::True | Context::Belief(..) | Context::And(_) | Context::Or(_) => None,
+        Context::True
+        | Context::Belief(..)
+        | Context::And(_)
+        | Context::Or(_)
+        | Context::Unify(..)
+        | Context::Internal(..) => None,
     };
     parts.iter().filter_map(test).collect()
 }
@@ -285,14 +315,16 @@ fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Opti
     let mut values: BTreeMap<u16, Interval> = BTreeMap::new();
     let params = |belief: crate::BeliefId| facts.belief(belief).params.as_slice();
     let head: &[Param] = match plan.trigger {
-        TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => params(b),
+        TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+            params(b)
+        }
         TriggerOn::Perceived(e) => &facts.scenario.events[usize::from(e.0)].params,
         TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
     };
     declare(&mut values, &plan.args, head, plan.head);
     for part in parts {
-        if let Context::Belief(belief, args, span) = part {
-            declare(&mut values, args, params(*belief), *span);
+        if let Context::Belief(l) = part {
+            declare(&mut values, &l.args, params(l.belief), l.span);
         }
     }
     for c in comparisons(parts) {

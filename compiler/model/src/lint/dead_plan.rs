@@ -46,8 +46,10 @@ fn dead_trigger(facts: &AgentFacts<'_>, plan: &Plan) -> Diagnostic {
             .help("the arguments match none that is added: mend them, or remove the plan"),
         TriggerOn::Removed(b) => warning(&format!("nothing removes or replaces such a `{}`", of(b)))
             .help(format!("remove the belief somewhere (`-{}`), or remove the plan", of(b))),
-        TriggerOn::Test(b) => warning(&format!("no plan asks for such a `{}`", of(b)))
-            .help(format!("ask for the belief somewhere (`?{}`), or remove the plan", of(b))),
+        TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+            warning(&format!("no plan asks for such a `{}`", of(b)))
+                .help(format!("ask for the belief somewhere (`?{}`), or remove the plan", of(b)))
+        }
         TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => {
             warning("what it waits for never happens")
         }

@@ -3,7 +3,7 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
-    agent_facts::{AgentFacts, Change, agents, change, literals},
+    agent_facts::{AgentFacts, Change, agents, all_steps, change, literals},
     facts::Facts,
     plan_terms::{Term, may_unify, of_args},
 };
@@ -30,7 +30,9 @@ impl Handled<'_> {
             Term::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => {
                 Some(value.to_string())
             }
-            Term::Const(Value::Float(_)) | Term::Other(_) => None,
+            Term::Const(Value::Float(_) | Value::Text(_) | Value::List(_)) | Term::Other(_) | Term::Part => {
+                None
+            }
         };
         let args: Vec<String> = self.args.iter().map(arg).collect::<Option<_>>()?;
         let name = &facts.belief(self.belief).name;
@@ -45,6 +47,7 @@ fn handled(plan: &Plan) -> Vec<Handled<'_>> {
         | TriggerOn::Achieve(_)
         | TriggerOn::Failed(_)
         | TriggerOn::Test(_)
+        | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => None,
     };
     let context = literals(&plan.context).into_iter().filter(|l| !l.negated);
@@ -56,7 +59,10 @@ pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>
     for facts in agents(scenario) {
         for plan in &facts.agent.plans {
             for (at, step) in plan.body.iter().enumerate() {
-                if let Some(Change::Removes(belief, args)) = change(step) {
+                // Blocks, and removals of what others have told, are no copies of anything.
+                let plain = matches!(&step.kind, StepKind::Remove(l) if l.annotations.is_empty())
+                    && plan.body.iter().all(|s| s.blocks().is_empty());
+                if let Some(Change::Removes(belief, args)) = change(step).filter(|_| plain) {
                     let dropped = Dropped { facts, plan, at, belief, args };
                     issues.extend(dropped.issue(step.span));
                 }
@@ -110,7 +116,7 @@ impl<'a> Dropped<'a> {
     /// Whether the plan looks like a copy of `other`, whose belief it drops in place of `kept`.
     fn is_copied(&self, kept: &Handled<'_>, other: &'a Plan) -> bool {
         let consumes = |plan: &Plan, handled: &Handled<'_>| {
-            plan.body.iter().filter_map(change).any(|c| match c {
+            all_steps(&plan.body).into_iter().filter_map(change).any(|c| match c {
                 Change::Removes(b, args) => handled.meets(b, &args, false),
                 Change::Replaces(b, _) => handled.belief == b,
                 Change::Adds(..) => false,
@@ -149,14 +155,26 @@ impl<'a> Dropped<'a> {
         let mut seen = Vec::new();
         let before = &self.plan.body[..self.at];
         before.iter().any(|step| match step.kind {
-            StepKind::Achieve(goal, _) | StepKind::Spawn(goal, _) => self.goal_makes(goal, &mut seen),
+            StepKind::Achieve(goal, ..) | StepKind::Spawn(goal, _) => self.goal_makes(goal, &mut seen),
             StepKind::Do(..)
-            | StepKind::Query(..)
-            | StepKind::Add(..)
-            | StepKind::Remove(..)
-            | StepKind::Replace(..)
+            | StepKind::Query(_)
+            | StepKind::Test(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_) => false,
+            | StepKind::Wait(_)
+            | StepKind::If { .. }
+            | StepKind::While { .. }
+            | StepKind::For { .. }
+            | StepKind::Fork { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print(_)
+            | StepKind::Control(..)
+            | StepKind::Fail => false,
         })
     }
 
@@ -168,15 +186,27 @@ impl<'a> Dropped<'a> {
         self.facts.plans(TriggerOn::Achieve(goal)).chain(self.facts.plans(TriggerOn::Failed(goal))).any(
             |plan| {
                 makes(plan, plan.body.len(), self.belief, &self.args, true)
-                    || plan.body.iter().any(|step| match step.kind {
-                        StepKind::Achieve(goal, _) | StepKind::Spawn(goal, _) => self.goal_makes(goal, seen),
+                    || all_steps(&plan.body).into_iter().any(|step| match step.kind {
+                        StepKind::Achieve(goal, ..) | StepKind::Spawn(goal, _) => self.goal_makes(goal, seen),
                         StepKind::Do(..)
-                        | StepKind::Query(..)
-                        | StepKind::Add(..)
-                        | StepKind::Remove(..)
-                        | StepKind::Replace(..)
+                        | StepKind::Query(_)
+                        | StepKind::Test(_)
+                        | StepKind::Add(_)
+                        | StepKind::Remove(_)
+                        | StepKind::Replace(_)
+                        | StepKind::Abolish(_)
                         | StepKind::Await { .. }
-                        | StepKind::Wait(_) => false,
+                        | StepKind::Wait(_)
+                        | StepKind::If { .. }
+                        | StepKind::While { .. }
+                        | StepKind::For { .. }
+                        | StepKind::Fork { .. }
+                        | StepKind::Send { .. }
+                        | StepKind::Ask { .. }
+                        | StepKind::AskAll { .. }
+                        | StepKind::Print(_)
+                        | StepKind::Control(..)
+                        | StepKind::Fail => false,
                     })
             },
         )
@@ -206,8 +236,8 @@ impl<'a> Dropped<'a> {
 
 /// Whether a step before `at` adds a fact that is dropped, or asks for it.
 fn makes(plan: &Plan, at: usize, belief: BeliefId, args: &[Term<'_>], apart: bool) -> bool {
-    plan.body[..at].iter().any(|step| match (&step.kind, change(step)) {
-        (StepKind::Query(b, asked), _) => *b == belief && may_unify(&of_args(asked), args, apart),
+    all_steps(&plan.body[..at]).into_iter().any(|step| match (&step.kind, change(step)) {
+        (StepKind::Query(l), _) => l.belief == belief && may_unify(&of_args(&l.args), args, apart),
         (_, Some(Change::Adds(b, made) | Change::Replaces(b, made))) => {
             b == belief && may_unify(&made, args, apart)
         }
@@ -220,7 +250,9 @@ fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
     let (goal, failed) = match plan.trigger {
         TriggerOn::Achieve(goal) => (goal, false),
         TriggerOn::Failed(goal) => (goal, true),
-        TriggerOn::Test(belief) => return facts.askers(belief).map(|(plan, _)| plan).collect(),
+        TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
+            return facts.askers(belief).map(|(plan, _)| plan).collect();
+        }
         TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => return Vec::new(),
     };
     let mut all: Vec<&Plan> = facts
@@ -228,9 +260,9 @@ fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
         .plans
         .iter()
         .filter(|p| {
-            p.body
-                .iter()
-                .any(|s| matches!(s.kind, StepKind::Achieve(g, _) | StepKind::Spawn(g, _) if g == goal))
+            all_steps(&p.body)
+                .into_iter()
+                .any(|s| matches!(s.kind, StepKind::Achieve(g, ..) | StepKind::Spawn(g, _) if g == goal))
         })
         .collect();
     if failed {

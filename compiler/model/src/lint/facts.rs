@@ -4,7 +4,10 @@ use std::collections::BTreeSet;
 
 use hrdsl_source::Span;
 
-use super::flow::{Flow, flows};
+use super::{
+    agent_facts::all_steps,
+    flow::{Flow, flows},
+};
 use crate::{
     Arg, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind, StimulusStep,
     Sync, TestStep, TriggerOn, Value, world::RuleOn,
@@ -22,6 +25,9 @@ fn key(value: Value) -> (u8, u64) {
         Value::Int(n) => (1, n.cast_unsigned()),
         Value::Float(x) => (2, x.to_bits()),
         Value::Symbol(symbol) => (3, symbol.number()),
+        Value::Text(text) => (4, text.0.number()),
+        // No event has one.
+        Value::List(_) => (5, 0),
     }
 }
 
@@ -191,17 +197,18 @@ impl Facts {
 
     fn agents(&mut self, scenario: &Scenario) {
         for (index, agent) in scenario.agents.iter().enumerate() {
+            agent.beliefs.iter().filter_map(|b| b.percept).for_each(|event| self.reads(event));
             let places = scenario.places.agents.get(index);
             for (i, plan) in agent.plans.iter().enumerate() {
                 if let TriggerOn::Perceived(event) = plan.trigger {
                     let span = places.and_then(|p| p.triggers.get(i)).copied().unwrap_or(plan.span);
                     let args = plan.args.iter().map(|a| match a {
                         Arg::Expr(e) => e.constant(),
-                        Arg::Any | Arg::Var(_) => None,
+                        Arg::Any | Arg::Var(_) | Arg::List(..) => None,
                     });
                     self.waits_for(span, vec![Wanted::new(event, args)]);
                 }
-                for step in &plan.body {
+                for step in all_steps(&plan.body) {
                     match &step.kind {
                         StepKind::Do(event, args) => self.makes_exprs(*event, args),
                         StepKind::Await { events, .. } => {
@@ -210,10 +217,22 @@ impl Facts {
                         StepKind::Achieve(..)
                         | StepKind::Spawn(..)
                         | StepKind::Query(..)
+                        | StepKind::Test(_)
                         | StepKind::Add(..)
                         | StepKind::Remove(..)
                         | StepKind::Replace(..)
-                        | StepKind::Wait(_) => {}
+                        | StepKind::Abolish(_)
+                        | StepKind::Wait(_)
+                        | StepKind::If { .. }
+                        | StepKind::While { .. }
+                        | StepKind::For { .. }
+                        | StepKind::Fork { .. }
+                        | StepKind::Send { .. }
+                        | StepKind::Ask { .. }
+                        | StepKind::AskAll { .. }
+                        | StepKind::Print(_)
+                        | StepKind::Control(..)
+                        | StepKind::Fail => {}
                     }
                 }
             }

@@ -28,7 +28,7 @@ impl Interval {
         match ty {
             Type::Bool => Self::MAYBE,
             Type::Int { lo, hi } => Self { lo: lo.into(), hi: hi.into() },
-            Type::Float(_) | Type::Enum(_) => Self::ALL,
+            Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_) => Self::ALL,
         }
     }
 
@@ -36,7 +36,7 @@ impl Interval {
         match value {
             Value::Bool(b) => Self::bool(Some(b)),
             Value::Int(n) => Self { lo: n.into(), hi: n.into() },
-            Value::Float(_) | Value::Symbol(_) => Self::ALL,
+            Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => Self::ALL,
         }
     }
 
@@ -208,7 +208,7 @@ impl<'a> Env<'a> {
             ExprKind::Const(value) => Interval::value(*value),
             ExprKind::Leaf(leaf) => self.get(*leaf),
             ExprKind::Term(_) | ExprKind::Error if e.ty == Kind::Bool => Interval::MAYBE,
-            ExprKind::Term(_) | ExprKind::Error => Interval::ALL,
+            ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => Interval::ALL,
             ExprKind::Unary(UnaryOp::Neg, a) => self.eval(a).neg(),
             ExprKind::Unary(UnaryOp::Not, a) => Interval::bool(self.truth(a).map(|b| !b)),
             ExprKind::Binary(op, a, b) => {
@@ -300,6 +300,7 @@ impl<'a> Env<'a> {
                 | ExprKind::Unary(UnaryOp::Neg, _)
                 | ExprKind::If(..)
                 | ExprKind::Call(..)
+                | ExprKind::List(..)
                 | ExprKind::Error,
                 _,
             ) => self.leave(e, Interval::bool(Some(want))),
@@ -357,6 +358,7 @@ impl<'a> Env<'a> {
             | ExprKind::Unary(UnaryOp::Not, _)
             | ExprKind::If(..)
             | ExprKind::Call(..)
+            | ExprKind::List(..)
             | ExprKind::Error => true,
         }
     }
@@ -382,6 +384,7 @@ fn same(a: &Expr, b: &Expr) -> bool {
             | ExprKind::Binary(..)
             | ExprKind::If(..)
             | ExprKind::Call(..)
+            | ExprKind::List(..)
             | ExprKind::Error,
             _,
         ) => false,

@@ -19,7 +19,9 @@ mod no_failure_plan;
 mod overflow;
 mod plan_terms;
 mod recursion_without_time;
+mod removes_nothing;
 mod shadowed_plan;
+mod simple;
 mod time_stops;
 mod unreachable_location;
 mod unused;
@@ -47,6 +49,7 @@ const RULES: &[Rule] = &[
     dead_plan::check,
     no_failure_plan::check,
     recursion_without_time::check,
+    removes_nothing::check,
     unreachable_location::check,
     time_stops::check,
     committed_cycle::check,

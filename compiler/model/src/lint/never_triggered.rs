@@ -92,6 +92,7 @@ fn truth(scenario: &Scenario, e: &Expr, depth: u32) -> Option<bool> {
         | ExprKind::Term(_)
         | ExprKind::Unary(UnaryOp::Neg, _)
         | ExprKind::Call(..)
+        | ExprKind::List(..)
         | ExprKind::Error => None,
     }
 }
@@ -144,7 +145,9 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
                 (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => return None,
             }
         }
-        ExprKind::Unary(UnaryOp::Not, _) | ExprKind::Binary(..) | ExprKind::Error => return None,
+        ExprKind::Unary(UnaryOp::Not, _) | ExprKind::Binary(..) | ExprKind::List(..) | ExprKind::Error => {
+            return None;
+        }
     };
     (!lo.is_nan() && !hi.is_nan()).then_some((lo, hi))
 }

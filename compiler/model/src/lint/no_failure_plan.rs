@@ -60,23 +60,41 @@ fn is_in(plans: &[&Plan], plan: &Plan) -> bool {
 fn can_fail(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Option<&'static str> {
     match &plan.body[at].kind {
         StepKind::Await { within: Some(_), .. } => Some("the time may run out"),
-        StepKind::Query(belief, _) => {
-            let answered = facts.plans(TriggerOn::Test(*belief)).next().is_some();
+        StepKind::Query(literal) => {
+            let belief = literal.belief;
+            let answered = facts.plans(TriggerOn::Test(belief)).next().is_some();
             // That nothing adds it has been said.
-            let stuck = facts.comes_about(*belief) && !answered && !never_stuck(facts, plan, at);
+            let stuck = facts.comes_about(belief) && !answered && !never_stuck(facts, plan, at);
             stuck.then_some("there may be no such fact")
         }
-        StepKind::Achieve(goal, args) => {
-            let stuck = !has_failure_plan(facts, *goal, &of_exprs(args)) && !never_stuck(facts, plan, at);
-            stuck.then_some("there may be no plan that fits")
+        StepKind::Achieve(goal, args, within) => {
+            let handled = has_failure_plan(facts, *goal, &of_exprs(args));
+            let stuck = !handled && !never_stuck(facts, plan, at);
+            let late = (!handled && within.is_some()).then_some("the time may run out");
+            stuck.then_some("there may be no plan that fits").or(late)
         }
-        StepKind::Await { within: None, .. }
-        | StepKind::Do(..)
+        StepKind::Ask { within: Some(_), .. } | StepKind::AskAll { within: Some(_), .. } => {
+            Some("the time may run out")
+        }
+        StepKind::Ask { within: None, .. } => Some("there may be no answer"),
+        StepKind::AskAll { within: None, .. } | StepKind::Await { within: None, .. } => None,
+        // What may have no answer here is meant to end the plan; steps in blocks are not looked into.
+        StepKind::Do(..)
         | StepKind::Spawn(..)
-        | StepKind::Add(..)
-        | StepKind::Remove(..)
-        | StepKind::Replace(..)
-        | StepKind::Wait(_) => None,
+        | StepKind::Test(_)
+        | StepKind::Add(_)
+        | StepKind::Remove(_)
+        | StepKind::Replace(_)
+        | StepKind::Abolish(_)
+        | StepKind::Wait(_)
+        | StepKind::If { .. }
+        | StepKind::While { .. }
+        | StepKind::For { .. }
+        | StepKind::Fork { .. }
+        | StepKind::Send { .. }
+        | StepKind::Print(_)
+        | StepKind::Control(..)
+        | StepKind::Fail => None,
     }
 }
 
@@ -109,7 +127,7 @@ fn dying<'a>(
                 }
             }
         }
-        TriggerOn::Test(belief) => {
+        TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
             for (by, at) in facts.askers(belief) {
                 dying(facts, by, lost || is_before_others(by, at), seen, roots);
             }
@@ -151,6 +169,7 @@ impl<'a> Unhandled<'a> {
                 TriggerOn::Added(_)
                 | TriggerOn::Removed(_)
                 | TriggerOn::Test(_)
+                | TriggerOn::TestFailed(_)
                 | TriggerOn::Perceived(_) => {
                     "then this plan dies, with all that it still was to do".to_owned()
                 }
@@ -169,6 +188,7 @@ impl<'a> Unhandled<'a> {
             | TriggerOn::Added(_)
             | TriggerOn::Removed(_)
             | TriggerOn::Test(_)
+            | TriggerOn::TestFailed(_)
             | TriggerOn::Perceived(_) => None,
         });
         let say = handler.as_ref().map_or_else(
@@ -179,7 +199,7 @@ impl<'a> Unhandled<'a> {
             let end = Span { start: after.span.end, ..after.span };
             issue.fix(format!("add an empty plan `{head}`"), end, format!("\n  plan {head} {{ }}"), false)
         };
-        if let StepKind::Achieve(goal, _) = step.kind
+        if let StepKind::Achieve(goal, ..) = step.kind
             && let Some(last) = facts.plans(TriggerOn::Achieve(goal)).last()
         {
             let head = format!("+!{}", shown(facts, goal));

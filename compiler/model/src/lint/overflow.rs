@@ -8,7 +8,7 @@ use super::{
     interval::{Env, Interval},
 };
 use crate::{
-    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, StepKind,
+    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, Step, StepKind,
     StimulusStep, Sync, TriggerOn, Type, Update,
 };
 
@@ -134,7 +134,10 @@ impl<'a> Checker<'a> {
         for plan in &agent.plans {
             let mut env = Env::new(&[], &[], vec![Interval::ALL; plan.vars.len()]);
             let matched: &[Param] = match plan.trigger {
-                TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => params(b),
+                TriggerOn::Added(b)
+                | TriggerOn::Removed(b)
+                | TriggerOn::Test(b)
+                | TriggerOn::TestFailed(b) => params(b),
                 TriggerOn::Perceived(event) => self.params(event),
                 // What a goal is adopted with has no range.
                 TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
@@ -142,23 +145,71 @@ impl<'a> Checker<'a> {
             if !bind(&mut env, &plan.args, matched) || !context(&mut env, &plan.context, agent) {
                 continue;
             }
-            for step in &plan.body {
-                match &step.kind {
-                    StepKind::Do(event, args) => self.args(&env, args, self.params(*event)),
-                    StepKind::Add(b, args) | StepKind::Replace(b, args) => self.args(&env, args, params(*b)),
-                    StepKind::Query(b, args) => {
-                        if !bind(&mut env, args, params(*b)) {
-                            break;
-                        }
+            self.plan_body(agent, &plan.body, env);
+        }
+    }
+
+    fn plan_body(&mut self, agent: &Agent, steps: &[Step], mut env: Env<'_>) {
+        let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
+        for step in steps {
+            match &step.kind {
+                StepKind::Do(event, args) => self.args(&env, args, self.params(*event)),
+                StepKind::Add(a) | StepKind::Replace(a) => self.args(&env, &a.args, params(a.belief)),
+                StepKind::Query(l) => {
+                    if !bind(&mut env, &l.args, params(l.belief)) {
+                        return;
                     }
-                    StepKind::Achieve(..)
-                    | StepKind::Spawn(..)
-                    | StepKind::Remove(..)
-                    | StepKind::Await { .. }
-                    | StepKind::Wait(_) => {}
                 }
+                StepKind::Test(condition) => {
+                    if !context(&mut env, condition, agent) {
+                        return;
+                    }
+                }
+                StepKind::If { condition, then, otherwise } => {
+                    let mut inner = env.clone();
+                    if context(&mut inner, condition, agent) {
+                        self.plan_body(agent, then, inner);
+                    }
+                    self.plan_body(agent, otherwise, env.clone());
+                    self.forget(step, &mut env);
+                }
+                StepKind::While { condition, body } | StepKind::For { condition, body } => {
+                    let mut inner = env.clone();
+                    if context(&mut inner, condition, agent) {
+                        self.plan_body(agent, body, inner);
+                    }
+                    self.forget(step, &mut env);
+                }
+                StepKind::Fork { branches, .. } => {
+                    branches.iter().for_each(|b| self.plan_body(agent, b, env.clone()));
+                    self.forget(step, &mut env);
+                }
+                StepKind::Achieve(..)
+                | StepKind::Spawn(..)
+                | StepKind::Remove(_)
+                | StepKind::Abolish(_)
+                | StepKind::Await { .. }
+                | StepKind::Wait(_)
+                | StepKind::Send { .. }
+                | StepKind::Ask { .. }
+                | StepKind::AskAll { .. }
+                | StepKind::Print(_)
+                | StepKind::Control(..)
+                | StepKind::Fail => {}
             }
         }
+    }
+
+    /// A name that a block binds may stand for something else afterwards; what was known before is still so.
+    fn forget(&self, block: &Step, env: &mut Env<'_>) {
+        let mut bound = Vec::new();
+        crate::each_step(std::slice::from_ref(block), &mut |step| {
+            if let StepKind::Query(l) = &step.kind {
+                bound.extend(super::plan_terms::vars_of(&l.args));
+            }
+            step.condition().iter().for_each(|c| c.each(&mut |part| bound.extend(part.binds())));
+        });
+        env.less.retain(|(leaf, _)| !matches!(leaf, Leaf::Local(i) if bound.contains(i)));
     }
 }
 
@@ -172,7 +223,7 @@ fn bind(env: &mut Env<'_>, args: &[Arg], params: &[Param]) -> bool {
                 true
             })
         }
-        Arg::Any | Arg::Expr(_) => true,
+        Arg::Any | Arg::Expr(_) | Arg::List(..) => true,
     })
 }
 
@@ -180,16 +231,33 @@ fn bind(env: &mut Env<'_>, args: &[Arg], params: &[Param]) -> bool {
 fn context(env: &mut Env<'_>, c: &Context, agent: &Agent) -> bool {
     match c {
         Context::True => true,
-        Context::Belief(b, args, _) => {
-            let params = agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
-            bind(env, args, params)
+        Context::Belief(l) => {
+            let params = agent.beliefs.get(usize::from(l.belief.0)).map_or(&[][..], |b| &b.params);
+            bind(env, &l.args, params)
         }
         Context::Test(e) => env.assume(e, true),
         Context::Not(inner) => match inner.as_ref() {
             Context::Test(e) => env.assume(e, false),
             // A negation binds nothing.
-            Context::True | Context::Belief(..) | Context::Not(_) | Context::And(_) | Context::Or(_) => true,
+            Context::True
+            | Context::Belief(..)
+            | Context::Not(_)
+            | Context::And(_)
+            | Context::Or(_)
+            | Context::Unify(..)
+            | Context::Internal(..) => true,
         },
+        Context::Unify(Arg::Var(i), e) => {
+            let value = env.eval(e);
+            match env.get(Leaf::Local(*i)).meet(value) {
+                Some(both) => {
+                    env.set(Leaf::Local(*i), both);
+                    true
+                }
+                None => false,
+            }
+        }
+        Context::Unify(..) | Context::Internal(..) => true,
         Context::And(cs) => cs.iter().all(|c| context(env, c, agent)),
         Context::Or(cs) => {
             let mut joined: Option<Env<'_>> = None;

@@ -14,6 +14,8 @@ pub(crate) enum Term<'a> {
     Const(Value),
     /// Computed: may have any value.
     Other(&'a Expr),
+    /// A list of which a part is matched: some list.
+    Part,
 }
 
 impl<'a> Term<'a> {
@@ -30,6 +32,7 @@ impl<'a> Term<'a> {
             Arg::Any => Term::Any,
             Arg::Var(var) => Term::Var(*var),
             Arg::Expr(e) => Term::of_expr(e),
+            Arg::List(..) => Term::Part,
         }
     }
 }
@@ -48,7 +51,7 @@ pub(crate) fn of_values(args: &[Value]) -> Vec<Term<'static>> {
 
 /// The same at run time: `1` and `1.0` are equal.
 pub(crate) fn same_value(a: Value, b: Value) -> bool {
-    a == b || matches!((a.number(), b.number()), (Some(x), Some(y)) if x == y)
+    value::same(a, b)
 }
 
 /// Whose variables a term's are: those of two plans are different though they have the same numbers.
@@ -71,7 +74,7 @@ impl<'a> Side<'a> {
     fn of(term: Term<'a>, other: bool) -> Self {
         match term {
             Term::Var(var) => Side::Var((other, var)),
-            Term::Any | Term::Const(_) | Term::Other(_) => Side::Rest(term),
+            Term::Any | Term::Const(_) | Term::Other(_) | Term::Part => Side::Rest(term),
         }
     }
 
@@ -122,7 +125,7 @@ fn more_general_term(general: Term<'_>, special: Term<'_>, renaming: &mut Renami
             let image = match special {
                 Term::Var(var) => Image::Var(var),
                 Term::Const(value) => Image::Const(value),
-                Term::Any | Term::Other(_) => Image::Unnamed,
+                Term::Any | Term::Other(_) | Term::Part => Image::Unnamed,
             };
             match renaming.get(&var) {
                 Some(known) => *known == image && image != Image::Unnamed,
@@ -136,9 +139,10 @@ fn more_general_term(general: Term<'_>, special: Term<'_>, renaming: &mut Renami
         (Term::Other(a), Term::Other(b)) => {
             is_total(a) && same_expr(a, b, &mut |a, b| renaming.get(&a) == Some(&Image::Var(b)))
         }
-        (Term::Const(_) | Term::Other(_), Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_)) => {
-            false
-        }
+        (
+            Term::Const(_) | Term::Other(_) | Term::Part,
+            Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part,
+        ) => false,
     }
 }
 
@@ -159,6 +163,15 @@ pub(crate) fn same_expr(a: &Expr, b: &Expr, vars: &mut dyn FnMut(u16, u16) -> bo
         (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
             f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same_expr(a, b, vars))
         }
+        (ExprKind::List(a, r), ExprKind::List(b, s)) => {
+            a.len() == b.len()
+                && a.iter().zip(b).all(|(a, b)| same_expr(a, b, vars))
+                && match (r, s) {
+                    (None, None) => true,
+                    (Some(r), Some(s)) => same_expr(r, s, vars),
+                    (Some(_), None) | (None, Some(_)) => false,
+                }
+        }
         (
             ExprKind::Const(_)
             | ExprKind::Leaf(_)
@@ -167,6 +180,7 @@ pub(crate) fn same_expr(a: &Expr, b: &Expr, vars: &mut dyn FnMut(u16, u16) -> bo
             | ExprKind::Binary(..)
             | ExprKind::If(..)
             | ExprKind::Call(..)
+            | ExprKind::List(..)
             | ExprKind::Error,
             _,
         ) => false,
@@ -178,13 +192,13 @@ pub(crate) fn fold(e: &Expr, vars: &dyn Fn(u16) -> Option<Value>) -> Option<Valu
     match &e.kind {
         ExprKind::Const(value) => Some(*value),
         ExprKind::Leaf(Leaf::Local(var)) => vars(*var),
-        ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => None,
+        ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => None,
         ExprKind::Unary(op, a) => value::unary(*op, fold(a, vars)?).ok(),
         ExprKind::Binary(op, a, b) => value::binary(*op, fold(a, vars)?, fold(b, vars)?).ok(),
         ExprKind::If(c, a, b) => match fold(c, vars)? {
             Value::Bool(true) => fold(a, vars),
             Value::Bool(false) => fold(b, vars),
-            Value::Int(_) | Value::Float(_) | Value::Symbol(_) => None,
+            Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
         },
         ExprKind::Call(f, args) => {
             let args: Option<Vec<Value>> = args.iter().map(|a| fold(a, vars)).collect();
@@ -223,7 +237,11 @@ fn expand<'a>(context: &'a Context, mut so_far: Vec<Vec<&'a Context>>) -> Option
             }
             so_far = all;
         }
-        Context::Belief(..) | Context::Not(_) | Context::Test(_) => {
+        Context::Belief(..)
+        | Context::Not(_)
+        | Context::Test(_)
+        | Context::Unify(..)
+        | Context::Internal(..) => {
             so_far.iter_mut().for_each(|c| c.push(context));
         }
     }
@@ -232,22 +250,20 @@ fn expand<'a>(context: &'a Context, mut so_far: Vec<Vec<&'a Context>>) -> Option
 
 /// For each part of a conjunction, the variables that have a value before it.
 pub(crate) fn bound_before(plan: &Plan, parts: &[&Context]) -> Vec<Vec<u16>> {
-    let mut bound: Vec<u16> = vars_of(&plan.args).collect();
+    let mut bound: Vec<u16> = vars_of(&plan.args);
+    plan.annotations.iter().for_each(|(_, arg)| arg.each_var(&mut |var| bound.push(var)));
     let mut all = Vec::new();
     for part in parts {
         all.push(bound.clone());
-        if let Context::Belief(_, args, _) = part {
-            bound.extend(vars_of(args));
-        }
+        bound.extend(part.binds());
     }
     all
 }
 
-pub(crate) fn vars_of(args: &[Arg]) -> impl Iterator<Item = u16> {
-    args.iter().filter_map(|arg| match arg {
-        Arg::Var(var) => Some(*var),
-        Arg::Any | Arg::Expr(_) => None,
-    })
+pub(crate) fn vars_of(args: &[Arg]) -> Vec<u16> {
+    let mut vars = Vec::new();
+    args.iter().for_each(|arg| arg.each_var(&mut |var| vars.push(var)));
+    vars
 }
 
 #[cfg(test)]

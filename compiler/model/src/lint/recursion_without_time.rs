@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
-    agent_facts::{AgentFacts, agents, change},
+    agent_facts::{AgentFacts, agents, all_steps, change},
     dead_plan::never_runs,
     facts::Facts,
     plan_terms::{Term, of_args, of_exprs, same_value},
 };
-use crate::{Arg, GoalId, Plan, Scenario, Step, StepKind, TriggerOn, Value};
+use crate::{Arg, Context, GoalId, Internal, Plan, Scenario, Step, StepKind, TriggerOn, Value};
 
 /// Longer ways back are not looked for.
 const DEEP: usize = 8;
@@ -20,6 +20,10 @@ const MANY: usize = 20_000;
 
 pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario) {
+        for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
+            let endless = all_steps(&plan.body).into_iter().filter(|step| is_endless(&facts, step));
+            issues.extend(endless.map(|step| endless_loop(step.span)));
+        }
         let (mut left, mut progress) = (MANY, BTreeMap::new());
         for start in &facts.agent.plans {
             if let TriggerOn::Achieve(goal) = start.trigger
@@ -49,7 +53,7 @@ impl Passed {
     fn at_start((i, arg): (usize, &Arg)) -> Self {
         match Term::of_arg(arg) {
             Term::Const(value) => Passed::Const(value),
-            Term::Any | Term::Var(_) | Term::Other(_) => Passed::Same(i),
+            Term::Any | Term::Var(_) | Term::Other(_) | Term::Part => Passed::Same(i),
         }
     }
 
@@ -79,21 +83,30 @@ struct Search<'a, 'i> {
 impl<'a> Search<'a, '_> {
     /// Follows the adoptions of a plan that are reached at the same instant with the same beliefs.
     fn from(&mut self, plan: &'a Plan, passed: &[Passed]) {
-        for step in &plan.body {
-            if let StepKind::Achieve(goal, args) = &step.kind {
+        self.follow(plan, passed, &plan.body);
+    }
+
+    /// Whether something may change on the way through the steps.
+    fn follow(&mut self, plan: &'a Plan, passed: &[Passed], steps: &'a [Step]) -> bool {
+        for step in steps {
+            if let StepKind::Achieve(goal, args, _) = &step.kind {
                 let args: Vec<Passed> = of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
                 self.way.push((plan, step.span));
                 self.adopted(*goal, &args, step.span);
                 self.way.pop();
             }
+            for block in step.blocks() {
+                self.follow(plan, passed, block);
+            }
             if self.progresses(step) {
-                return;
+                return true;
             }
         }
+        false
     }
 
     fn progresses(&mut self, step: &Step) -> bool {
-        let StepKind::Achieve(goal, _) = &step.kind else {
+        let StepKind::Achieve(goal, ..) = &step.kind else {
             return progresses(&self.facts, step, &mut Vec::new());
         };
         if let Some(known) = self.progress.get(goal) {
@@ -142,6 +155,60 @@ impl<'a> Search<'a, '_> {
     }
 }
 
+/// A `while` whose body does nothing that could change the answer of its condition, nor fails.
+fn is_endless(facts: &AgentFacts<'_>, step: &Step) -> bool {
+    let StepKind::While { condition, body } = &step.kind else { return false };
+    let quiet = |step: &&Step| match &step.kind {
+        StepKind::Print(_) => true,
+        StepKind::Do(..)
+        | StepKind::If { .. }
+        | StepKind::For { .. }
+        | StepKind::Fork { .. }
+        | StepKind::While { .. } => !progresses(facts, step, &mut Vec::new()),
+        StepKind::Achieve(..)
+        | StepKind::Spawn(..)
+        | StepKind::Query(_)
+        | StepKind::Test(_)
+        | StepKind::Add(_)
+        | StepKind::Remove(_)
+        | StepKind::Replace(_)
+        | StepKind::Abolish(_)
+        | StepKind::Await { .. }
+        | StepKind::Wait(_)
+        | StepKind::Send { .. }
+        | StepKind::Ask { .. }
+        | StepKind::AskAll { .. }
+        | StepKind::Control(..)
+        | StepKind::Fail => false,
+    };
+    !draws(condition) && all_steps(body).iter().all(quiet)
+}
+
+fn endless_loop(span: Span) -> Diagnostic {
+    let message = "this loop never ends once it has begun, and no time passes";
+    Diagnostic::warning(Code::NO_TIME_PASSES, span, message)
+        .here("nothing in it changes what its condition asks")
+        .help("let the body change a belief, or let time pass: a stimulus, an `await`, a `wait`")
+}
+
+/// Whether a formula's answer may be another one each time.
+fn draws(condition: &Context) -> bool {
+    let mut draws = false;
+    condition.each(&mut |part| {
+        if let Context::Internal(action, _) = part {
+            draws |= matches!(
+                **action,
+                Internal::Random { .. }
+                    | Internal::Shuffle { .. }
+                    | Internal::Intend { .. }
+                    | Internal::Desire { .. }
+                    | Internal::Suspended { .. }
+            );
+        }
+    });
+    draws
+}
+
 /// What an argument of an adoption is, in a plan whose goal has these arguments.
 fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
     match term {
@@ -150,7 +217,7 @@ fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
             let at = plan.args.iter().position(|arg| *arg == Arg::Var(var));
             at.and_then(|at| passed.get(at)).cloned().unwrap_or(Passed::New)
         }
-        Term::Any | Term::Other(_) => Passed::New,
+        Term::Any | Term::Other(_) | Term::Part => Passed::New,
     }
 }
 
@@ -160,11 +227,26 @@ fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut Vec<TriggerOn>) ->
         StepKind::Do(event, _) => {
             return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
         }
-        StepKind::Await { .. } | StepKind::Wait(_) => return true,
-        StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) => return change(step).is_some(),
-        StepKind::Spawn(..) => return false,
-        StepKind::Achieve(goal, _) => TriggerOn::Achieve(*goal),
-        StepKind::Query(belief, _) => TriggerOn::Test(*belief),
+        // A message may be answered by another; what is dropped or suspended may be this goal.
+        StepKind::Await { .. }
+        | StepKind::Wait(_)
+        | StepKind::Send { .. }
+        | StepKind::Ask { .. }
+        | StepKind::AskAll { .. }
+        | StepKind::Control(..)
+        | StepKind::Fail => return true,
+        StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) | StepKind::Abolish(_) => {
+            return change(step).is_some();
+        }
+        StepKind::Spawn(..) | StepKind::Print(_) => return false,
+        // What is drawn at random may be another thing each time.
+        StepKind::Test(condition) => return draws(condition),
+        StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
+            return step.condition().is_some_and(draws)
+                || step.blocks().into_iter().flatten().any(|inner| progresses(facts, inner, seen));
+        }
+        StepKind::Achieve(goal, ..) => TriggerOn::Achieve(*goal),
+        StepKind::Query(l) => TriggerOn::Test(l.belief),
     };
     if seen.contains(&on) {
         return false;
@@ -176,6 +258,7 @@ fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut Vec<TriggerOn>) ->
         | TriggerOn::Removed(_)
         | TriggerOn::Failed(_)
         | TriggerOn::Test(_)
+        | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => None,
     };
     [Some(on), failed]

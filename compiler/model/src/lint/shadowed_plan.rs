@@ -42,7 +42,7 @@ fn shadowed(earlier: &Plan, later: &Plan) -> Diagnostic {
 
 /// Whether the earlier plan is applicable whenever the later one is.
 pub(crate) fn shadows(earlier: &Plan, later: &Plan) -> bool {
-    if earlier.trigger != later.trigger {
+    if earlier.trigger != later.trigger || !earlier.annotations.is_empty() {
         return false;
     }
     let mut renaming = Renaming::new();
@@ -96,16 +96,21 @@ fn implied(
             Context::Not(_) | Context::Test(_) => {
                 theirs.parts.iter().any(|t| follows(part, t, &renaming)) || is_true(part.0, &renaming)
             }
-            Context::True | Context::And(_) | Context::Or(_) => false,
+            Context::True | Context::And(_) | Context::Or(_) | Context::Unify(..) | Context::Internal(..) => {
+                false
+            }
         });
     };
-    let Context::Belief(belief, args, _) = ours.parts[*first].0 else { return false };
+    let Context::Belief(ours_first) = ours.parts[*first].0 else { return false };
+    if !ours_first.annotations.is_empty() {
+        return false;
+    }
     theirs.parts.iter().any(|(their, _)| {
         let Some(left) = tries.checked_sub(1) else { return false };
         *tries = left;
         let mut renaming = renaming.clone();
-        matches!(their, Context::Belief(b, special, _) if b == belief
-            && more_general(&of_args(args), &of_args(special), &mut renaming))
+        matches!(their, Context::Belief(special) if special.belief == ours_first.belief
+            && more_general(&of_args(&ours_first.args), &of_args(&special.args), &mut renaming))
             && implied(ours, theirs, open, renaming, tries)
     })
 }
@@ -152,8 +157,11 @@ impl Pairs<'_> {
     fn same(&mut self, ours: &Context, theirs: &Context) -> bool {
         match (ours, theirs) {
             (Context::True, Context::True) => true,
-            (Context::Belief(a, ours, _), Context::Belief(b, theirs, _)) => {
-                a == b && ours.iter().zip(theirs).all(|(a, b)| self.same_arg(a, b))
+            (Context::Belief(a), Context::Belief(b)) => {
+                a.belief == b.belief
+                    && a.annotations.is_empty()
+                    && b.annotations.is_empty()
+                    && a.args.iter().zip(&b.args).all(|(a, b)| self.same_arg(a, b))
             }
             (Context::Not(a), Context::Not(b)) => self.same(a, b),
             (Context::And(a), Context::And(b)) | (Context::Or(a), Context::Or(b)) => {
@@ -168,7 +176,9 @@ impl Pairs<'_> {
                 | Context::Not(_)
                 | Context::And(_)
                 | Context::Or(_)
-                | Context::Test(_),
+                | Context::Test(_)
+                | Context::Unify(..)
+                | Context::Internal(..),
                 _,
             ) => false,
         }
@@ -183,7 +193,7 @@ impl Pairs<'_> {
             }
             (Term::Const(a), Term::Const(b)) => super::plan_terms::same_value(a, b),
             (Term::Other(a), Term::Other(b)) => is_total(a) && same_expr(a, b, &mut |a, b| self.var(a, b)),
-            (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_), _) => false,
+            (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part, _) => false,
         }
     }
 }

@@ -2,10 +2,14 @@
 
 use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
-use super::{events::own_events, facts::Facts};
+use super::{
+    agent_facts::{all_steps, change},
+    events::own_events,
+    facts::Facts,
+};
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Player, Role, Scenario, StepKind, Sync, TriggerOn, Update, Var,
+    Performative, Player, Role, Scenario, StepKind, Subject, Sync, Update, Var,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -112,23 +116,26 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
     let mut read = vec![false; agent.beliefs.len()];
     let mut named = vec![false; agent.beliefs.len()];
     for plan in &agent.plans {
-        match plan.trigger {
-            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) => read[usize::from(b.0)] = true,
-            TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => {}
-        }
+        plan.trigger.belief().iter().for_each(|b| read[usize::from(b.0)] = true);
         reads_beliefs(&plan.context, &mut read);
-        for step in &plan.body {
-            match &step.kind {
-                StepKind::Query(b, _) => read[usize::from(b.0)] = true,
-                StepKind::Add(b, _) | StepKind::Remove(b, _) | StepKind::Replace(b, _) => {
-                    named[usize::from(b.0)] = true;
-                }
-                StepKind::Do(..)
-                | StepKind::Achieve(..)
-                | StepKind::Spawn(..)
-                | StepKind::Await { .. }
-                | StepKind::Wait(_) => {}
+        for step in all_steps(&plan.body) {
+            step.condition().iter().for_each(|c| reads_beliefs(c, &mut read));
+            if let StepKind::Query(literal) = &step.kind {
+                read[usize::from(literal.belief.0)] = true;
             }
+            change(step).iter().for_each(|c| named[usize::from(c.belief().0)] = true);
+        }
+    }
+    for rule in &agent.rules {
+        reads_beliefs(&rule.body, &mut read);
+        named[usize::from(rule.belief.0)] = true;
+    }
+    of_messages(scenario, index, &mut read, &mut named);
+    for (i, belief) in agent.beliefs.iter().enumerate() {
+        if let Some(plain) = belief.negates {
+            // The declaration is of both.
+            read[usize::from(plain.0)] |= read[i];
+            named[usize::from(plain.0)] = true;
         }
     }
     for suite in &scenario.suites {
@@ -138,7 +145,8 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
         }
     }
     let places = scenario.places.agents.get(index);
-    for (i, belief) in agent.beliefs.iter().enumerate().filter(|(i, _)| !read[*i]) {
+    let unread = |(i, b): &(usize, &crate::Belief)| !read[*i] && b.negates.is_none();
+    for (i, belief) in agent.beliefs.iter().enumerate().filter(unread) {
         let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.span);
         let whole = (!named[i]).then_some((belief.span, true));
         found.push(Unused { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
@@ -146,11 +154,22 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
 }
 
 fn reads_beliefs(context: &Context, read: &mut [bool]) {
-    match context {
-        Context::Belief(b, _, _) => read[usize::from(b.0)] = true,
-        Context::Not(c) => reads_beliefs(c, read),
-        Context::And(cs) | Context::Or(cs) => cs.iter().for_each(|c| reads_beliefs(c, read)),
-        Context::True | Context::Test(_) => {}
+    context.each(&mut |part| {
+        if let Context::Belief(literal) = part {
+            read[usize::from(literal.belief.0)] = true;
+        }
+    });
+}
+
+/// What agents tell this one is named, and what they ask it is read.
+fn of_messages(scenario: &Scenario, index: usize, read: &mut [bool], named: &mut [bool]) {
+    let asks =
+        |how: Option<Performative>| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
+    for content in &scenario.contents {
+        if let Some(Some(Subject::Belief(belief))) = content.of.get(index) {
+            read[usize::from(belief.0)] |= content.uses.iter().any(|(how, _)| asks(*how));
+            named[usize::from(belief.0)] = true;
+        }
     }
 }
 

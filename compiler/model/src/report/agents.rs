@@ -2,7 +2,7 @@
 
 use hrdsl_source::{Code, Diagnostic, Span};
 
-use crate::{noun::Noun, report::names::with_nearest};
+use crate::{Kind, noun::Noun, report::names::with_nearest};
 
 /// HR0401: a variable is read before anything gives it a value.
 pub(crate) fn unbound<'a>(name: &str, span: Span, others: impl IntoIterator<Item = &'a str>) -> Diagnostic {
@@ -25,4 +25,64 @@ pub(crate) fn not_adopted<'a>(
 pub(crate) fn no_plan<'a>(name: &str, span: Span, goals: impl IntoIterator<Item = &'a str>) -> Diagnostic {
     let error = Diagnostic::error(Code::NO_PLAN, span, format!("no plan achieves the goal `{name}`"));
     with_nearest(error, Noun::Goal, name, goals)
+}
+
+/// HR0401: a rule reads an argument that has no value where the belief is asked.
+pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
+    let message = format!("the rules for `{name}` need a value for argument {}", index + 1);
+    Diagnostic::error(Code::UNBOUND_VARIABLE, span, message)
+        .here("this has none here")
+        .help("bind it first, by a belief or with `X = …`")
+}
+
+/// HR0201: a variable that is of one kind on one way, and of another on the other.
+pub(crate) fn two_kinds(name: &str, one: Kind, other: Kind, span: Span) -> Diagnostic {
+    let message = format!("`{name}` is {one} on one way, and {other} on the other");
+    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("use two names")
+}
+
+/// HR0411: something that is no annotation.
+pub(crate) fn no_annotation(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_PLACE, span, "this is no annotation")
+        .help("an annotation is a name with one value: `[source(S)]`")
+}
+
+/// HR0411: annotations where there are none.
+pub(crate) fn not_annotated(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no annotations"))
+        .help("remove the brackets: beliefs and goals have annotations")
+}
+
+/// HR0411: a strong negation of what is no belief.
+pub(crate) fn not_negated(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no strong negation"))
+        .help("remove the `~`: beliefs alone have one")
+}
+
+/// HR0411: `X = e` where a value is needed.
+pub(crate) fn no_binding(span: Span, in_plan: bool) -> Diagnostic {
+    let message = if in_plan { "`=` binds a variable, and has no value" } else { "`=` compares nothing" };
+    let help = if in_plan {
+        "to compare, use `==`; to bind, write it as a part of its own: `X = e && …`"
+    } else {
+        "to compare, use `==`"
+    };
+    Diagnostic::error(Code::OUT_OF_PLACE, span, message).help(help)
+}
+
+/// HR0411: a formula where a value is needed.
+pub(crate) fn no_formula(what: &str, span: Span, help: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no value")).help(help)
+}
+
+/// HR0411: an internal action that does something, in a formula.
+pub(crate) fn is_a_step(name: &str, usage: &str, span: Span) -> Diagnostic {
+    let message = format!("`.{name}` does something: it is a step, and no part of a formula");
+    Diagnostic::error(Code::OUT_OF_PLACE, span, message)
+        .help(format!("write `{usage}` in the body of a plan"))
+}
+
+/// HR0412
+pub(crate) fn bad_message(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(Code::BAD_MESSAGE, span, message).help(help)
 }

@@ -3,7 +3,7 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::{
-    Dim, Expr, Kind, Value,
+    Dim, Expr, Kind, Type, Value,
     noun::Noun,
     report::names::{replace, with_nearest},
     types::UNITS,
@@ -93,7 +93,7 @@ pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) 
         (Kind::Float(_), Some(_)) => Diagnostic::error(Code::UNIT_MISMATCH, span, message),
         (Kind::Enum(of), _) => Diagnostic::error(Code::TYPE_MISMATCH, span, message)
             .help(format!("its values are: {}", of.listed())),
-        (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Unknown, _) => {
+        (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Text | Kind::List(_) | Kind::Unknown, _) => {
             Diagnostic::error(Code::TYPE_MISMATCH, span, message)
         }
     }
@@ -227,4 +227,16 @@ pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span
             if got == 1 { "is" } else { "are" }
         ),
     )
+}
+
+/// HR0211: a string or list in something that no agent has.
+pub(crate) fn of_agents_only(name: &str, ty: Type, span: Span) -> Diagnostic {
+    let message = format!("`{name}` is {}, which only agents know", ty.kind());
+    let help = match ty {
+        Type::Text => "declare an enumeration: `enum Word { first, second }`",
+        Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::List(_) => {
+            "use an array, such as `bool[4]`, or several parameters"
+        }
+    };
+    Diagnostic::error(Code::OF_AGENTS_ONLY, span, message).help(help)
 }
