@@ -220,17 +220,16 @@ fn tuples(sizes: &[u32], strength: usize) -> u128 {
 }
 
 /// Rows in which every tuple of alternatives of `strength` different factors (at least 2) occurs, at most `limit`. If
-/// there are too many tuples the strength is lowered, to 2 at the least. With no more factors than that, but with two,
-/// these are all rows there can be, in lexicographic order: with a single factor every alternative occurs; without
+/// there are too many tuples the strength is lowered, to 2 at the least. With no more factors than that, but for pairs of
+/// two, these are all rows there can be, in lexicographic order: with a single factor every alternative occurs; without
 /// factors there is one empty row.
 pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut ChaCha8Rng) -> Covering {
     let mut strength = strength.max(2);
-    if sizes.len() < 2 || (sizes.len() > 2 && strength >= sizes.len()) {
+    if sizes.len() < 2 || (strength > 2 && strength >= sizes.len()) {
         let space = sizes.iter().fold(1u128, |n, size| n.saturating_mul(u128::from(*size)));
         let rows = (0..space.min(limit as u128)).map(|index| super::explore::row_at(sizes, index)).collect();
         return Covering { rows, strength };
     }
-    strength = strength.min(sizes.len());
     while strength > 2 && tuples(sizes, strength) > MAX_TUPLES {
         strength -= 1;
     }
