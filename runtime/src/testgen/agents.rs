@@ -21,6 +21,9 @@ use super::{
 };
 use crate::harness::{Ended, ModelRun, model_run};
 
+/// Different warnings of runs that are told, at most.
+const WARNINGS: usize = 20;
+
 /// Runs the agents for each set of beliefs and takes the environment's part of each run.
 ///
 /// # Errors
@@ -202,7 +205,11 @@ impl Sum {
             notes.push("a limit cut the exploration short".to_owned());
         }
         let in_runs = |n: u64| if n == 1 { "in 1 run".to_owned() } else { format!("in {n} runs") };
-        notes.extend(self.warnings.iter().map(|(warning, n)| format!("{warning} ({})", in_runs(*n))));
+        let warnings = self.warnings.iter().take(WARNINGS);
+        notes.extend(warnings.map(|(warning, n)| format!("{warning} ({})", in_runs(*n))));
+        if self.warnings.len() > WARNINGS {
+            notes.push(format!("and {} other warnings", self.warnings.len() - WARNINGS));
+        }
         notes
     }
 }

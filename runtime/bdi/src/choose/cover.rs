@@ -165,10 +165,18 @@ impl<'s> Uncovered<'s> {
         if placed.len() < others {
             return gains;
         }
+        if others == 1 {
+            placed.iter().for_each(|other| self.pair_gains(factor, *other, row[*other], &mut gains));
+            return gains;
+        }
         let mut chosen: Vec<usize> = (0..others).collect();
+        let mut factors = vec![factor; self.strength];
         loop {
-            let mut factors: Vec<usize> = chosen.iter().map(|i| placed[*i]).collect();
-            factors.insert(factors.partition_point(|f| *f < factor), factor);
+            let before = chosen.iter().take_while(|i| placed[**i] < factor).count();
+            for (at, i) in chosen.iter().enumerate() {
+                factors[at + usize::from(at >= before)] = placed[*i];
+            }
+            factors[before] = factor;
             let group = &self.groups[self.group(&factors)];
             if group.left > 0 {
                 let (at, step) = self.line(group, row, factor);
@@ -179,6 +187,23 @@ impl<'s> Uncovered<'s> {
             if !next_group(&mut chosen, placed.len()) {
                 return gains;
             }
+        }
+    }
+
+    /// The part of `gains` that a single other alternative makes, if tuples are pairs: most suites are.
+    fn pair_gains(&self, factor: usize, other: usize, taken: u32, gains: &mut [usize]) {
+        let (n, low, high) = (self.sizes.len(), factor.min(other), factor.max(other));
+        let group = &self.groups[low * n - low * (low + 1) / 2 + high - low - 1];
+        if group.left == 0 {
+            return;
+        }
+        let (at, step) = if factor == high {
+            (group.start + taken as usize * gains.len(), 1)
+        } else {
+            (group.start + taken as usize, self.sizes[other] as usize)
+        };
+        for (alternative, gain) in gains.iter_mut().enumerate() {
+            *gain += usize::from(self.is_open(at + alternative * step));
         }
     }
 }
