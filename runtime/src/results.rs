@@ -7,7 +7,7 @@ use hrdsl_ir::{Nanos, Program, Span, value::seconds};
 use hrdsl_sut::FileCoverage;
 use serde::Serialize;
 
-use crate::testgen::GoalReport;
+use crate::testgen::{Explanation, GoalReport, ModelCoverage};
 
 /// A whole campaign.
 #[derive(Clone, Debug, Serialize)]
@@ -71,6 +71,12 @@ pub struct SuiteInfo {
     pub tests: u32,
     pub errors: u32,
     pub goals: Vec<GoalReport>,
+    /// Of a suite by agents: what was reached of their programs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelCoverage>,
+    /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<Explanation>,
     pub notes: Vec<String>,
     /// Lines and branches executed by any of the suite's tests, over all files.
     pub code: Ratios,

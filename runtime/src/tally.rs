@@ -77,6 +77,8 @@ fn suites(generated: &[Generated], tests: &[TestResult]) -> Vec<SuiteInfo> {
             tests: count(own.len()),
             errors: count(own.iter().filter(|t| t.error.is_some()).count()),
             goals: made.map_or_else(Vec::new, |g| g.goals.clone()),
+            model: made.and_then(|g| g.coverage.clone()),
+            explanation: made.and_then(|g| g.explanation.clone()),
             notes: made.map_or_else(Vec::new, |g| g.notes.clone()),
             code,
             code_accumulated,

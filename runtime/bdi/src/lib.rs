@@ -25,6 +25,7 @@ mod check;
 pub mod choose;
 mod code;
 mod control;
+pub mod coverage;
 mod cycle;
 mod dice;
 mod event;

@@ -237,6 +237,17 @@ pub fn gaps(results: &Results) -> Vec<String> {
             ));
         }
     }
+    for suite in &results.suites {
+        let missed = suite.explanation.as_ref().map_or(0, |e| e.uncovered.len());
+        if missed > 0 {
+            let goals = suite.model.as_ref().map_or(missed, |m| m.goals);
+            gaps.push(format!(
+                "{missed} of {} of {} are reached by none of its tests in the model.",
+                text::count(goals, "goal"),
+                suite.name
+            ));
+        }
+    }
     let code = code(results);
     if code.lines < code.lines_total {
         gaps.push(format!(

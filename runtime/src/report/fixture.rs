@@ -1,5 +1,6 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
+use hrdsl_bdi::coverage::Kind;
 use hrdsl_ir::Span;
 use hrdsl_sut::FileCoverage;
 
@@ -8,7 +9,10 @@ use crate::{
         BinResult, CodeFile, Failure, Margin, Ratios, Requirement, Results, SuiteInfo, Tally, TestResult,
         VerdictResult, WitnessStep,
     },
-    testgen::{GoalReport, GoalStatus},
+    testgen::{
+        AgentCoverage, Explanation, GoalReport, GoalStatus, KindCoverage, ModelCoverage, TestExplanation,
+        Uncovered, Unreached,
+    },
 };
 
 const SUITES: [(&str, &str); 3] =
@@ -405,11 +409,60 @@ fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
         tests: tests.len() as u32,
         errors: tests.iter().filter(|t| t.error.is_some()).count() as u32,
         goals,
+        model: None,
+        explanation: None,
         notes: if s == 0 { vec!["pairwise: 131 belief sets of 20480 possible".into()] } else { vec![] },
         code: ratios(&[together(tests)]),
         code_accumulated: (1..=tests.len()).map(line_percent).collect(),
         code_per_test: tests.iter().map(|t| t.code.line_percent()).collect(),
     }
+}
+
+/// What the agents of the first suite reached.
+pub(crate) fn model() -> (ModelCoverage, Explanation) {
+    let reached = [2, 1, 0, 0, 0, 0, 0, 1, 0];
+    let all = [3, 2, 0, 0, 0, 0, 0, 2, 0];
+    let kinds = Kind::ALL.into_iter().zip(reached).zip(all);
+    let unreached =
+        |kind, item: &str, reason: &str| Unreached { kind, item: item.into(), reason: reason.into() };
+    let before = "`+!leg` came twice: twice a plan before it was selected (`leg#1` twice)";
+    let human = AgentCoverage {
+        agent: "Human".into(),
+        kinds: kinds.map(|((kind, reached), all)| KindCoverage { kind, reached, all }).collect(),
+        unreached: vec![
+            unreached(Kind::Selected, "plan Human.leg#2", before),
+            unreached(
+                Kind::Completed,
+                "plan Human.leg#1 completed",
+                "it was selected twice and failed twice",
+            ),
+            unreached(
+                Kind::Edge,
+                "edge Human.table#1 -> leg#2 (step 1)",
+                "for this step others were selected (`leg#1` twice)",
+            ),
+        ],
+    };
+    let test = |name: &str, because: &str, first: &[&str], only: &[&str]| TestExplanation {
+        test: format!("bdi_tests.{name}"),
+        because: vec![because.into()],
+        reaches: 2,
+        first: first.iter().map(|s| (*s).to_owned()).collect(),
+        only: only.iter().map(|s| (*s).to_owned()).collect(),
+    };
+    let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
+    let released = "bin human_robot.1 leg, released";
+    let explanation = Explanation {
+        tests: vec![
+            test("t001", "wants(0)", &["plan Human.table#1", "plan Human.leg#1"], &[]),
+            test("t002", "wants(1)", &[released], &[released]),
+        ],
+        uncovered: vec![
+            uncovered("plan Human.leg#2", before),
+            uncovered("bin human_robot.4 legs, bored", "`asked` was 0, 1, needs 4"),
+        ],
+    };
+    (ModelCoverage { runs: 2, goals_reached: 3, goals: 5, agents: vec![human] }, explanation)
 }
 
 fn bin(bin: &str, tests: &[TestResult]) -> BinResult {

@@ -4,6 +4,7 @@
 //! escaped as it is written, in one place ([`environment`]), so that nothing can be forgotten.
 
 mod code;
+mod model;
 mod tests_list;
 mod violations;
 
@@ -81,6 +82,7 @@ struct Page {
     bins_hit: Vec<usize>,
     bins_total: usize,
     goals: Vec<Goals>,
+    models: Vec<model::Model>,
     code: Option<code::Code>,
     list: tests_list::List,
 }
@@ -230,6 +232,7 @@ impl Page {
             bins_hit: suites.map(|i| facts::bins_hit(results, i)).collect(),
             bins_total: results.bins.len(),
             goals: results.suites.iter().filter(|s| !s.goals.is_empty()).map(goals).collect(),
+            models: model::all(results),
             code: code::code(results),
             list: tests_list::list(results),
         }

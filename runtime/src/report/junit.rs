@@ -9,7 +9,7 @@ use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, Te
 
 use super::{
     facts::{self, Outcome},
-    text,
+    model, text,
 };
 use crate::results::{Results, TestResult, VerdictResult};
 
@@ -57,6 +57,16 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
         suite.add_property(Property::new("hrdsl.method", text::line(&info.method)));
         if let Some(number) = info.abstract_tests {
             suite.add_property(Property::new("hrdsl.abstract_tests", number.to_string()));
+        }
+        if let Some(coverage) = &info.model {
+            let goals = format!("{}/{}", coverage.goals_reached, coverage.goals);
+            suite.add_property(Property::new("hrdsl.model_goals", goals));
+            for agent in &coverage.agents {
+                let tally = |k| format!("{} {}", model::short(k), model::ratio(model::of(agent, k)));
+                let tallies: Vec<String> = model::kinds(coverage).into_iter().map(tally).collect();
+                let name = format!("hrdsl.model.{}", text::line(&agent.agent));
+                suite.add_property(Property::new(name, tallies.join(", ")));
+            }
         }
         if info.code.lines_total > 0 {
             suite.add_property(Property::new(
@@ -181,6 +191,16 @@ mod tests {
     #[test]
     fn the_page_is_as_agreed() {
         assert_eq!(junit(&fixture::campaign(7)), include_str!("golden/junit.xml"));
+    }
+
+    #[test]
+    fn model_coverage_is_a_property_of_its_suite() {
+        let mut results = fixture::campaign(2);
+        let (coverage, explanation) = fixture::model();
+        (results.suites[0].model, results.suites[0].explanation) = (Some(coverage), Some(explanation));
+        let xml = junit(&results);
+        assert!(xml.contains("name=\"hrdsl.model_goals\" value=\"3/5\""));
+        assert!(xml.contains("name=\"hrdsl.model.Human\" value=\"plans 2/3, done 1/2, edges 1/2\""));
     }
 
     #[test]

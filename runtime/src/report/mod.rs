@@ -8,9 +8,11 @@ mod facts;
 pub(crate) mod fixture;
 mod html;
 mod junit;
+mod model;
 mod terminal;
 mod text;
 
 pub use html::html;
 pub use junit::junit;
+pub use model::explain_text;
 pub use terminal::summary;

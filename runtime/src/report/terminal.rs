@@ -4,15 +4,19 @@ use std::fmt::Write as _;
 
 use super::{
     facts::{self, Bin, Outcome},
-    text,
+    model, text,
 };
-use crate::results::{BinResult, Ratios, Requirement, Results, TestResult};
+use hrdsl_bdi::coverage::Kind;
+
+use crate::results::{BinResult, Ratios, Requirement, Results, SuiteInfo, TestResult};
 
 /// Room for a label at the start of a line, at the least.
 const LABEL: usize = 20;
 /// Bins and errors that are listed, at most.
 const BINS: usize = 16;
 const ERRORS: usize = 3;
+/// Goals of a model that are listed for a suite, at most.
+const GOALS: usize = 5;
 
 /// The results on at most `width` columns, with ANSI colours if `color`.
 #[must_use]
@@ -22,6 +26,7 @@ pub fn summary(results: &Results, width: usize, color: bool) -> String {
     requirements(&mut page, results);
     violations(&mut page, results);
     bins(&mut page, results);
+    models(&mut page, results);
     code(&mut page, results);
     errors(&mut page, results);
     page.out
@@ -308,6 +313,52 @@ fn bin_line(
     page.line(&cells);
 }
 
+/// What the agents' runs reached of their programs: a line for each agent, then the goals that were not reached.
+fn models(page: &mut Page, results: &Results) {
+    const COLUMN: usize = 9;
+    for suite in &results.suites {
+        let Some(coverage) = &suite.model else { continue };
+        page.out.push('\n');
+        let goals = format!("  {}/{} goals reached", coverage.goals_reached, coverage.goals);
+        page.line(&[
+            Cell(format!("Model of {}", text::line(&suite.name)), Style::Bold),
+            Cell(goals, if coverage.goals_reached < coverage.goals { Style::Warn } else { Style::Good }),
+        ]);
+        let kinds = model::kinds(coverage);
+        for kinds in kinds.chunks(page.fit(COLUMN)) {
+            let label = page.label(kinds.len(), COLUMN).min(LABEL + 10);
+            let mut heads = vec![left("", label, Style::Plain)];
+            heads.extend(kinds.iter().map(|k| right(model::short(*k), COLUMN, Style::Dim)));
+            page.line(&heads);
+            for agent in &coverage.agents {
+                let mut cells = vec![left(&format!("  {}", text::line(&agent.agent)), label, Style::Plain)];
+                let cell = |kind: &Kind| {
+                    let tally = model::of(agent, *kind);
+                    let style = if tally.reached < tally.all { Style::Warn } else { Style::Plain };
+                    right(&model::ratio(tally), COLUMN, style)
+                };
+                cells.extend(kinds.iter().map(cell));
+                page.line(&cells);
+            }
+        }
+        uncovered(page, suite);
+    }
+}
+
+fn uncovered(page: &mut Page, suite: &SuiteInfo) {
+    let all = suite.explanation.as_ref().map(|e| e.uncovered.as_slice()).unwrap_or_default();
+    for goal in all.iter().take(GOALS) {
+        page.line(&[
+            Cell("○ ".into(), Style::Warn),
+            Cell(text::line(&goal.goal), Style::Plain),
+            Cell(format!("  {}", text::line(&goal.reason)), Style::Dim),
+        ]);
+    }
+    if all.len() > GOALS {
+        page.line(&[Cell(format!("  and {} more", all.len() - GOALS), Style::Dim)]);
+    }
+}
+
 fn code(page: &mut Page, results: &Results) {
     let all = facts::code(results);
     if all.lines_total == 0 {
@@ -403,6 +454,22 @@ mod tests {
         let text = summary(&results, 100, false);
         assert!(!text.chars().any(|c| c.is_control() && c != '\n'));
         assert!(text.contains("  died\n"));
+    }
+
+    #[test]
+    fn model_coverage_is_a_table_for_each_agent() {
+        let mut results = fixture::campaign(2);
+        let (coverage, explanation) = fixture::model();
+        (results.suites[0].model, results.suites[0].explanation) = (Some(coverage), Some(explanation));
+        let text = summary(&results, 80, false);
+        let expected = "
+Model of bdi_tests  3/5 goals reached
+                                  plans     done    edges
+  Human                             2/3      1/2      1/2
+○ plan Human.leg#2  `+!leg` came twice: twice a plan before it was selected (`l…
+○ bin human_robot.4 legs, bored  `asked` was 0, 1, needs 4
+";
+        assert!(text.contains(expected), "{text}");
     }
 
     #[test]

@@ -1,83 +1,264 @@
 //! Tests by agents: the multi-agent system is run once for each chosen set of beliefs, in virtual time.
 
-use hrdsl_bdi::choose::{explore, factors};
+use std::collections::{BTreeMap, BTreeSet};
+
+use hrdsl_bdi::{
+    choose::{BeliefSet, Explorer, factors},
+    coverage::Team,
+    measure::Measured,
+};
 use hrdsl_ir::{
     Program,
-    suite::{Choice, Explore, PlayerRef, Suite},
+    bdi::AgentId,
+    suite::{Method, PlayerRef, Suite},
 };
 use rayon::prelude::*;
 
-use super::{AbstractTest, Harvest, extract};
-use crate::harness::{AgentPlayer, AutomatonPlayer, Ended, Harness, Player};
+use super::{
+    AbstractTest, Found, Harvest, concrete, extract,
+    goals::{Goals, Reached, agents},
+    model::{self, ModelCoverage},
+};
+use crate::harness::{Ended, ModelRun, model_run};
+
+/// Different warnings of runs that are told, at most.
+const WARNINGS: usize = 20;
 
 /// Runs the agents for each set of beliefs and takes the environment's part of each run.
 ///
 /// # Errors
 /// A choice that has no alternatives, or a model that cannot be run.
-pub fn harvest(
-    program: &Program,
-    suite: &Suite,
-    players: &[PlayerRef],
-    choose: &[Choice],
-    how: Explore,
-    count: u32,
-    seed: u64,
-) -> Result<Harvest, String> {
+pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<Harvest, String> {
+    let Method::Agents { players, choose, explore, stop_after, goals, minimise: _ } = &suite.method else {
+        return Err(format!("suite `{}` is not by agents", suite.name));
+    };
     let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
-    let explored = explore(&factors, how, count, seed);
+    let mut explorer = Explorer::new(&factors, *explore, count, seed);
     let awaits = extract::Awaits::of(program, players);
-    let runs: Vec<Result<Option<AbstractTest>, String>> = explored
-        .sets
-        .par_iter()
-        .map(|set| {
-            let harness = Harness::new(program, cast(program, players, &set.facts), None, suite.horizon);
-            let run = harness.run();
-            if let Ended::Fault(fault) = run.ended {
-                return Err(format!("suite `{}`, with {}: {fault}", suite.name, set.text.join(", ")));
-            }
-            if !extract::keeps_assumptions(program, &run.trace) {
-                return Ok(None);
-            }
-            Ok(Some(AbstractTest {
-                steps: extract::steps(program, &awaits, &run.trace, suite.patience),
-                because: vec![set.text.join(", ")],
-                predicts: extract::predicted(program, &run.trace),
-            }))
-        })
-        .collect();
-    let mut harvest = Harvest::default();
-    let mut left_out = 0;
-    for run in runs {
-        match run? {
-            Some(test) => harvest.tests.push(test),
-            None => left_out += 1,
+    let goals = Goals::of(program, players, goals);
+    let model = Model { program, suite, players, awaits, goals: &goals, seed };
+    let mut sum = Sum::new(program, players, *stop_after);
+    while !sum.is_over() {
+        let batch = explorer.next_batch();
+        if batch.is_empty() {
+            break;
         }
+        // Sets are numbered from 1.
+        let numbered: Vec<(u64, BeliefSet)> = (sum.sets + 1..).zip(batch).collect();
+        let runs: Vec<Result<Outcome, String>> =
+            numbered.par_iter().map(|(number, set)| model.run(*number, set)).collect();
+        let mut rewards = Vec::new();
+        for run in runs {
+            if sum.is_over() {
+                break;
+            }
+            rewards.push(sum.add(run?));
+        }
+        explorer.learn(&rewards);
     }
-    if left_out > 0 {
-        harvest
-            .notes
-            .push(format!("{left_out} belief sets led to a run that breaks an assumption and were left out"));
-    }
-    harvest.notes.push(format!("{} of {} belief sets were run", explored.sets.len(), explored.space));
-    if explored.cut {
-        harvest.notes.push("a limit cut the exploration short".to_owned());
-    }
-    Ok(harvest)
+    Ok(sum.harvest(&model, &explorer))
 }
 
-fn cast<'p>(
-    program: &'p Program,
-    players: &[PlayerRef],
-    facts: &[(hrdsl_ir::bdi::AgentId, hrdsl_ir::bdi::Fact)],
-) -> Vec<Box<dyn Player + 'p>> {
-    let play = |player: &PlayerRef| -> Box<dyn Player + 'p> {
-        match player {
-            PlayerRef::Agent(agent) => {
-                let own = facts.iter().filter(|(a, _)| a == agent).map(|(_, f)| f.clone());
-                Box::new(AgentPlayer::new(program, *agent, &own.collect::<Vec<_>>(), 0))
-            }
-            PlayerRef::Automaton(automaton) => Box::new(AutomatonPlayer::new(program, *automaton)),
+/// What is the same for all runs.
+struct Model<'a> {
+    program: &'a Program,
+    suite: &'a Suite,
+    players: &'a [PlayerRef],
+    awaits: extract::Awaits,
+    goals: &'a Goals,
+    seed: u64,
+}
+
+/// What a run brought.
+struct Outcome {
+    test: AbstractTest,
+    measured: Vec<(AgentId, Measured)>,
+    /// Of the coverage points.
+    numbers: Vec<i64>,
+    warnings: Vec<String>,
+    keeps_assumptions: bool,
+}
+
+impl Model<'_> {
+    /// Runs the agents with a set of beliefs; `number` is its place among all sets.
+    fn run(&self, number: u64, set: &BeliefSet) -> Result<Outcome, String> {
+        let seed = concrete::seed_of(self.seed, number);
+        let ModelRun { trace, ended, measured, warnings } =
+            model_run(self.program, self.players, &set.facts, seed, self.suite.horizon);
+        if let Ended::Fault(fault) = ended {
+            return Err(format!("suite `{}`, with {}: {fault}", self.suite.name, set.text.join(", ")));
         }
-    };
-    players.iter().map(play).collect()
+        let covered = extract::covered(self.program, &trace);
+        let test = AbstractTest {
+            steps: extract::steps(self.program, &self.awaits, &trace, self.suite.patience),
+            because: vec![set.text.join(", ")],
+            predicts: covered.cross_names(&self.program.coverage),
+            reaches: self.goals.reached(&measured, &covered),
+        };
+        let keeps_assumptions = extract::keeps_assumptions(self.program, &trace);
+        Ok(Outcome { test, measured, numbers: covered.numbers, warnings, keeps_assumptions })
+    }
+}
+
+/// What all runs brought, in the order of their sets.
+struct Sum {
+    stop_after: Option<u32>,
+    /// Sets that count.
+    sets: u64,
+    /// How many of the last ones brought nothing new.
+    idle: u32,
+    tests: Vec<AbstractTest>,
+    reached: Reached,
+    /// What only runs reached that break an assumption.
+    broken: Reached,
+    left_out: usize,
+    measured: Vec<(AgentId, Measured)>,
+    seen: BTreeSet<Vec<i64>>,
+    /// With the number of runs that gave them.
+    warnings: BTreeMap<String, u64>,
+}
+
+impl Sum {
+    fn new(program: &Program, players: &[PlayerRef], stop_after: Option<u32>) -> Self {
+        let measured = agents(program, players).into_iter().map(|(id, a)| (id, Measured::new(a)));
+        Self {
+            stop_after,
+            sets: 0,
+            idle: 0,
+            tests: Vec::new(),
+            reached: Reached::new(),
+            broken: Reached::new(),
+            left_out: 0,
+            measured: measured.collect(),
+            seen: BTreeSet::new(),
+            warnings: BTreeMap::new(),
+        }
+    }
+
+    /// Whether so many sets in a row brought nothing new that exploration ends.
+    fn is_over(&self) -> bool {
+        self.stop_after.is_some_and(|most| self.idle >= most.max(1))
+    }
+
+    /// Adds a run; gives the number of goals that it was the first to reach.
+    fn add(&mut self, run: Outcome) -> u32 {
+        self.sets += 1;
+        self.idle += 1;
+        for warning in run.warnings.into_iter().collect::<BTreeSet<_>>() {
+            *self.warnings.entry(warning).or_default() += 1;
+        }
+        if !run.keeps_assumptions {
+            self.left_out += 1;
+            self.broken.extend(run.test.reaches);
+            return 0;
+        }
+        let new = run.test.reaches.difference(&self.reached).count();
+        if new > 0 {
+            self.idle = 0;
+        }
+        self.reached.extend(&run.test.reaches);
+        for (agent, counts) in &run.measured {
+            if let Some((_, sum)) = self.measured.iter_mut().find(|(a, _)| a == agent) {
+                sum.add(counts);
+            }
+        }
+        self.seen.insert(run.numbers);
+        self.tests.push(run.test);
+        u32::try_from(new).unwrap_or(u32::MAX)
+    }
+
+    fn harvest(self, model: &Model<'_>, explorer: &Explorer) -> Harvest {
+        let notes = self.notes(explorer);
+        let team = Team { program: model.program, measured: &self.measured };
+        let goals = &model.goals.names;
+        let why = |goal: usize| match (self.reached.contains(&goal), self.broken.contains(&goal)) {
+            (true, _) => String::new(),
+            (false, true) => "only runs that break an assumption reach it".to_owned(),
+            (false, false) => model.goals.why(goal, &team, &self.seen),
+        };
+        let found = Found {
+            reasons: (0..goals.len()).map(why).collect(),
+            goals: goals.clone(),
+            coverage: ModelCoverage {
+                runs: self.tests.len(),
+                goals_reached: self.reached.len(),
+                goals: goals.len(),
+                agents: model::coverage(model.program, model.players, &team),
+            },
+        };
+        Harvest { tests: self.tests, notes, found: Some(found), ..Harvest::default() }
+    }
+
+    fn notes(&self, explorer: &Explorer) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.left_out > 0 {
+            notes.push(format!(
+                "{} belief sets led to a run that breaks an assumption and were left out",
+                self.left_out
+            ));
+        }
+        notes.push(format!("{} of {} belief sets were run", self.sets, explorer.space));
+        if let Some(most) = self.stop_after.filter(|_| self.is_over()) {
+            notes.push(format!("exploration ended since {most} belief sets in a row brought nothing new"));
+        }
+        if explorer.cut {
+            notes.push("a limit cut the exploration short".to_owned());
+        }
+        let in_runs = |n: u64| if n == 1 { "in 1 run".to_owned() } else { format!("in {n} runs") };
+        let warnings = self.warnings.iter().take(WARNINGS);
+        notes.extend(warnings.map(|(warning, n)| format!("{warning} ({})", in_runs(*n))));
+        if self.warnings.len() > WARNINGS {
+            notes.push(format!("and {} other warnings", self.warnings.len() - WARNINGS));
+        }
+        notes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(goals: &[usize], keeps_assumptions: bool) -> Outcome {
+        let test = AbstractTest { reaches: goals.iter().copied().collect(), ..AbstractTest::default() };
+        let warnings = vec!["odd".to_owned(), "odd".to_owned()];
+        Outcome { test, measured: Vec::new(), numbers: vec![goals.len() as i64], warnings, keeps_assumptions }
+    }
+
+    fn sum(stop_after: Option<u32>) -> Sum {
+        Sum::new(&Program::default(), &[], stop_after)
+    }
+
+    #[test]
+    fn what_a_run_is_the_first_to_reach_is_its_reward() {
+        let mut sum = sum(None);
+        let rewards: Vec<u32> =
+            [&[0, 1][..], &[1], &[1, 2, 3], &[]].map(|g| sum.add(outcome(g, true))).to_vec();
+        assert_eq!(rewards, [2, 0, 2, 0]);
+        assert!(!sum.is_over());
+        assert_eq!((sum.tests.len(), sum.reached.len(), sum.seen.len()), (4, 4, 4));
+        assert_eq!(sum.warnings["odd"], 4);
+    }
+
+    #[test]
+    fn exploration_ends_when_so_many_in_a_row_brought_nothing_new() {
+        let mut sum = sum(Some(2));
+        for (goals, is_over) in
+            [(&[0][..], false), (&[0], false), (&[0, 1], false), (&[1], false), (&[], true)]
+        {
+            sum.add(outcome(goals, true));
+            assert_eq!(sum.is_over(), is_over, "{goals:?}");
+        }
+    }
+
+    #[test]
+    fn a_run_that_breaks_an_assumption_reaches_nothing() {
+        let mut sum = sum(Some(2));
+        assert_eq!(sum.add(outcome(&[0, 1], false)), 0);
+        assert_eq!(sum.add(outcome(&[1], true)), 1);
+        assert_eq!((sum.tests.len(), sum.left_out, sum.seen.len()), (1, 1, 1));
+        assert_eq!(sum.broken.difference(&sum.reached).collect::<Vec<_>>(), [&0]);
+        sum.add(outcome(&[0], false));
+        sum.add(outcome(&[0], false));
+        assert!(sum.is_over());
+    }
 }

@@ -5,10 +5,10 @@
 
 use std::convert::Infallible;
 
-use hrdsl_coverage::Collector;
+use hrdsl_coverage::{Collector, Coverage};
 use hrdsl_ir::{
     ActorId, EventId, EventPattern, Nanos, Program, Role, Value,
-    bdi::{StepKind, TriggerOn},
+    bdi::{Agent, StepKind, TriggerOn, each_step},
     event::{ArgPattern, StimulusStep},
     expr::Expr,
     suite::PlayerRef,
@@ -26,7 +26,7 @@ pub struct Awaits {
 struct Group {
     actor: ActorId,
     events: Vec<EventPattern>,
-    /// How long the model waits, if it says so.
+    /// How long the model waits, if it says so with a constant.
     within: Option<Nanos>,
 }
 
@@ -38,22 +38,7 @@ impl Awaits {
         for player in players {
             match player {
                 PlayerRef::Agent(id) => {
-                    let agent = &program.agents[id.0 as usize];
-                    let steps = agent.plans.iter().flat_map(|p| &p.body);
-                    let awaits = steps.filter_map(|s| match &s.kind {
-                        StepKind::Await { events, within } => Some((events.clone(), *within)),
-                        _ => None,
-                    });
-                    let perceived = agent.plans.iter().filter_map(|p| match p.trigger.on {
-                        TriggerOn::Perceived(event) => Some((vec![any(program, event)], None)),
-                        _ => None,
-                    });
-                    let actor = agent.actor;
-                    groups.extend(awaits.chain(perceived).map(|(events, within)| Group {
-                        actor,
-                        events,
-                        within,
-                    }));
+                    groups.extend(of_agent(program, &program.agents[id.0 as usize]));
                 }
                 PlayerRef::Automaton(id) => {
                     let automaton = &program.automata[id.0 as usize];
@@ -78,6 +63,37 @@ impl Awaits {
         let waits = |g: &&Group| g.actor == actor && g.events.iter().any(|p| p.matches(*event, args));
         self.groups.iter().find(waits)
     }
+}
+
+/// What an agent waits for: each `await`, then the events of plans for what it perceives.
+fn of_agent(program: &Program, agent: &Agent) -> Vec<Group> {
+    let actor = agent.actor;
+    let mut groups = Vec::new();
+    for plan in &agent.plans {
+        each_step(&plan.body, &mut |step| {
+            if let StepKind::Await { events, within } = &step.kind {
+                let within = within.as_ref().and_then(constant);
+                groups.push(Group { actor, events: events.clone(), within });
+            }
+        });
+    }
+    let percept = |on: TriggerOn| match on {
+        TriggerOn::Perceived(event) => Some(event),
+        TriggerOn::BeliefAdded(b) => agent.beliefs.get(usize::from(b.0)).and_then(|b| b.percept),
+        TriggerOn::BeliefRemoved(_)
+        | TriggerOn::GoalAdded(_)
+        | TriggerOn::GoalFailed(_)
+        | TriggerOn::TestAdded(_)
+        | TriggerOn::TestFailed(_) => None,
+    };
+    let perceived = agent.plans.iter().filter_map(|p| percept(p.trigger.on));
+    groups.extend(perceived.map(|event| Group { actor, events: vec![any(program, event)], within: None }));
+    groups
+}
+
+/// A time in seconds that does not depend on variables.
+fn constant(seconds: &Expr) -> Option<Nanos> {
+    seconds.eval(&|_| None).ok().and_then(Value::as_f64).map(nanos)
 }
 
 fn any(program: &Program, event: EventId) -> EventPattern {
@@ -154,12 +170,12 @@ pub fn taken<'p>(program: &'p Program, event: EventId, args: &[Value]) -> Vec<&'
     stimulus.taken(&holds).unwrap_or_else(|never| match never {})
 }
 
-/// The cross-product bins that a trace falls into, by name.
+/// The numbers of a trace, and the bins that it falls into.
 #[must_use]
-pub fn predicted(program: &Program, trace: &Trace) -> Vec<String> {
+pub fn covered(program: &Program, trace: &Trace) -> Coverage {
     let mut collector = Collector::new(program);
     trace.replay(&mut collector);
-    collector.finish().cross_names(&program.coverage)
+    collector.finish()
 }
 
 /// Whether what happened keeps the scenario's assumptions.
@@ -171,4 +187,89 @@ pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
     });
     let events: Vec<_> = events.collect();
     hrdsl_coverage::assume::Assumptions::allows(program, &events)
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{
+        Actor, Event, Span,
+        bdi::{AgentId, Belief, BeliefId, Context, Plan, Step, Trigger},
+        expr::BinaryOp,
+        value::SECOND,
+    };
+
+    use super::*;
+
+    fn event(name: &str, from: u16) -> Event {
+        Event {
+            name: name.into(),
+            params: vec![],
+            from: ActorId(from),
+            to: vec![],
+            stimulus: None,
+            origin: Span::default(),
+        }
+    }
+
+    fn plan(on: TriggerOn, body: Vec<StepKind>) -> Plan {
+        Plan {
+            label: "p".into(),
+            atomic: false,
+            trigger: Trigger { on, args: vec![], annotations: vec![] },
+            context: Context::True,
+            body: steps_of(body),
+            vars: vec![],
+            origin: Span::default(),
+        }
+    }
+
+    fn steps_of(body: Vec<StepKind>) -> Vec<Step> {
+        body.into_iter().map(|kind| Step { kind, origin: Span::default() }).collect()
+    }
+
+    fn awaits(event: u16, within: Option<Expr>) -> StepKind {
+        let events = vec![EventPattern { event: EventId(event), args: vec![] }];
+        StepKind::Await { events, within }
+    }
+
+    #[test]
+    fn what_is_awaited_within_blocks_and_perceived_as_a_belief_makes_groups() {
+        let sum = Expr::binary(BinaryOp::Add, Expr::float(1.5), Expr::float(2.0));
+        let inner = vec![steps_of(vec![awaits(1, Some(Expr::Var(0)))]), steps_of(vec![awaits(0, None)])];
+        let body = vec![awaits(0, Some(sum)), StepKind::Fork { branches: inner, all: true }];
+        let belief = |percept| Belief {
+            name: "b".into(),
+            params: vec![],
+            annotations: vec![],
+            percept,
+            origin: Span::default(),
+        };
+        let agent = Agent {
+            name: "Human".into(),
+            actor: ActorId(0),
+            beliefs: vec![belief(None), belief(Some(EventId(1)))],
+            goals: vec![],
+            rules: vec![],
+            initial_beliefs: vec![],
+            initial_goals: vec![],
+            plans: vec![
+                plan(TriggerOn::Perceived(EventId(0)), body),
+                plan(TriggerOn::BeliefAdded(BeliefId(0)), vec![awaits(2, None)]),
+                plan(TriggerOn::BeliefAdded(BeliefId(1)), vec![]),
+            ],
+            origin: Span::default(),
+        };
+        let actor = |name: &str, role| Actor { name: name.into(), role, origin: Span::default() };
+        let program = Program {
+            actors: vec![actor("person", Role::Environment), actor("robot", Role::System)],
+            events: vec![event("offered", 1), event("released", 1), event("asked", 0)],
+            agents: vec![agent],
+            ..Program::default()
+        };
+        let groups = Awaits::of(&program, &[PlayerRef::Agent(AgentId(0))]).groups;
+        let found: Vec<(u16, Option<Nanos>)> =
+            groups.iter().map(|g| (g.events[0].event.0, g.within)).collect();
+        // What the person makes itself is not awaited by a test; a time that depends on a variable is not known.
+        assert_eq!(found, [(0, Some(SECOND * 7 / 2)), (1, None), (0, None), (0, None), (1, None)]);
+    }
 }

@@ -4,13 +4,18 @@
 //!
 //! 1. [`agents`], [`search`] and [`random`] make abstract tests: each the stimuli of the environment's actors, and the
 //!    awaits and waits between them, with where it came from and the bins that the model predicts;
-//! 2. equal abstract tests become one;
+//! 2. equal abstract tests become one, and [`mod@minimise`] keeps those that are needed for the suite's [`goals`];
 //! 3. [`concrete`] draws the second tier's values: test number n of a suite has seed n (Section "Experimental setup");
-//! 4. [`write`] prints tests in the language.
+//! 4. [`model`] says what of the agents' programs was reached, what each test is for, and why goals stayed uncovered;
+//! 5. [`write`] prints tests in the language.
 
 mod agents;
+mod bins;
 mod concrete;
 mod extract;
+mod goals;
+mod minimise;
+mod model;
 mod random;
 mod search;
 mod write;
@@ -21,15 +26,20 @@ use hrdsl_ir::{
     test::{Provenance, Test, TestStep},
 };
 
+pub use model::{
+    AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation, Uncovered, Unreached,
+};
 pub use search::bin_goal;
 pub use write::{step_text, write};
 
 /// An abstract test: steps without samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AbstractTest {
     pub steps: Vec<TestStep>,
     pub because: Vec<String>,
     pub predicts: Vec<String>,
+    /// Of a suite by agents: which of its goals the run reached.
+    pub reaches: goals::Reached,
 }
 
 /// What became of one goal of a suite by search.
@@ -60,6 +70,10 @@ pub struct Generated {
     pub tests: Vec<Test>,
     /// Of a suite by search: every goal's fate.
     pub goals: Vec<GoalReport>,
+    /// Of a suite by agents: what was reached of their programs.
+    pub coverage: Option<ModelCoverage>,
+    /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
+    pub explanation: Option<Explanation>,
     /// What a user should know: runs left out, budgets that ran out.
     pub notes: Vec<String>,
 }
@@ -70,6 +84,28 @@ pub struct Harvest {
     pub tests: Vec<AbstractTest>,
     pub goals: Vec<GoalReport>,
     pub notes: Vec<String>,
+    /// Of a suite by agents.
+    pub found: Option<Found>,
+}
+
+/// What the runs of agents found out.
+pub struct Found {
+    /// The goals' names.
+    pub goals: Vec<String>,
+    /// Why no test reaches a goal; empty for those that are reached.
+    pub reasons: Vec<String>,
+    pub coverage: ModelCoverage,
+}
+
+/// How tests are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// How many concrete tests, instead of what the suite says.
+    pub count: Option<u32>,
+    /// Everything random comes from it.
+    pub seed: u64,
+    /// Whether to keep only the tests that are needed, instead of what the suite says.
+    pub minimise: Option<bool>,
 }
 
 /// Makes the tests of a suite: `count` concrete tests, or as many as the suite says.
@@ -82,24 +118,67 @@ pub fn generate(
     count: Option<u32>,
     seed: u64,
 ) -> Result<Generated, String> {
-    let count = count.unwrap_or(suite.tests);
-    let (method, mut harvest) = match &suite.method {
-        Method::Agents { players, choose, explore } => {
-            ("agents", agents::harvest(program, suite, players, choose, *explore, count, seed)?)
+    generate_with(program, suite, Options { count, seed, minimise: None })
+}
+
+/// Makes the tests of a suite.
+///
+/// # Errors
+/// A model that cannot be run, with the place.
+pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Result<Generated, String> {
+    let Options { count, seed, minimise } = options;
+    let most = count.unwrap_or(suite.tests);
+    let (method, harvest, minimise) = match &suite.method {
+        Method::Agents { minimise: said, .. } => {
+            ("agents", agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
-        Method::Search { network, goals } => ("search", search::harvest(program, suite, *network, goals)?),
-        Method::Random { .. } => ("random", random::harvest(program, suite, count, seed)?),
+        Method::Search { network, goals } => {
+            ("search", search::harvest(program, suite, *network, goals)?, false)
+        }
+        Method::Random { .. } => ("random", random::harvest(program, suite, most, seed)?, false),
     };
-    let different = distinct(std::mem::take(&mut harvest.tests));
-    let tests = make_concrete(program, suite, method, &different, count, seed)?;
+    let Harvest { tests, goals, mut notes, found } = harvest;
+    let mut different = distinct(tests);
+    let mut number = most;
+    if minimise {
+        let keep = minimise::minimised(&different);
+        notes.push(format!("{} of {} abstract tests are needed", keep.len(), different.len()));
+        different = keep.into_iter().map(|i| different[i].clone()).collect();
+        // One of each will do, unless a number was asked for.
+        number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
+    }
+    let tests = make_concrete(program, suite, method, &different, number, seed)?;
+    let made = &different[..different.len().min(number as usize)];
+    let explanation = found.as_ref().map(|found| explain(found, made, suite));
     Ok(Generated {
         suite: suite.name.clone(),
         method,
         abstract_tests: different.len(),
         tests,
-        goals: harvest.goals,
-        notes: harvest.notes,
+        goals,
+        coverage: found.map(|found| found.coverage),
+        explanation,
+        notes,
     })
+}
+
+fn explain(found: &Found, made: &[AbstractTest], suite: &Suite) -> Explanation {
+    let name = |index: usize| test_name(suite, index as u64 + 1);
+    let is_reached = |goal: usize| made.iter().any(|t| t.reaches.contains(&goal));
+    let open = (0..found.goals.len()).filter(|goal| !is_reached(*goal));
+    let uncovered = open.map(|goal| Uncovered {
+        goal: found.goals[goal].clone(),
+        reason: match found.reasons[goal].as_str() {
+            "" => format!("only tests beyond the first {} reach it", made.len()),
+            reason => reason.to_owned(),
+        },
+    });
+    Explanation { tests: model::explained(made, &found.goals, name), uncovered: uncovered.collect() }
+}
+
+/// `SUITE.t001`
+fn test_name(suite: &Suite, number: u64) -> String {
+    format!("{}.t{number:03}", suite.name)
 }
 
 /// How many origins of one abstract test are written out.
@@ -116,6 +195,7 @@ fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
             }
             indexmap::map::Entry::Occupied(mut slot) => {
                 let known = slot.get_mut();
+                known.reaches.extend(test.reaches);
                 for line in test.because {
                     if !known.because.contains(&line) {
                         known.because.push(line);
@@ -150,7 +230,7 @@ fn make_concrete(
         .map(|(test, number)| {
             let seed = concrete::seed_of(seed, number);
             Ok(Test {
-                name: format!("{}.{}.t{number:03}", program.name, suite.name),
+                name: format!("{}.{}", program.name, test_name(suite, number)),
                 seed,
                 provenance: Provenance {
                     suite: suite.name.clone(),
@@ -163,4 +243,56 @@ fn make_concrete(
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::Span;
+
+    use super::*;
+
+    fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
+        AbstractTest {
+            steps: vec![TestStep::Wait { time: wait }],
+            because: vec![because.into()],
+            reaches: reaches.iter().copied().collect(),
+            ..AbstractTest::default()
+        }
+    }
+
+    #[test]
+    fn equal_tests_reach_what_each_of_them_does() {
+        let different = distinct(vec![test(1, "a", &[0]), test(2, "b", &[1]), test(1, "c", &[2])]);
+        assert_eq!(different.len(), 2);
+        assert_eq!(different[0].reaches, [0, 2].into());
+        assert_eq!(different[0].because, ["a", "c"]);
+    }
+
+    #[test]
+    fn goals_that_only_tests_left_out_reach_are_uncovered() {
+        let suite = Suite {
+            name: "s".into(),
+            method: Method::Search { network: 0, goals: vec![] },
+            tests: 1,
+            horizon: 0,
+            patience: 0,
+            origin: Span::default(),
+        };
+        let found = Found {
+            goals: ["g0", "g1", "g2"].map(String::from).to_vec(),
+            reasons: ["", "", "it cannot be"].map(String::from).to_vec(),
+            coverage: ModelCoverage::default(),
+        };
+        let said = explain(&found, &[test(1, "a", &[0])], &suite);
+        assert_eq!(said.tests[0].test, "s.t001");
+        assert_eq!(
+            (&said.tests[0].first, &said.tests[0].only),
+            (&vec!["g0".to_owned()], &vec!["g0".to_owned()])
+        );
+        let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
+        assert_eq!(
+            said.uncovered,
+            [uncovered("g1", "only tests beyond the first 1 reach it"), uncovered("g2", "it cannot be")]
+        );
+    }
 }

@@ -44,7 +44,7 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         harvest.tests.push(AbstractTest {
             steps: draw.steps,
             because: vec![format!("{length} steps drawn at random")],
-            predicts: Vec::new(),
+            ..AbstractTest::default()
         });
     }
     Ok(harvest)

@@ -62,7 +62,8 @@ pub fn harvest(
             harvest.tests.push(AbstractTest {
                 steps: extract::steps(program, &awaits, &trace, suite.patience),
                 because: vec![format!("witness of {}", named.name)],
-                predicts: extract::predicted(program, &trace),
+                predicts: extract::covered(program, &trace).cross_names(&program.coverage),
+                ..AbstractTest::default()
             });
         }
         harvest.goals.push(GoalReport { goal: named.name.clone(), status, reason });

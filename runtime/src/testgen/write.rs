@@ -108,7 +108,10 @@ fn value_text(ty: Type, value: Value) -> String {
     match (ty, value) {
         (Type::Float(unit), Value::Float(x)) if unit != Unit::None => format!("{x:?} {}", unit.symbol()),
         (Type::Float(_), Value::Float(x)) => format!("{x:?}"),
-        (Type::Float(_) | Type::Bool | Type::Int { .. } | Type::Enum(_), value) => value.to_string(),
+        (
+            Type::Float(_) | Type::Bool | Type::Int { .. } | Type::Enum(_) | Type::Text | Type::List(_),
+            value,
+        ) => value.to_string(),
     }
 }
 

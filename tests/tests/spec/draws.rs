@@ -6,7 +6,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use hrdsl_bdi::choose::{Alternative, Factor, explore};
+use hrdsl_bdi::choose::{Alternative, BeliefSet, Explorer, Factor, explore};
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
     Value,
@@ -123,7 +123,7 @@ for row in fill([], sizes, tests, chance): print(*row)
         for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
             let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
             let mut expected = String::new();
-            for how in [Explore::Pairwise, Explore::Random] {
+            for how in [Explore::Wise(2), Explore::Random] {
                 for set in explore(&factors, how, tests, seed).sets {
                     let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
                     let _ = writeln!(expected, "{}", row.join(" "));
@@ -135,9 +135,65 @@ for row in fill([], sizes, tests, chance): print(*row)
     }
 }
 
+#[test]
+fn the_page_covers_tuples_as_suites_do() {
+    let choose = "
+import sys
+sizes, strength, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+for row in wise(strength, sizes, Generator(seed)): print(*row)
+";
+    let spaces: [&[u32]; 5] = [&[3], &[2, 2], &[3, 2, 4], &[3, 1, 2, 3], &[2, 3, 2, 2, 3]];
+    for sizes in spaces {
+        for (strength, seed) in [(2u8, 4), (3, 0), (3, 9), (4, 1), (6, 2)] {
+            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let sets = explore(&factors, Explore::Wise(strength), 0, seed).sets;
+            let expected: String = sets.iter().map(|s| row(s) + "\n").collect();
+            let args = [format!("{sizes:?}"), strength.to_string(), seed.to_string()];
+            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
+        }
+    }
+}
+
+#[test]
+fn the_page_learns_as_suites_do() {
+    let choose = "
+import sys
+sizes, tests, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+for row in learn(sizes, tests, Generator(seed), lambda row: sum(row) % 3): print(*row)
+";
+    let spaces: [&[u32]; 4] = [&[4], &[2, 3, 2], &[5, 8, 8, 2], &[4; 6]];
+    for sizes in spaces {
+        for (tests, seed) in [(10, 0), (200, 3)] {
+            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let mut explorer = Explorer::new(&factors, Explore::Learn, tests, seed);
+            let mut expected = String::new();
+            loop {
+                let batch = explorer.next_batch();
+                if batch.is_empty() {
+                    break;
+                }
+                let reward = |set: &BeliefSet| {
+                    let sum: i64 = set.facts.iter().filter_map(|(_, f)| f.args[0].as_int()).sum();
+                    u32::try_from(sum % 3).unwrap()
+                };
+                explorer.learn(&batch.iter().map(reward).collect::<Vec<_>>());
+                expected.extend(batch.iter().map(|s| row(s) + "\n"));
+            }
+            let args = [format!("{sizes:?}"), tests.to_string(), seed.to_string()];
+            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
+        }
+    }
+}
+
+/// The numbers of a set, as the page prints them.
+fn row(set: &BeliefSet) -> String {
+    let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
+    row.join(" ")
+}
+
 /// A dimension whose alternatives are numbers.
 fn factor(size: u32) -> Factor {
-    let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())] };
+    let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())], annotations: vec![] };
     let alternative = |n| Alternative { facts: vec![fact(n)], text: n.to_string() };
     Factor { agent: AgentId(0), name: "n".to_owned(), alternatives: (0..size).map(alternative).collect() }
 }

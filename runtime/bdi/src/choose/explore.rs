@@ -1,4 +1,4 @@
-//! Sets of beliefs from factors: all of them, enough for every pair, or a random sample.
+//! Sets of beliefs from factors: all of them, enough for every tuple, a random sample, or what learning finds.
 
 use std::collections::BTreeSet;
 
@@ -10,12 +10,15 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    Factor,
-    cover::{Row, pairwise, shuffle},
+    Factor, Learner,
+    cover::{Row, covering, shuffle},
 };
 
 /// More sets than this are never made.
 pub const MAX_SETS: usize = 1_000_000;
+
+/// How many sets are run before what they reached is looked at. It is part of what `learn` means.
+pub const BATCH: usize = 16;
 
 /// What the agents of one abstract test start with.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,23 +36,23 @@ pub struct Explored {
     pub sets: Vec<BeliefSet>,
     /// The size of the whole belief space; `u128::MAX` if it is that or more.
     pub space: u128,
-    /// Whether a limit cut short what was asked for: not all sets for `Exhaustive`, not all pairs for `Pairwise`.
+    /// Whether a limit cut short what was asked for: not all sets for `Exhaustive`, not all tuples for `Wise`.
     pub cut: bool,
 }
 
-/// Explores the belief space.
+/// Explores the belief space without running anything.
 ///
 /// - `Exhaustive`: all sets in lexicographic order (the last factor changes fastest), at most `tests`.
-/// - `Pairwise`: sets in which every two alternatives of two different factors occur together, even if that takes more
-///   than `tests`; then different random ones up to `tests`.
-/// - `Random`: `tests` different ones.
+/// - `Wise(t)`: sets in which every t alternatives of t different factors occur together, even if that takes more than
+///   `tests`; then different random ones up to `tests`.
+/// - `Random`: `tests` different ones. `Learn` needs to be told what sets brought ([`Explorer`]); here it is the same.
 ///
 /// A space of fewer than `tests` sets gives them all. The same arguments always give the same sets.
 #[must_use]
 pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> Explored {
-    let sizes: Vec<u32> = factors.iter().map(|f| f.alternatives.len() as u32).collect();
-    let space = sizes.iter().fold(1u128, |product, size| product.saturating_mul(u128::from(*size)));
-    let wanted = usize::try_from(space).unwrap_or(usize::MAX).min(tests as usize).min(MAX_SETS);
+    let sizes = sizes(factors);
+    let space = space(&sizes);
+    let wanted = wanted(space, tests);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (rows, cut) = match explore {
         // INVARIANT: `wanted` is at most the space.
@@ -58,17 +61,83 @@ pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> E
             (rows, (wanted as u128) < space)
         }
         Explore::Wise(_) if space == 0 => (Vec::new(), false),
-        Explore::Wise(_) => {
-            let rows = pairwise(&sizes, MAX_SETS, &mut rng);
-            let cut = rows.len() == MAX_SETS;
-            (fill(rows, &sizes, space, wanted, &mut rng), cut)
+        Explore::Wise(strength) => {
+            let found = covering(&sizes, strength.into(), MAX_SETS, &mut rng);
+            let asked = usize::from(strength).max(2);
+            let cut = found.rows.len() == MAX_SETS || found.strength < asked.min(sizes.len());
+            (fill(found.rows, &sizes, space, wanted, &mut rng), cut)
         }
         Explore::Random | Explore::Learn => (fill(Vec::new(), &sizes, space, wanted, &mut rng), false),
     };
     Explored { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
 }
 
-fn belief_set(factors: &[Factor], row: &Row) -> BeliefSet {
+/// Explores the belief space in batches, each after what the one before it brought is known.
+pub struct Explorer {
+    /// The size of the whole belief space; see [`Explored::space`].
+    pub space: u128,
+    /// See [`Explored::cut`].
+    pub cut: bool,
+    source: Source,
+}
+
+enum Source {
+    /// Known from the start, the last one first.
+    Fixed(Vec<BeliefSet>),
+    Learner(Box<Learner>),
+}
+
+impl Explorer {
+    /// See [`explore`]; `Learn` makes at most `tests` different sets.
+    #[must_use]
+    pub fn new(factors: &[Factor], how: Explore, tests: u32, seed: u64) -> Self {
+        match how {
+            Explore::Exhaustive | Explore::Wise(_) | Explore::Random => {
+                let Explored { mut sets, space, cut } = explore(factors, how, tests, seed);
+                sets.reverse();
+                Self { space, cut, source: Source::Fixed(sets) }
+            }
+            Explore::Learn => {
+                let space = space(&sizes(factors));
+                let learner = Learner::new(factors, wanted(space, tests), seed);
+                Self { space, cut: false, source: Source::Learner(Box::new(learner)) }
+            }
+        }
+    }
+
+    /// The next sets, at most [`BATCH`]; none at the end.
+    pub fn next_batch(&mut self) -> Vec<BeliefSet> {
+        match &mut self.source {
+            Source::Fixed(sets) => {
+                sets.split_off(sets.len().saturating_sub(BATCH)).into_iter().rev().collect()
+            }
+            Source::Learner(learner) => learner.next_batch(),
+        }
+    }
+
+    /// What the sets of the last batch brought, in their order.
+    pub fn learn(&mut self, rewards: &[u32]) {
+        match &mut self.source {
+            Source::Fixed(_) => {}
+            Source::Learner(learner) => learner.learn(rewards),
+        }
+    }
+}
+
+pub(super) fn sizes(factors: &[Factor]) -> Vec<u32> {
+    factors.iter().map(|f| f.alternatives.len() as u32).collect()
+}
+
+/// How many rows there are.
+pub(super) fn space(sizes: &[u32]) -> u128 {
+    sizes.iter().fold(1u128, |product, size| product.saturating_mul(u128::from(*size)))
+}
+
+fn wanted(space: u128, tests: u32) -> usize {
+    usize::try_from(space).unwrap_or(usize::MAX).min(tests as usize).min(MAX_SETS)
+}
+
+pub(super) fn belief_set(factors: &[Factor], row: &Row) -> BeliefSet {
     let mut set = BeliefSet::default();
     for (factor, choice) in factors.iter().zip(row) {
         let alternative = &factor.alternatives[*choice as usize];
@@ -81,7 +150,7 @@ fn belief_set(factors: &[Factor], row: &Row) -> BeliefSet {
 }
 
 /// The row of this index in lexicographic order.
-fn row_at(sizes: &[u32], mut index: u128) -> Row {
+pub(super) fn row_at(sizes: &[u32], mut index: u128) -> Row {
     let mut row = vec![0; sizes.len()];
     for (digit, size) in row.iter_mut().zip(sizes).rev() {
         *digit = (index % u128::from(*size)) as u32;
@@ -118,9 +187,13 @@ mod tests {
     use super::*;
     use crate::choose::Alternative;
 
-    fn space(sizes: &[u32]) -> Vec<Factor> {
+    fn factors(sizes: &[u32]) -> Vec<Factor> {
         let alternative = |f: u16, a: u32| Alternative {
-            facts: vec![Fact { belief: BeliefId(f), args: vec![Value::Int(i64::from(a))] }],
+            facts: vec![Fact {
+                belief: BeliefId(f),
+                args: vec![Value::Int(i64::from(a))],
+                annotations: vec![],
+            }],
             text: format!("b{f}({a})"),
         };
         (0u16..)
@@ -139,22 +212,22 @@ mod tests {
 
     #[test]
     fn exhaustive_is_lexicographic_and_says_when_it_is_cut() {
-        let all = explore(&space(&[2, 3]), Explore::Exhaustive, 100, 0);
+        let all = explore(&factors(&[2, 3]), Explore::Exhaustive, 100, 0);
         assert_eq!(
             texts(&all),
             ["b0(0) b1(0)", "b0(0) b1(1)", "b0(0) b1(2)", "b0(1) b1(0)", "b0(1) b1(1)", "b0(1) b1(2)"]
         );
         assert_eq!((all.space, all.cut), (6, false));
-        let some = explore(&space(&[2, 3]), Explore::Exhaustive, 4, 0);
+        let some = explore(&factors(&[2, 3]), Explore::Exhaustive, 4, 0);
         assert_eq!(texts(&some), texts(&all)[..4]);
         assert!(some.cut);
-        let vast = explore(&space(&[9; 60]), Explore::Exhaustive, 2, 0);
+        let vast = explore(&factors(&[9; 60]), Explore::Exhaustive, 2, 0);
         assert_eq!((vast.space, vast.sets.len(), vast.cut), (u128::MAX, 2, true));
     }
 
     #[test]
     fn what_is_not_held_is_not_told() {
-        let mut factors = space(&[2, 2]);
+        let mut factors = factors(&[2, 2]);
         factors[0].alternatives[0] = Alternative { facts: vec![], text: "not b0".into() };
         let all = explore(&factors, Explore::Exhaustive, 9, 0);
         assert_eq!(texts(&all), ["b1(0)", "b1(1)", "b0(1) b1(0)", "b0(1) b1(1)"]);
@@ -163,20 +236,21 @@ mod tests {
 
     #[test]
     fn no_factors_give_one_empty_set() {
-        for how in [Explore::Exhaustive, Explore::Pairwise, Explore::Random] {
+        for how in [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn]
+        {
             assert_eq!(explore(&[], how, 5, 0).sets, [BeliefSet::default()]);
         }
     }
 
     #[test]
     fn pairwise_takes_more_than_was_asked_for_if_it_must() {
-        let found = explore(&space(&[4, 5, 2]), Explore::Pairwise, 3, 7);
+        let found = explore(&factors(&[4, 5, 2]), Explore::Wise(2), 3, 7);
         assert!(found.sets.len() >= 20 && !found.cut);
     }
 
     #[test]
     fn seeds_matter() {
-        let run = |seed| explore(&space(&[5; 6]), Explore::Random, 20, seed);
+        let run = |seed| explore(&factors(&[5; 6]), Explore::Random, 20, seed);
         assert_eq!(run(1), run(1));
         assert_ne!(run(1), run(2));
     }
@@ -188,14 +262,31 @@ mod tests {
             sizes in prop::collection::vec(1u32..5, 0..6), tests in 0u32..200, seed: u64,
         ) {
             let product: u32 = sizes.iter().product();
-            for how in [Explore::Exhaustive, Explore::Pairwise, Explore::Random] {
-                let found = explore(&space(&sizes), how, tests, seed);
+            let ways = [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
+            for how in ways {
+                let found = explore(&factors(&sizes), how, tests, seed);
+                let mut explorer = Explorer::new(&factors(&sizes), how, tests, seed);
+                let mut batched = Vec::new();
+                loop {
+                    let batch = explorer.next_batch();
+                    if batch.is_empty() {
+                        break;
+                    }
+                    prop_assert!(batch.len() <= BATCH);
+                    explorer.learn(&vec![1; batch.len()]);
+                    batched.extend(batch);
+                }
+                prop_assert_eq!(batched.len(), found.sets.len());
+                if how != Explore::Learn {
+                    prop_assert_eq!(&batched, &found.sets);
+                }
+                let found = Explored { sets: batched, ..found };
                 let mut distinct = texts(&found);
                 distinct.sort();
                 distinct.dedup();
                 prop_assert_eq!(distinct.len(), found.sets.len());
                 let least = product.min(tests) as usize;
-                if how == Explore::Pairwise {
+                if matches!(how, Explore::Wise(_)) {
                     prop_assert!(found.sets.len() >= least && found.sets.len() <= product as usize);
                 } else {
                     prop_assert_eq!(found.sets.len(), least);

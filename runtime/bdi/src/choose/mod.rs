@@ -1,10 +1,11 @@
 //! Belief-space exploration: which beliefs the agents of a test start with.
 //!
 //! [`factors`] turns a suite's choices into dimensions with finitely many alternatives each; [`explore`] picks points of
-//! the space that they span.
+//! the space that they span, [`Explorer`] in batches, so that [`Learner`] can learn from what they bring.
 
 mod cover;
 mod explore;
+mod learn;
 
 use std::fmt;
 
@@ -15,7 +16,8 @@ use hrdsl_ir::{
 };
 
 use crate::show::call as literal;
-pub use explore::{BeliefSet, Explored, MAX_SETS, explore};
+pub use explore::{BATCH, BeliefSet, Explored, Explorer, MAX_SETS, explore};
+pub use learn::Learner;
 
 /// Alternatives of all factors together.
 pub const MAX_ALTERNATIVES: usize = 10_000;
@@ -147,7 +149,9 @@ fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
             Type::Bool => 2,
             Type::Int { lo, hi } => i128::from(hi) - i128::from(lo) + 1,
             Type::Enum(e) => i128::try_from(e.values().len()).unwrap_or(i128::MAX),
-            Type::Float(_) | Type::Text | Type::List(_) => return Err(ChooseError::Infinite { belief: name, param: param_name }),
+            Type::Float(_) | Type::Text | Type::List(_) => {
+                return Err(ChooseError::Infinite { belief: name, param: param_name });
+            }
         };
         if size <= 0 {
             return Err(ChooseError::Empty { belief: name, param: param_name });
@@ -182,7 +186,8 @@ mod tests {
 
     fn belief(name: &str, params: &[(&str, Type)]) -> Belief {
         let params = params.iter().map(|(n, ty)| Param { name: (*n).into(), ty: *ty }).collect();
-        Belief { name: name.into(), params, origin: Default::default() }
+        let origin = Default::default();
+        Belief { name: name.into(), params, annotations: vec![], percept: None, origin }
     }
 
     fn pace() -> Type {
@@ -206,6 +211,7 @@ mod tests {
                 belief("nameless", &[("n", Type::Enum(Enumeration::intern("Nothing", &[])))]),
             ],
             goals: vec![],
+            rules: vec![],
             initial_beliefs: vec![],
             initial_goals: vec![],
             plans: vec![],
@@ -230,7 +236,7 @@ mod tests {
         assert_eq!(texts(&factors[1]), ["hurried"]);
         assert_eq!(
             factors[0].alternatives[2].facts,
-            [Fact { belief: BeliefId(0), args: vec![Value::Int(2)] }]
+            [Fact { belief: BeliefId(0), args: vec![Value::Int(2)], annotations: vec![] }]
         );
     }
 

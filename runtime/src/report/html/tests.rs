@@ -147,3 +147,26 @@ fn many_requirements_are_named_instead_of_having_columns() {
     assert_eq!(unbalanced(&page), None);
     assert!(page.contains("style=\"--n:0\"") && page.contains("passed: "));
 }
+
+#[test]
+fn model_coverage_is_a_section_with_reasons() {
+    let mut results = fixture::campaign(3);
+    assert!(!html(&results).contains("Model coverage"));
+    let (coverage, mut explanation) = fixture::model();
+    explanation.uncovered[1].reason = "<b>`asked` was 0</b>".into();
+    (results.suites[0].model, results.suites[0].explanation) = (Some(coverage), Some(explanation));
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    for text in [
+        "<h2>Model coverage</h2>",
+        "<b class=\"p\">✓ 3</b> of 5 goals reached in 2 runs",
+        "plans selected",
+        ">2&#x2f;3</td>",
+        "it was selected twice and failed twice",
+        "edge Human.table#1 -&gt; leg#2 (step 1)",
+        "&lt;b&gt;`asked` was 0&lt;",
+        "2 of 5 goals of bdi_tests are reached by none of its tests in the model.",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+}

@@ -1,0 +1,19 @@
+//! Model coverage: what there is of an agent's program to be reached, what runs reached of it, and why not the rest.
+//!
+//! # Steps
+//!
+//! 1. [`universe`] lists the [`Item`]s of an agent that its program does not rule out;
+//! 2. [`Item::is_reached`] looks for one in the counts of a run ([`Measured`](crate::measure::Measured));
+//! 3. [`name`] says which one it is;
+//! 4. [`Team::why`] says from the counts of all runs why it was not reached.
+
+mod text;
+mod universe;
+mod why;
+
+pub use text::{context, name, trigger};
+pub use universe::{Applicable, Item, Kind, items, sites, universe};
+pub use why::{Team, times};
+
+#[cfg(test)]
+pub(crate) mod fixture;

@@ -1,0 +1,379 @@
+//! The items of an agent: all that its program does not rule out.
+
+use std::collections::BTreeSet;
+
+use hrdsl_ir::{
+    Expr,
+    bdi::{Agent, Context, Plan, Step, StepKind, Term, Trigger, TriggerOn, each_step},
+    suite::ModelGoal,
+};
+use serde::Serialize;
+
+use crate::measure::Measured;
+
+/// Something of an agent's program that a run reaches or does not. Plans are named by their place in the library, steps
+/// by their site ([`Measured`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Item {
+    /// The plan was selected.
+    Selected(u16),
+    /// It was finished.
+    Completed(u16),
+    Failed(u16),
+    /// The plan's context was tried, and was so.
+    Context {
+        plan: u16,
+        holds: bool,
+    },
+    /// An event came with so many applicable plans.
+    Applicable {
+        on: TriggerOn,
+        plans: Applicable,
+    },
+    /// The message of a step was sent.
+    Message {
+        plan: u16,
+        site: u16,
+    },
+    /// A plan was selected for the goal of a step.
+    Edge {
+        plan: u16,
+        site: u16,
+        by: u16,
+    },
+    /// These plans lay on each other in an intention, the lowest first.
+    Path([u16; 3]),
+}
+
+/// How many plans are applicable to an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Applicable {
+    None,
+    One,
+    Many,
+}
+
+impl Applicable {
+    /// Its place in [`Measured::applicable`].
+    fn index(self) -> usize {
+        match self {
+            Applicable::None => 0,
+            Applicable::One => 1,
+            Applicable::Many => 2,
+        }
+    }
+}
+
+/// What items are tallied by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    Selected,
+    Completed,
+    Failed,
+    ContextTrue,
+    ContextFalse,
+    Applicable,
+    Message,
+    Edge,
+    Path,
+}
+
+impl Kind {
+    pub const ALL: [Kind; 9] = [
+        Kind::Selected,
+        Kind::Completed,
+        Kind::Failed,
+        Kind::ContextTrue,
+        Kind::ContextFalse,
+        Kind::Applicable,
+        Kind::Message,
+        Kind::Edge,
+        Kind::Path,
+    ];
+
+    /// As the heading of a column.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Kind::Selected => "plans selected",
+            Kind::Completed => "completed",
+            Kind::Failed => "failed",
+            Kind::ContextTrue => "contexts true",
+            Kind::ContextFalse => "contexts false",
+            Kind::Applicable => "applicable sets",
+            Kind::Message => "messages",
+            Kind::Edge => "edges",
+            Kind::Path => "paths",
+        }
+    }
+}
+
+impl Item {
+    #[must_use]
+    pub fn kind(self) -> Kind {
+        match self {
+            Item::Selected(_) => Kind::Selected,
+            Item::Completed(_) => Kind::Completed,
+            Item::Failed(_) => Kind::Failed,
+            Item::Context { holds: true, .. } => Kind::ContextTrue,
+            Item::Context { holds: false, .. } => Kind::ContextFalse,
+            Item::Applicable { .. } => Kind::Applicable,
+            Item::Message { .. } => Kind::Message,
+            Item::Edge { .. } => Kind::Edge,
+            Item::Path(_) => Kind::Path,
+        }
+    }
+
+    /// Whether a run with these counts reached it.
+    #[must_use]
+    pub fn is_reached(self, measured: &Measured) -> bool {
+        let of = |counts: &[u64], plan: u16| counts.get(usize::from(plan)).copied().unwrap_or(0);
+        let count = match self {
+            Item::Selected(plan) => of(&measured.selected, plan),
+            Item::Completed(plan) => of(&measured.completed, plan),
+            Item::Failed(plan) => of(&measured.failed, plan),
+            Item::Context { plan, holds } => {
+                measured.contexts.get(usize::from(plan)).map_or(0, |n| n[usize::from(holds)])
+            }
+            Item::Applicable { on, plans } => measured.applicable.get(&on).map_or(0, |n| n[plans.index()]),
+            Item::Message { plan, site } => measured.sent.get(&(plan, site)).copied().unwrap_or(0),
+            Item::Edge { plan, site, by } => measured.edges.get(&(plan, site, by)).copied().unwrap_or(0),
+            Item::Path(plans) => measured.paths.get(&plans).copied().unwrap_or(0),
+        };
+        count > 0
+    }
+}
+
+/// The steps of a plan by their site.
+#[must_use]
+pub fn sites(plan: &Plan) -> Vec<&Step> {
+    let mut steps = Vec::new();
+    each_step(&plan.body, &mut |step| steps.push(step));
+    steps
+}
+
+/// The plans of an agent, and their places.
+pub(super) fn numbered(agent: &Agent) -> impl Iterator<Item = (u16, &Plan)> {
+    (0u16..).zip(&agent.plans)
+}
+
+/// All items of an agent, by kind in the order of [`Kind::ALL`], in each in the order of the text.
+#[must_use]
+pub fn universe(agent: &Agent) -> Vec<Item> {
+    let selected = numbered(agent).map(|(p, _)| Item::Selected(p));
+    let completed = numbered(agent).filter(|(_, plan)| can_end(plan)).map(|(p, _)| Item::Completed(p));
+    let failed = numbered(agent).filter(|(_, plan)| !plan.body.is_empty()).map(|(p, _)| Item::Failed(p));
+    let mut all: Vec<Item> = selected.chain(completed).chain(failed).collect();
+    for holds in [true, false] {
+        let with = numbered(agent).filter(|(_, plan)| plan.context != Context::True);
+        all.extend(with.map(|(plan, _)| Item::Context { plan, holds }));
+    }
+    all.extend(applicable(agent));
+    for (plan, declared) in numbered(agent) {
+        let steps = (0u16..).zip(sites(declared));
+        all.extend(steps.filter(|(_, s)| sends(&s.kind)).map(|(site, _)| Item::Message { plan, site }));
+    }
+    all.extend(edges(agent).into_iter().map(|(plan, site, by)| Item::Edge { plan, site, by }));
+    all.extend(paths(agent).into_iter().map(Item::Path));
+    all
+}
+
+/// The items that a goal of a suite asks for; none for one that is not about an agent.
+#[must_use]
+pub fn items(agent: &Agent, goal: ModelGoal) -> Vec<Item> {
+    let is_meant = |item: &Item| match goal {
+        ModelGoal::Bins { .. } => false,
+        ModelGoal::Plans => matches!(item, Item::Selected(_)),
+        ModelGoal::Contexts => matches!(item, Item::Context { .. }),
+        ModelGoal::Edges => matches!(item, Item::Edge { .. }),
+        ModelGoal::Messages => matches!(item, Item::Message { .. }),
+        ModelGoal::Paths => matches!(item, Item::Path(_)),
+    };
+    universe(agent).into_iter().filter(is_meant).collect()
+}
+
+/// A body with a step `.fail` of its own never ends well.
+fn can_end(plan: &Plan) -> bool {
+    plan.body.iter().all(|s| s.kind != StepKind::Fail)
+}
+
+fn sends(step: &StepKind) -> bool {
+    matches!(step, StepKind::Send { .. } | StepKind::Ask { .. } | StepKind::AskAll { .. })
+}
+
+/// How many plans can be applicable, for each trigger in the order of its first plan.
+fn applicable(agent: &Agent) -> Vec<Item> {
+    let mut items = Vec::new();
+    let mut known = BTreeSet::new();
+    for plan in agent.plans.iter().filter(|plan| known.insert(plan.trigger.on)) {
+        let on = plan.trigger.on;
+        let plans: Vec<&Plan> = agent.plans.iter().filter(|p| p.trigger.on == on).collect();
+        let always = plans.iter().filter(|p| is_always_applicable(p)).count();
+        let can_be = [
+            (Applicable::None, always == 0),
+            (Applicable::One, always <= 1),
+            (Applicable::Many, plans.len() > 1),
+        ];
+        let can_be = can_be.into_iter().filter(|(_, can)| *can);
+        items.extend(can_be.map(|(plans, _)| Item::Applicable { on, plans }));
+    }
+    items
+}
+
+/// Whether the plan is applicable to each event of its trigger: no context, and arguments that match anything.
+pub(super) fn is_always_applicable(plan: &Plan) -> bool {
+    let mut known = BTreeSet::new();
+    let is_open = |term: &Term| match term {
+        Term::Any => true,
+        Term::Var(v) => known.insert(*v),
+        Term::Expr(_) | Term::List(..) => false,
+    };
+    plan.context == Context::True
+        && plan.trigger.annotations.is_empty()
+        && plan.trigger.args.iter().all(is_open)
+}
+
+/// Each step `!g(…)` or `!!g(…)` with each plan for g whose constants are not others than those of the step.
+fn edges(agent: &Agent) -> Vec<(u16, u16, u16)> {
+    let mut edges = Vec::new();
+    for (plan, declared) in numbered(agent) {
+        for (site, step) in (0u16..).zip(sites(declared)) {
+            let (StepKind::Achieve { goal, args, .. } | StepKind::Spawn { goal, args }) = &step.kind else {
+                continue;
+            };
+            let on = TriggerOn::GoalAdded(*goal);
+            let can = |(_, by): &(u16, &Plan)| by.trigger.on == on && can_match(&by.trigger, args);
+            edges.extend(numbered(agent).filter(can).map(|(by, _)| (plan, site, by)));
+        }
+    }
+    edges
+}
+
+/// Whether constants of a trigger rule out what a step calls with.
+fn can_match(trigger: &Trigger, args: &[Expr]) -> bool {
+    let fits = |(term, arg): (&Term, &Expr)| match (term, arg) {
+        (Term::Expr(Expr::Const(a)), Expr::Const(b)) => match (a.as_f64(), b.as_f64()) {
+            (Some(a), Some(b)) => a == b,
+            (None, _) | (_, None) => a.key() == b.key(),
+        },
+        (Term::Any | Term::Var(_) | Term::Expr(_) | Term::List(..), _) => true,
+    };
+    trigger.args.iter().zip(args).all(fits)
+}
+
+/// Chains of three plans, each called by a step `!g(…)` of the one before.
+fn paths(agent: &Agent) -> BTreeSet<[u16; 3]> {
+    let mut calls = vec![BTreeSet::new(); agent.plans.len()];
+    for (plan, site, by) in edges(agent) {
+        let step = sites(&agent.plans[usize::from(plan)])[usize::from(site)];
+        if matches!(step.kind, StepKind::Achieve { .. }) {
+            calls[usize::from(plan)].insert(by);
+        }
+    }
+    let mut paths = BTreeSet::new();
+    for (first, seconds) in (0u16..).zip(&calls) {
+        for second in seconds {
+            paths.extend(calls[usize::from(*second)].iter().map(|third| [first, *second, *third]));
+        }
+    }
+    paths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::fixture, *};
+    use crate::coverage::name;
+
+    #[test]
+    fn all_that_the_program_does_not_rule_out_is_in_it() {
+        let program = fixture::program();
+        let human = &program.agents[0];
+        let names: Vec<String> = universe(human).iter().map(|i| name(&program, human, *i)).collect();
+        let expected = [
+            "plan Human.table#1",
+            "plan Human.table#2",
+            "plan Human.leg#1",
+            "plan Human.leg#2",
+            "plan Human.leg#3",
+            "plan Human.sit#1",
+            "plan Human.table#1 completed",
+            "plan Human.table#2 completed",
+            "plan Human.leg#1 completed",
+            "plan Human.leg#2 completed",
+            "plan Human.sit#1 completed",
+            "plan Human.table#1 failed",
+            "plan Human.leg#1 failed",
+            "plan Human.leg#2 failed",
+            "plan Human.leg#3 failed",
+            "plan Human.sit#1 failed",
+            "context Human.table#1 true",
+            "context Human.leg#1 true",
+            "context Human.leg#2 true",
+            "context Human.table#1 false",
+            "context Human.leg#1 false",
+            "context Human.leg#2 false",
+            "applicable Human.+!table one",
+            "applicable Human.+!table many",
+            "applicable Human.+!leg one",
+            "applicable Human.+!leg many",
+            "applicable Human.on discarded one",
+            "message Human.table#1: tell seen (step 2)",
+            "edge Human.table#1 -> leg#1 (step 1)",
+            "edge Human.table#1 -> leg#3 (step 1)",
+            "edge Human.table#1 -> table#1 (step 3)",
+            "edge Human.table#1 -> table#2 (step 3)",
+            "edge Human.sit#1 -> leg#2 (step 2)",
+            "edge Human.sit#1 -> leg#3 (step 2)",
+            "path Human: table#1 > table#1 > table#1",
+            "path Human: table#1 > table#1 > table#2",
+            "path Human: table#1 > table#1 > leg#1",
+            "path Human: table#1 > table#1 > leg#3",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn goals_select_items() {
+        let program = fixture::program();
+        let count = |goal| items(&program.agents[0], goal).len();
+        assert_eq!(count(ModelGoal::Plans), 6);
+        assert_eq!(count(ModelGoal::Contexts), 6);
+        assert_eq!((count(ModelGoal::Edges), count(ModelGoal::Paths)), (6, 4));
+        assert_eq!((count(ModelGoal::Messages), count(ModelGoal::Bins { cross: 0 })), (1, 0));
+    }
+
+    #[test]
+    fn counts_reach_items() {
+        let program = fixture::program();
+        let human = &program.agents[0];
+        let nothing = Measured::new(human);
+        let all = universe(human);
+        assert!(all.iter().all(|i| !i.is_reached(&nothing)));
+        let mut measured = nothing;
+        measured.selected[2] = 1;
+        measured.completed[1] = 2;
+        measured.failed[0] = 1;
+        measured.contexts[3] = [1, 0];
+        measured.contexts[0] = [0, 4];
+        measured.applicable.insert(human.plans[5].trigger.on, [0, 3, 0]);
+        measured.sent.insert((0, 1), 1);
+        measured.edges.insert((5, 1, 4), 1);
+        measured.paths.insert([0, 0, 2], 9);
+        let reached = all.iter().filter(|i| i.is_reached(&measured)).map(|i| name(&program, human, *i));
+        assert_eq!(
+            reached.collect::<Vec<_>>(),
+            [
+                "plan Human.leg#1",
+                "plan Human.table#2 completed",
+                "plan Human.table#1 failed",
+                "context Human.table#1 true",
+                "context Human.leg#2 false",
+                "applicable Human.on discarded one",
+                "message Human.table#1: tell seen (step 2)",
+                "edge Human.sit#1 -> leg#3 (step 2)",
+                "path Human: table#1 > table#1 > leg#1",
+            ]
+        );
+    }
+}

@@ -1,0 +1,114 @@
+//! What a suite by agents is to reach, and what of it a model run reached.
+
+use std::collections::BTreeSet;
+
+use hrdsl_bdi::{
+    coverage::{Item, Team, items, name},
+    measure::Measured,
+};
+use hrdsl_coverage::Coverage;
+use hrdsl_ir::{
+    Program,
+    bdi::{Agent, AgentId},
+    suite::{ModelGoal, PlayerRef},
+};
+
+use super::{bins, search::bin_goal};
+
+/// Something that a suite is to reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Goal {
+    Item(AgentId, Item),
+    /// A bin of a cross, by their places.
+    Bin(u16, u16),
+}
+
+/// The goals of a suite, each once, in the order in which the suite asks for them.
+pub struct Goals {
+    pub all: Vec<Goal>,
+    pub names: Vec<String>,
+}
+
+/// The goals that were reached, by their places.
+pub type Reached = BTreeSet<usize>;
+
+/// The agents among the players.
+pub fn agents<'p>(program: &'p Program, players: &[PlayerRef]) -> Vec<(AgentId, &'p Agent)> {
+    let agent = |player: &PlayerRef| match player {
+        PlayerRef::Agent(id) => Some((*id, program.agents.get(usize::from(id.0))?)),
+        PlayerRef::Automaton(_) => None,
+    };
+    players.iter().filter_map(agent).collect()
+}
+
+impl Goals {
+    /// Without any: each plan, and each bin of each cross.
+    #[must_use]
+    pub fn of(program: &Program, players: &[PlayerRef], asked: &[ModelGoal]) -> Self {
+        let crosses = (0u16..).zip(&program.coverage.crosses);
+        let usual = std::iter::once(ModelGoal::Plans)
+            .chain(crosses.map(|(cross, _)| ModelGoal::Bins { cross }))
+            .collect::<Vec<_>>();
+        let asked = if asked.is_empty() { &usual } else { asked };
+        let mut goals = Self { all: Vec::new(), names: Vec::new() };
+        let mut known = BTreeSet::new();
+        for goal in asked {
+            for (goal, name) in expand(program, players, *goal) {
+                if known.insert(goal) {
+                    goals.all.push(goal);
+                    goals.names.push(name);
+                }
+            }
+        }
+        goals
+    }
+
+    /// The goals that a run reached.
+    #[must_use]
+    pub fn reached(&self, measured: &[(AgentId, Measured)], coverage: &Coverage) -> Reached {
+        let is_reached = |goal: &Goal| match goal {
+            Goal::Item(agent, item) => {
+                measured.iter().any(|(a, counts)| a == agent && item.is_reached(counts))
+            }
+            Goal::Bin(cross, bin) => {
+                coverage.crosses.get(usize::from(*cross)).is_some_and(|bins| bins.contains(bin))
+            }
+        };
+        self.all.iter().enumerate().filter(|(_, g)| is_reached(g)).map(|(i, _)| i).collect()
+    }
+
+    /// Why no run reached a goal. `seen` are the numbers that runs had for the coverage points.
+    #[must_use]
+    pub fn why(&self, goal: usize, team: &Team<'_>, seen: &BTreeSet<Vec<i64>>) -> String {
+        match self.all.get(goal) {
+            Some(Goal::Item(agent, item)) => team.why(*agent, *item),
+            Some(Goal::Bin(cross, bin)) => bins::why(&team.program.coverage, *cross, *bin, seen),
+            None => "there is no such goal".to_owned(),
+        }
+    }
+}
+
+fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goal, String)> {
+    match goal {
+        ModelGoal::Bins { cross } => {
+            let Some(declared) = program.coverage.crosses.get(usize::from(cross)) else { return Vec::new() };
+            let bins = (0u16..).zip(&declared.bins);
+            let named = bins.map(|(i, bin)| {
+                (Goal::Bin(cross, i), bin_goal(&hrdsl_coverage::name::bin(&declared.name, &bin.name)))
+            });
+            named.collect()
+        }
+        ModelGoal::Plans
+        | ModelGoal::Contexts
+        | ModelGoal::Edges
+        | ModelGoal::Messages
+        | ModelGoal::Paths => {
+            let of = |(id, agent): (AgentId, &Agent)| {
+                let named =
+                    items(agent, goal).into_iter().map(|i| (Goal::Item(id, i), name(program, agent, i)));
+                named.collect::<Vec<_>>()
+            };
+            agents(program, players).into_iter().flat_map(of).collect()
+        }
+    }
+}
