@@ -194,7 +194,9 @@ pub fn unary(op: UnaryOp, v: Value) -> Result<Value, EvalError> {
             UnaryOp::Not,
             Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_),
         )
-        | (UnaryOp::Neg, Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)) => Err(EvalError::Type),
+        | (UnaryOp::Neg, Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)) => {
+            Err(EvalError::Type)
+        }
     }
 }
 

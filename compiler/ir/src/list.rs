@@ -66,7 +66,9 @@ impl List {
         // An address is the key of a list within, whose number need not be its own.
         let (kind, content) = match head {
             Value::List(list) => (5, list.address() as u64),
-            Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) => head.key(),
+            Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) => {
+                head.key()
+            }
         };
         let number = mix(mix(u64::from(kind), head.key().1), tail.number());
         let shard = &CELLS[number as usize % SHARDS];
@@ -380,7 +382,10 @@ mod tests {
         assert_eq!((of(F::Nth, &[Value::Int(2), a]), of(F::Nth, &[Value::Int(4), a])), (some("2"), None));
         assert_eq!(of(F::Reverse, &[a]), some("[1, 2, 1, 3]"));
         assert_eq!(of(F::Sort, &[a]), some("[1, 1, 2, 3]"));
-        assert_eq!((of(F::Min, &[a]), of(F::Max, &[a]), of(F::Max, &[ints(&[])])), (some("1"), some("3"), None));
+        assert_eq!(
+            (of(F::Min, &[a]), of(F::Max, &[a]), of(F::Max, &[ints(&[])])),
+            (some("1"), some("3"), None)
+        );
         assert_eq!(of(F::Delete, &[Value::Int(1), a]), some("[3, 2]"));
         assert_eq!(of(F::Union, &[a, b]), some("[3, 1, 2, 4]"));
         assert_eq!(of(F::Intersection, &[a, b]), some("[1, 1]"));

@@ -112,7 +112,9 @@ impl Check<'_> {
         let annotations = literal.annotations.iter();
         self.belief(literal.belief, literal.args.len())
             && terms(&literal.args, vars)
-            && annotations.into_iter().all(|(what, t)| self.annotation(literal.belief, *what) && term(t, vars))
+            && annotations
+                .into_iter()
+                .all(|(what, t)| self.annotation(literal.belief, *what) && term(t, vars))
     }
 
     fn annotation(&self, belief: BeliefId, what: Annotation) -> bool {
@@ -156,9 +158,7 @@ impl Check<'_> {
             Internal::Intend { goal, args }
             | Internal::Desire { goal, args }
             | Internal::Suspended { goal, args } => self.goal(*goal, args.len()) && terms(args, vars),
-            Internal::Random { from, out } => {
-                from.iter().all(|e| variables(e, vars)) && term(out, vars)
-            }
+            Internal::Random { from, out } => from.iter().all(|e| variables(e, vars)) && term(out, vars),
             Internal::Shuffle { list, out } => variables(list, vars) && term(out, vars),
             Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => term(out, vars),
         }

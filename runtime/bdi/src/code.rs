@@ -11,18 +11,33 @@ pub(crate) enum Op<'p> {
     /// A step without blocks.
     Plain(&'p StepKind),
     /// `if`: to the line if the condition has no answer
-    Branch { condition: &'p Context, otherwise: u16 },
+    Branch {
+        condition: &'p Context,
+        otherwise: u16,
+    },
     Jump(u16),
     /// `while`, before the first time: these variables are open again each time, if they are now
     Enter(Box<[u16]>),
     /// `while`: to the line behind if the condition has no answer
-    While { condition: &'p Context, end: u16 },
+    While {
+        condition: &'p Context,
+        end: u16,
+    },
     /// `for`: all answers are taken
-    For { condition: &'p Context, variables: Box<[u16]> },
+    For {
+        condition: &'p Context,
+        variables: Box<[u16]>,
+    },
     /// The next answer, or to the line behind.
-    Next { end: u16 },
+    Next {
+        end: u16,
+    },
     /// Where branches begin, and where it goes on.
-    Fork { branches: Box<[u16]>, all: bool, end: u16 },
+    Fork {
+        branches: Box<[u16]>,
+        all: bool,
+        end: u16,
+    },
     /// The end of a branch.
     Join,
 }
@@ -214,7 +229,9 @@ fn each_in_internal(internal: &Internal, f: &mut dyn FnMut(u16)) {
             list.each_var(f);
             each_in_term(out, f);
         }
-        Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => each_in_term(out, f),
+        Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => {
+            each_in_term(out, f)
+        }
     }
 }
 

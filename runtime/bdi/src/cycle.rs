@@ -496,5 +496,4 @@ impl<'p> Machine<'p> {
             f(measured);
         }
     }
-
 }

@@ -106,7 +106,16 @@ impl Intention<'_> {
         let vars_at = start + args.len() as u32;
         let below = self.frames.last();
         let under = below.map_or([NO_PLAN; 2], |f| [f.plan, f.under[0]]);
-        self.frames.push(Frame { plan, next, at: NO_LINE, args: start, vars: vars_at, under, branch: false, told: None });
+        self.frames.push(Frame {
+            plan,
+            next,
+            at: NO_LINE,
+            args: start,
+            vars: vars_at,
+            under,
+            branch: false,
+            told: None,
+        });
         self.slots.extend_from_slice(args);
         self.slots.extend_from_slice(vars);
     }

@@ -41,36 +41,100 @@ pub struct LogEntry {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Logged {
     /// A plan was selected; `fresh`: it began an intention.
-    Selected { on: TriggerOn, args: Args, plan: PlanIndex, vars: Vec<Slot>, fresh: bool },
+    Selected {
+        on: TriggerOn,
+        args: Args,
+        plan: PlanIndex,
+        vars: Vec<Slot>,
+        fresh: bool,
+    },
     /// A plan was tried.
-    Tried { on: TriggerOn, args: Args, plan: PlanIndex, verdict: Verdict },
+    Tried {
+        on: TriggerOn,
+        args: Args,
+        plan: PlanIndex,
+        verdict: Verdict,
+    },
     /// An event for which no plan was selected.
-    Unhandled { on: TriggerOn, args: Args, origin: Span },
+    Unhandled {
+        on: TriggerOn,
+        args: Args,
+        origin: Span,
+    },
     /// A plan could not be tried.
-    Fault { plan: PlanIndex, fault: Fault, origin: Span },
+    Fault {
+        plan: PlanIndex,
+        fault: Fault,
+        origin: Span,
+    },
     /// A question of another agent could not be answered.
-    FaultyAnswer { belief: BeliefId, fault: Fault },
+    FaultyAnswer {
+        belief: BeliefId,
+        fault: Fault,
+    },
     /// A step is done: with the variables before it.
-    Step { plan: PlanIndex, line: u16, vars: Vec<Slot>, outcome: Outcome },
+    Step {
+        plan: PlanIndex,
+        line: u16,
+        vars: Vec<Slot>,
+        outcome: Outcome,
+    },
     Failed(Failure),
     /// The intention is done.
     Finished,
     /// An internal action, or the end of another branch, removed the intention.
     Dropped,
     /// With the annotations that are new.
-    Added { belief: BeliefId, args: Vec<Value>, annotations: Annotations },
-    Left { belief: BeliefId, args: Vec<Value> },
+    Added {
+        belief: BeliefId,
+        args: Vec<Value>,
+        annotations: Annotations,
+    },
+    Left {
+        belief: BeliefId,
+        args: Vec<Value>,
+    },
     /// A source was taken from a fact that has others.
-    Taken { belief: BeliefId, args: Vec<Value>, source: Value },
+    Taken {
+        belief: BeliefId,
+        args: Vec<Value>,
+        source: Value,
+    },
     /// A removal of what is from one source (open: any) removed nothing: the fact is held from these.
-    StillHeld { belief: BeliefId, args: Vec<Value>, meant: Slot, from: Vec<Value> },
+    StillHeld {
+        belief: BeliefId,
+        args: Vec<Value>,
+        meant: Slot,
+        from: Vec<Value>,
+    },
     /// A fact that does not fit its declaration was left out.
-    Refused { belief: BeliefId, args: Vec<Value> },
-    Perceived { event: EventId, args: Vec<Value> },
-    Heard { from: u16, performative: Performative, content: ContentId, args: Args },
+    Refused {
+        belief: BeliefId,
+        args: Vec<Value>,
+    },
+    Perceived {
+        event: EventId,
+        args: Vec<Value>,
+    },
+    Heard {
+        from: u16,
+        performative: Performative,
+        content: ContentId,
+        args: Args,
+    },
     /// A question of another agent that waits for the answer.
-    Asked { from: u16, content: ContentId, args: Args, all: bool },
-    Answered { from: u16, content: ContentId, all: bool, answers: Option<Vec<Args>> },
+    Asked {
+        from: u16,
+        content: ContentId,
+        args: Args,
+        all: bool,
+    },
+    Answered {
+        from: u16,
+        content: ContentId,
+        all: bool,
+        answers: Option<Vec<Args>>,
+    },
     Printed(String),
     /// At one instant the state repeats.
     Livelock,
@@ -98,7 +162,9 @@ pub enum Verdict {
     /// The trigger's arguments or annotations do not match.
     Unlike,
     /// The context has no answer; the farthest part of it that the search came to, when it is a conjunction.
-    False { part: usize },
+    False {
+        part: usize,
+    },
     Faulty(Fault),
     Applicable,
 }

@@ -276,7 +276,9 @@ impl<'p> Machine<'p> {
     /// Tells who asked, if the answer suits its belief.
     fn tell_back(&mut self, reply: Reply, args: &Args) {
         let Reply { to, content, .. } = reply;
-        if let (Some(Subject::Belief(_)), Ok(args)) = (self.subject(content, to), self.fitting(content, to, args)) {
+        if let (Some(Subject::Belief(_)), Ok(args)) =
+            (self.subject(content, to), self.fitting(content, to, args))
+        {
             self.say(to, Speech::Say { performative: Performative::Tell, content, args });
         }
     }

@@ -78,16 +78,33 @@ enum Cont<'p> {
 
 #[derive(Clone, Copy, Debug)]
 enum Way<'p> {
-    Facts { literal: &'p Literal, cursor: Cursor, row: Option<(usize, usize)> },
-    Rules { literal: &'p Literal, from: usize },
+    Facts {
+        literal: &'p Literal,
+        cursor: Cursor,
+        row: Option<(usize, usize)>,
+    },
+    Rules {
+        literal: &'p Literal,
+        from: usize,
+    },
     Or(&'p [Context]),
-    Member { element: &'p Term, rest: List },
+    Member {
+        element: &'p Term,
+        rest: List,
+    },
     /// The goals that are had, from this one on, with their arguments.
-    Goals { args: &'p [Term], from: u32, to: u32 },
+    Goals {
+        args: &'p [Term],
+        from: u32,
+        to: u32,
+    },
     /// What is negated has no answer.
     Negation,
     /// There are no more answers; those from `start` on are collected.
-    Collection { start: usize, what: &'p Internal },
+    Collection {
+        start: usize,
+        what: &'p Internal,
+    },
 }
 
 /// A way to go on, and the heights of the stacks to go back to.
@@ -238,8 +255,7 @@ impl<'p> Solver<'p> {
                     self.farthest = self.farthest.max(self.parts.len() - goals.len());
                 }
                 let Some((first, rest)) = goals.split_first() else { return Ok(Some(at.next)) };
-                let next =
-                    if rest.is_empty() { at.next } else { self.push(Cont::Goals(rest), at) };
+                let next = if rest.is_empty() { at.next } else { self.push(Cont::Goals(rest), at) };
                 self.goal(mind, dice, first, At { next, ..at })
             }
             Cont::Return { rule, literal, caller } => self.give_back(rule, literal, caller, at),

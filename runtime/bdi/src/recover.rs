@@ -254,14 +254,18 @@ impl<'p> Machine<'p> {
         // INVARIANT: whoever asks has seen to it that there is a plan.
         let top = intention.frames[intention.frames.len() - 1];
         let plan = self.mind.library.plan(top.plan);
-        let origin = self.mind.library.code(top.plan).get(usize::from(top.at)).map_or(plan.origin, |l| l.origin);
+        let origin =
+            self.mind.library.code(top.plan).get(usize::from(top.at)).map_or(plan.origin, |l| l.origin);
         let args = Args::from_slice(intention.args(top));
         Failure { on: plan.trigger.on, args, plan: top.plan, cause, origin }
     }
 
     pub fn answer_nothing(&mut self, reply: Reply) {
         if let Some(question) = reply.question {
-            self.say(reply.to, Speech::Answer { question, content: reply.content, all: false, answers: None });
+            self.say(
+                reply.to,
+                Speech::Answer { question, content: reply.content, all: false, answers: None },
+            );
         }
     }
 }

@@ -192,15 +192,18 @@ fn annotations(out: &mut Vec<u64>, all: &Annotations) {
 
 fn event(out: &mut Vec<u64>, e: &Event, rank: &dyn Fn(u32) -> u64) {
     use hrdsl_ir::bdi::TriggerOn as On;
-    out.extend(match e.on {
-        On::BeliefAdded(b) => [0, b.0],
-        On::BeliefRemoved(b) => [1, b.0],
-        On::GoalAdded(g) => [2, g.0],
-        On::GoalFailed(g) => [3, g.0],
-        On::TestAdded(b) => [4, b.0],
-        On::TestFailed(b) => [5, b.0],
-        On::Perceived(e) => [6, e.0],
-    }.map(u64::from));
+    out.extend(
+        match e.on {
+            On::BeliefAdded(b) => [0, b.0],
+            On::BeliefRemoved(b) => [1, b.0],
+            On::GoalAdded(g) => [2, g.0],
+            On::GoalFailed(g) => [3, g.0],
+            On::TestAdded(b) => [4, b.0],
+            On::TestFailed(b) => [5, b.0],
+            On::Perceived(e) => [6, e.0],
+        }
+        .map(u64::from),
+    );
     slots(out, &e.args);
     e.annotations.iter().for_each(|a| annotations(out, a));
     out.push(e.of.map_or(0, rank));

@@ -206,8 +206,7 @@ impl Names<'_, '_> {
                     Context::And(all) => all.get(part).unwrap_or(&plan.context),
                     other => other,
                 };
-                let show =
-                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &[] };
+                let show = Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &[] };
                 format!("{label} is not applicable, `{}` has no answer", show.context(context))
             }
         }
@@ -472,7 +471,8 @@ impl Show<'_> {
             let all = all.iter().map(|e| self.expr(e));
             all.chain(out.map(|t| self.term(t))).collect()
         };
-        let goal = |g: &GoalId, a: &[Term]| [self.goal(*g, a.iter().map(|t| self.term(t)).collect::<Vec<_>>())];
+        let goal =
+            |g: &GoalId, a: &[Term]| [self.goal(*g, a.iter().map(|t| self.term(t)).collect::<Vec<_>>())];
         match internal {
             Internal::FindAll { template, formula, set, out } => {
                 let name = if *set { ".setof" } else { ".findall" };

@@ -85,6 +85,11 @@ impl<'p> Society<'p> {
         self.machines.iter().map(|m| m.mind.me.id)
     }
 
+    /// Their names, in their order.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.machines.iter().map(|m| m.mind.me.name.name())
+    }
+
     /// Counts what the run takes of each program: see [`measured`](Self::measured).
     pub fn measure(&mut self) {
         for machine in &mut self.machines {
@@ -305,9 +310,11 @@ impl<'p> Society<'p> {
     /// The agents' logs as one: by round, then by agent, then as entered. With each entry the agent's place.
     #[must_use]
     pub fn log(&self) -> Vec<(usize, &LogEntry)> {
-        let entries = self.machines.iter().enumerate().flat_map(|(place, m)| {
-            m.log.entries.iter().map(move |entry| (place, entry))
-        });
+        let entries = self
+            .machines
+            .iter()
+            .enumerate()
+            .flat_map(|(place, m)| m.log.entries.iter().map(move |entry| (place, entry)));
         let mut all: Vec<(usize, &LogEntry)> = entries.collect();
         all.sort_by_key(|(place, entry)| (entry.round, *place));
         all

@@ -2,7 +2,9 @@
 
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Span, Value,
-    bdi::{Annotation, Assertion, BeliefId, Context, GoalId, Literal, StepKind, Term, TriggerOn, source_self},
+    bdi::{
+        Annotation, Assertion, BeliefId, Context, GoalId, Literal, StepKind, Term, TriggerOn, source_self,
+    },
     expr::EvalError,
     value::nanos,
 };
@@ -74,8 +76,7 @@ impl<'p> Machine<'p> {
             let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(Flow::Next) };
             let code = self.mind.library.code(top.plan);
             let Some(line) = code.get(usize::from(top.next)) else { return Ok(Flow::Next) };
-            let here =
-                Here { place, plan: top.plan, line: top.next, site: line.site, origin: line.origin };
+            let here = Here { place, plan: top.plan, line: top.next, site: line.site, origin: line.origin };
             let after = settle(code, top.next + 1);
             if let Some(top) = self.mind.pool.at(place).frames.last_mut() {
                 top.at = here.line;
@@ -198,12 +199,7 @@ impl<'p> Machine<'p> {
         Ok(Flow::Next)
     }
 
-    fn each_answer(
-        &mut self,
-        here: Here,
-        condition: &'p Context,
-        variables: &[u16],
-    ) -> Result<Flow, Cause> {
+    fn each_answer(&mut self, here: Here, condition: &'p Context, variables: &[u16]) -> Result<Flow, Cause> {
         self.solver.with(self.mind.pool.see(here.place).vars());
         let vars = self.mind.pool.see(here.place).vars();
         let open: SmallVec<[u16; 4]> =
@@ -312,7 +308,11 @@ impl<'p> Machine<'p> {
             }
             StepKind::Query(literal) => self.query(here, literal),
             StepKind::Test(condition) => {
-                if self.holds(place, condition)? { Ok(Flow::Next) } else { Err(Cause::NoAnswer) }
+                if self.holds(place, condition)? {
+                    Ok(Flow::Next)
+                } else {
+                    Err(Cause::NoAnswer)
+                }
             }
             StepKind::Add(assertion) => {
                 let (args, annotations) = self.asserted(place, assertion)?;

@@ -231,8 +231,7 @@ mod tests {
                     return None;
                 }
                 let (first, others) = all.split_at(items.len());
-                let theta =
-                    items.iter().zip(first).try_fold(theta, |theta, (t, v)| matches(t, *v, theta))?;
+                let theta = items.iter().zip(first).try_fold(theta, |theta, (t, v)| matches(t, *v, theta))?;
                 match rest {
                     Some(rest) => matches(rest, Value::List(List::of(others)), theta),
                     None => Some(theta),

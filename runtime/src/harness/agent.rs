@@ -1,82 +1,141 @@
-//! The player that is a BDI agent: it perceives, reasons, and does stimuli that take their time.
+//! The players that are BDI agents: they perceive, reason together in rounds, and do stimuli that take their time.
 
-use hrdsl_bdi::{Action, ActionToken, Machine, Status};
-use hrdsl_ir::{
-    ActorId, EventId, Nanos, Program, Value,
-    bdi::{AgentId, Fact},
-};
+use std::{cell::RefCell, rc::Rc};
+
+use hrdsl_bdi::{Action, ActionToken, Society, Status};
+use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Context, Fault, Message, Player, draw_samples, stimulus::Performance};
+use super::{Context, Fault, Message, Player, draw_samples, is_perceived, stimulus::Performance};
 
-pub struct AgentPlayer<'p> {
+/// All agents of a run; each has a player of its own, but they reason together.
+pub struct Company<'p> {
     program: &'p Program,
-    name: &'p str,
-    actors: [ActorId; 1],
-    machine: Machine<'p>,
+    pub society: Society<'p>,
+    members: Vec<Member>,
+    /// The delivery that they have all heard.
+    heard: u64,
+}
+
+/// What an agent is doing in the world.
+struct Member {
+    actor: ActorId,
     performances: Vec<(ActionToken, Performance)>,
+    /// Draws the samples of its stimuli.
     rng: ChaCha8Rng,
 }
 
-impl<'p> AgentPlayer<'p> {
-    /// An agent with the beliefs chosen for it; `seed` draws the samples of its stimuli.
+impl<'p> Company<'p> {
     #[must_use]
-    pub fn new(program: &'p Program, agent: AgentId, chosen: &[Fact], seed: u64) -> Self {
-        let declared = &program.agents[agent.0 as usize];
-        Self {
-            program,
-            name: &declared.name,
-            actors: [declared.actor],
-            machine: Machine::new(program, agent, chosen),
-            performances: Vec::new(),
-            rng: ChaCha8Rng::seed_from_u64(seed),
-        }
+    pub fn new(program: &'p Program, society: Society<'p>) -> Rc<RefCell<Self>> {
+        let member = |actor| Member { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
+        let members = society.actors().map(member).collect();
+        Rc::new(RefCell::new(Self { program, society, members, heard: 0 }))
     }
 
-    /// Lets the agent reason until it waits.
+    /// Rounds, until nobody says or does anything more.
     fn reason(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
         let mut actions = Vec::new();
         loop {
-            if cx.expire {
-                self.machine.run(cx.now, &mut actions);
-            } else {
-                self.machine.settle(cx.now, &mut actions);
-            }
+            self.society.settle(cx.now, &mut actions);
             if actions.is_empty() {
                 return self.check();
             }
-            for action in actions.drain(..) {
-                self.begin(action, cx)?;
+            for (agent, action) in actions.drain(..) {
+                self.begin(agent, action, cx)?;
             }
         }
     }
 
-    fn begin(&mut self, Action { token, event, args }: Action, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn begin(&mut self, agent: usize, action: Action, cx: &mut Context<'_>) -> Result<(), Fault> {
+        let Action { token, event, args } = action;
         if !self.program.event(event).is_stimulus() {
             cx.out.push(Message::Event { event, args });
-            self.machine.stimulus_done(token, cx.now);
+            self.society.stimulus_done(agent, token, cx.now);
             return Ok(());
         }
-        let samples = draw_samples(self.program, event, &args, &mut self.rng)?;
+        let member = &mut self.members[agent];
+        let samples = draw_samples(self.program, event, &args, &mut member.rng)?;
         let performance = Performance::begin(self.program, event, &args, &samples, cx)?;
         if performance.is_done(cx.now) {
-            self.machine.stimulus_done(token, cx.now);
+            self.society.stimulus_done(agent, token, cx.now);
         } else {
-            self.performances.push((token, performance));
+            member.performances.push((token, performance));
         }
         Ok(())
     }
 
     fn check(&self) -> Result<(), Fault> {
-        let what = match self.machine.status() {
+        let what = match self.society.status() {
             Status::Ready | Status::Waiting | Status::Idle => return Ok(()),
-            Status::Livelock => "does not come to rest: a plan repeats without letting time pass".to_owned(),
+            Status::Livelock => {
+                "livelock: at one instant its state repeats, so time can never pass".to_owned()
+            }
+            Status::Endless => format!(
+                "cycle bound: more than {} cycles at one instant, without coming to rest",
+                hrdsl_bdi::CYCLE_LIMIT
+            ),
             Status::Malformed => {
-                self.machine.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
+                self.society.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
             }
         };
-        Err(Fault::Model(format!("agent `{}`: {what}", self.name)))
+        Err(Fault::Model(format!("agent `{}`: {what}", self.society.at_fault().join("`, `"))))
+    }
+
+    fn wake(&mut self, agent: usize, cx: &mut Context<'_>) -> Result<(), Fault> {
+        let mut under_way = Vec::new();
+        for (token, mut performance) in std::mem::take(&mut self.members[agent].performances) {
+            performance.go_on(cx);
+            if performance.is_done(cx.now) {
+                self.society.stimulus_done(agent, token, cx.now);
+            } else {
+                under_way.push((token, performance));
+            }
+        }
+        self.members[agent].performances.extend(under_way);
+        self.reason(cx)?;
+        while cx.expire && self.society.expire(agent, cx.now) {
+            self.reason(cx)?;
+        }
+        Ok(())
+    }
+
+    /// The first of them that hears of an event tells all whom it reaches.
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+        if self.heard == cx.delivery {
+            return Ok(());
+        }
+        self.heard = cx.delivery;
+        let from = self.program.event(event).from;
+        for (agent, member) in self.members.iter().enumerate() {
+            if member.actor != from && is_perceived(self.program, member.actor, event) {
+                self.society.perceive(agent, event, args);
+            }
+        }
+        self.reason(cx)
+    }
+
+    fn next_wake(&self, agent: usize) -> Option<Nanos> {
+        let holds = self.members[agent].performances.iter().map(|(_, p)| p.until);
+        holds.chain(self.society.wake_of(agent)).min()
+    }
+}
+
+/// One agent of a company.
+pub struct AgentPlayer<'p> {
+    company: Rc<RefCell<Company<'p>>>,
+    agent: usize,
+    actors: [ActorId; 1],
+}
+
+impl<'p> AgentPlayer<'p> {
+    /// The players of all agents of a company, in their order.
+    #[must_use]
+    pub fn all(company: &Rc<RefCell<Company<'p>>>) -> Vec<Self> {
+        let actors: Vec<ActorId> = company.borrow().members.iter().map(|m| m.actor).collect();
+        let player = |(agent, actor)| Self { company: Rc::clone(company), agent, actors: [actor] };
+        actors.into_iter().enumerate().map(player).collect()
     }
 }
 
@@ -86,27 +145,15 @@ impl Player for AgentPlayer<'_> {
     }
 
     fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
-        let mut under_way = Vec::new();
-        for (token, mut performance) in std::mem::take(&mut self.performances) {
-            performance.go_on(cx);
-            if performance.is_done(cx.now) {
-                self.machine.stimulus_done(token, cx.now);
-            } else {
-                under_way.push((token, performance));
-            }
-        }
-        self.performances.extend(under_way);
-        self.reason(cx)
+        self.company.borrow_mut().wake(self.agent, cx)
     }
 
     fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
-        self.machine.perceive(event, args, cx.now);
-        self.reason(cx)
+        self.company.borrow_mut().hear(event, args, cx)
     }
 
     fn next_wake(&self) -> Option<Nanos> {
-        let holds = self.performances.iter().map(|(_, p)| p.until);
-        holds.chain(self.machine.next_wake()).min()
+        self.company.borrow().next_wake(self.agent)
     }
 
     fn is_finished(&self) -> bool {

@@ -6,6 +6,7 @@
 
 mod agent;
 mod automaton;
+mod model;
 mod program;
 mod script;
 mod stage;
@@ -16,8 +17,9 @@ use std::collections::VecDeque;
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value, world::WorldAction};
 use hrdsl_trace::{Step, Trace, What};
 
-pub use agent::AgentPlayer;
+pub use agent::{AgentPlayer, Company};
 pub use automaton::AutomatonPlayer;
+pub use model::{LogLine, ModelRun, model_run, model_run_in_detail};
 pub use program::{ProgramPlayer, SutFault};
 pub use script::ScriptPlayer;
 pub use stage::Stage;
@@ -40,6 +42,8 @@ pub struct Context<'a> {
     pub now: Nanos,
     /// Waits for events may be given up now: nothing else happens any more at this instant by itself.
     pub expire: bool,
+    /// Counts the events delivered; players that are told together know by it that it is the same event.
+    pub delivery: u64,
     pub out: &'a mut Vec<Message>,
     /// The world, if there is one: only the program under test and the sensors reach for it.
     pub stage: Option<&'a mut Stage>,
@@ -104,6 +108,7 @@ pub struct Harness<'p> {
     pending: VecDeque<(Option<usize>, EventId, Vec<Value>)>,
     at_this_instant: usize,
     expire: bool,
+    delivery: u64,
 }
 
 impl<'p> Harness<'p> {
@@ -127,6 +132,7 @@ impl<'p> Harness<'p> {
             pending: VecDeque::new(),
             at_this_instant: 0,
             expire: false,
+            delivery: 0,
         }
     }
 
@@ -202,8 +208,13 @@ impl<'p> Harness<'p> {
         act: impl FnOnce(&mut dyn Player, &mut Context<'_>) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let mut out = Vec::new();
-        let mut cx =
-            Context { now: self.now, expire: self.expire, out: &mut out, stage: self.stage.as_mut() };
+        let mut cx = Context {
+            now: self.now,
+            expire: self.expire,
+            delivery: self.delivery,
+            out: &mut out,
+            stage: self.stage.as_mut(),
+        };
         let result = act(self.players[index].as_mut(), &mut cx);
         for message in out {
             self.accept(Some(index), message)?;
@@ -226,6 +237,7 @@ impl<'p> Harness<'p> {
                 }
                 let what = What::Event { event, args: args.clone() };
                 self.trace.steps.push(Step { time: self.now, what });
+                let from = self.maker(from, event);
                 self.pending.push_back((from, event, args));
             }
             Message::Act { action, vars } => {
@@ -237,11 +249,22 @@ impl<'p> Harness<'p> {
         Ok(())
     }
 
+    /// Who made the event: of players that act together, the one who plays its actor.
+    fn maker(&self, asked: Option<usize>, event: EventId) -> Option<usize> {
+        let actor = self.program.event(event).from;
+        let asked = asked?;
+        if self.players[asked].actors().contains(&actor) {
+            return Some(asked);
+        }
+        self.players.iter().position(|p| p.actors().contains(&actor)).or(Some(asked))
+    }
+
     /// Delivers what happened, first come first served, until nobody has anything to answer.
     fn deliver(&mut self) -> Result<(), Fault> {
         loop {
             self.answer_of_the_world()?;
             let Some((from, event, args)) = self.pending.pop_front() else { return Ok(()) };
+            self.delivery += 1;
             if let Some(stage) = &mut self.stage {
                 for message in stage.hear(event, &args) {
                     self.accept(None, message)?;

@@ -237,10 +237,14 @@ fn argument(event: &str, param: &Param, given: Option<&Arg>) -> Result<Value, An
     let value = match (param.ty, given) {
         (Type::Float(_), Arg::Scalar(Value::Int(n))) => Some(Value::Float(*n as f64)),
         (Type::Enum(e), Arg::Text(name)) => e.symbol(name).map(Value::Symbol),
-        (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), Arg::Scalar(value)) => Some(*value),
-        (Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_), Arg::Text(_) | Arg::Numbers(_)) => {
-            None
-        }
+        (
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
+            Arg::Scalar(value),
+        ) => Some(*value),
+        (
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
+            Arg::Text(_) | Arg::Numbers(_),
+        ) => None,
     };
     value.filter(|v| param.ty.admits(*v)).ok_or_else(|| {
         let ty = match param.ty {

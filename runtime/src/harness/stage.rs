@@ -159,7 +159,12 @@ fn on_grid(value: Value) -> Value {
     match value {
         // Adding zero makes a negative zero positive.
         Value::Float(x) if x.abs() < 1e9 => Value::Float((x * 1e6).round() / 1e6 + 0.0),
-        Value::Float(_) | Value::Bool(_) | Value::Int(_) | Value::Symbol(_) => value,
+        Value::Float(_)
+        | Value::Bool(_)
+        | Value::Int(_)
+        | Value::Symbol(_)
+        | Value::Text(_)
+        | Value::List(_) => value,
     }
 }
 

@@ -55,7 +55,11 @@ fn draw(ty: Type, lo: Value, hi: Value, rng: &mut ChaCha8Rng) -> Value {
             }
             (Some(_) | None, _) => Value::Symbol(lo),
         },
-        (Type::Float(_) | Type::Int { .. } | Type::Bool | Type::Enum(_), lo, hi) => {
+        (
+            Type::Float(_) | Type::Int { .. } | Type::Bool | Type::Enum(_) | Type::Text | Type::List(_),
+            lo,
+            hi,
+        ) => {
             match (lo.as_f64(), hi.as_f64()) {
                 // Micrometres, microradians: what a generated test's text says is exactly what runs.
                 (Some(lo), Some(hi)) if lo < hi => {

@@ -359,7 +359,9 @@ pub(crate) fn argument_fault<'e>(event: &'e hrdsl_ir::Event, args: &[Value]) -> 
     event.params.iter().zip(args).find_map(|(p, v)| match (p.ty, v) {
         (Type::Int { lo, hi }, Value::Int(n)) if *n < lo || *n > hi => Some((p.name.as_str(), *v)),
         (Type::Enum(e), Value::Symbol(s)) if e.index_of(*s).is_none() => Some((p.name.as_str(), *v)),
-        (Type::Int { .. } | Type::Bool | Type::Float(_) | Type::Enum(_), _) => None,
+        (Type::Int { .. } | Type::Bool | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_), _) => {
+            None
+        }
     })
 }
 

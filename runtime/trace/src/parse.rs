@@ -215,6 +215,8 @@ fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, Problem> {
         },
         // Looked up, not interned: what a recording says must not stay in memory.
         Type::Enum(e) => json.as_str().and_then(|name| e.symbol(name)).map(Value::Symbol),
+        // Agents have these alone; no event or signal does.
+        Type::Text | Type::List(_) => None,
     };
     value.filter(|v| ty.admits(*v)).ok_or_else(|| Problem::Type {
         of: of.to_owned(),
@@ -230,6 +232,8 @@ fn described(ty: Type) -> String {
         Type::Float(Unit::None) => "a number".to_owned(),
         Type::Float(unit) => format!("a number ({})", unit.symbol()),
         Type::Enum(e) => format!("the name of a value of `{e}` ({})", e.listed()),
+        Type::Text => "nothing: events have no strings".to_owned(),
+        Type::List(_) => "nothing: events have no lists".to_owned(),
     }
 }
 

@@ -51,7 +51,7 @@ pub fn event_text(program: &Program, event: EventId, args: &[Value]) -> String {
 pub fn value(value: Value, unit: Unit) -> String {
     let number = match value {
         Value::Float(x) => format!("{x:.4e}").parse().map_or(value, Value::Float),
-        Value::Bool(_) | Value::Int(_) | Value::Symbol(_) => value,
+        Value::Bool(_) | Value::Int(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => value,
     };
     match unit.symbol() {
         "" => number.to_string(),
@@ -72,7 +72,7 @@ fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {
 fn unit_of(ty: Type) -> Unit {
     match ty {
         Type::Float(unit) => unit,
-        Type::Bool | Type::Int { .. } | Type::Enum(_) => Unit::None,
+        Type::Bool | Type::Int { .. } | Type::Enum(_) | Type::Text | Type::List(_) => Unit::None,
     }
 }
 

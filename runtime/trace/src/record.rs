@@ -145,5 +145,10 @@ fn value(value: Value) -> String {
             None => "\"-inf\"".to_owned(),
         },
         Value::Symbol(s) => text(s.name()),
+        Value::Text(t) => text(t.as_str()),
+        Value::List(list) => {
+            let elements: Vec<String> = list.iter().map(self::value).collect();
+            format!("[{}]", elements.join(", "))
+        }
     }
 }
