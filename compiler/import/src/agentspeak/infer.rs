@@ -57,10 +57,11 @@ pub struct Walk {
 impl Walk {
     /// Tries something; if it does not fit, all is as before, and the place is left out.
     fn attempt(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), Reason>) -> bool {
-        let before = (self.types.clone(), self.vars.clone());
+        let (before, vars) = (self.types.mark(), self.vars.len());
         let result = what(self).and_then(|()| self.types.settle_concats(false));
         let Err(reason) = result else { return true };
-        (self.types, self.vars) = before;
+        self.types.back(before);
+        self.vars.truncate(vars);
         self.left_out.entry(span).or_insert(reason);
         false
     }

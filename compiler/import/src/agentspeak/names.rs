@@ -175,9 +175,9 @@ impl Names {
         let beliefs: IndexSet<&String> = self.beliefs.values().collect();
         let mut used = IndexSet::new();
         for (atoms, roots, hints) in groups {
-            // A variable that says something names it best, then a name of several letters.
+            // A variable that says something names it best.
             let hint = hints.iter().find(|h| h.len() > 1 && h.starts_with(char::is_uppercase));
-            let hint = hint.or_else(|| hints.iter().find(|h| h.len() > 1)).or(hints.first());
+            let hint = hint.or(hints.first());
             let words = hint.map_or("Value", String::as_str).split('_').filter(|w| !w.is_empty());
             let name = unused(words.map(variable).collect::<String>() + "Kind", &used);
             used.insert(name.clone());

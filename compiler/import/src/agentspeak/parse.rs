@@ -56,7 +56,7 @@ impl<'l> Reader<'l> {
         loop {
             match parser.item() {
                 Ok(None) => break,
-                Ok(Some(Entry::Item(item))) => program.items.push(item),
+                Ok(Some(Entry::Item(item))) => program.items.push(*item),
                 Ok(Some(Entry::Include(path, span))) => self.include(name, &path, span, program),
                 Err(fault) => {
                     self.error(fault.span, fault.message);
@@ -114,7 +114,7 @@ pub fn place(files: &Files, span: Span) -> (String, u32, u32) {
 }
 
 enum Entry {
-    Item(Item),
+    Item(Box<Item>),
     Include(String, Span),
 }
 
@@ -230,7 +230,7 @@ impl Parser {
                 }
             }
         };
-        Ok(Some(Entry::Item(Item { kind, span: self.since(start) })))
+        Ok(Some(Entry::Item(Box::new(Item { kind, span: self.since(start) }))))
     }
 
     fn directive(&mut self, start: Span) -> Parsed<Entry> {
@@ -255,7 +255,7 @@ impl Parser {
             ),
             (_, false) => format!("the directive `{name}` is not carried out"),
         };
-        Ok(Entry::Item(Item { kind: ItemKind::Skipped(message), span }))
+        Ok(Entry::Item(Box::new(Item { kind: ItemKind::Skipped(message), span })))
     }
 
     fn plan(&mut self) -> Parsed<Plan> {

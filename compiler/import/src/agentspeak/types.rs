@@ -39,6 +39,8 @@ pub type Clash = String;
 #[derive(Clone, Debug, Default)]
 pub struct Types {
     nodes: Vec<Node>,
+    /// What was changed since the last mark: a class and what it was.
+    changed: Vec<(TyId, Node)>,
     /// The arguments of beliefs, goals and actions of the environment.
     pub beliefs: IndexMap<Key, Vec<TyId>>,
     pub goals: IndexMap<Key, Vec<TyId>>,
@@ -53,7 +55,47 @@ pub struct Types {
     pub concats: Vec<(Vec<TyId>, TyId)>,
 }
 
+/// A state to go back to: how much there was of everything.
+pub struct Mark {
+    nodes: usize,
+    places: [usize; 5],
+    concats: Vec<(Vec<TyId>, TyId)>,
+}
+
 impl Types {
+    /// Remembers how things are. What was marked before is forgotten.
+    pub fn mark(&mut self) -> Mark {
+        self.changed.clear();
+        let places = [
+            self.beliefs.len(),
+            self.goals.len(),
+            self.actions.len(),
+            self.annotations.len(),
+            self.terms.len(),
+        ];
+        Mark { nodes: self.nodes.len(), places, concats: self.concats.clone() }
+    }
+
+    /// Goes back to how things were at the last mark.
+    pub fn back(&mut self, mark: Mark) {
+        while let Some((id, node)) = self.changed.pop() {
+            self.nodes[id] = node;
+        }
+        self.nodes.truncate(mark.nodes);
+        let [beliefs, goals, actions, annotations, terms] = mark.places;
+        self.beliefs.truncate(beliefs);
+        self.goals.truncate(goals);
+        self.actions.truncate(actions);
+        self.annotations.truncate(annotations);
+        self.terms.truncate(terms);
+        self.concats = mark.concats;
+    }
+
+    fn set(&mut self, id: TyId, node: Node) {
+        let before = std::mem::replace(&mut self.nodes[id], node);
+        self.changed.push((id, before));
+    }
+
     pub fn add(&mut self, ty: Ty) -> TyId {
         self.nodes.push(Node::Root(ty));
         self.nodes.len() - 1
@@ -173,8 +215,8 @@ impl Types {
         if self.contains(&ty, a) || self.contains(&ty, b) {
             return Err("a value would contain itself".to_owned());
         }
-        self.nodes[a] = Node::Root(ty);
-        self.nodes[b] = Node::Same(a);
+        self.set(a, Node::Root(ty));
+        self.set(b, Node::Same(a));
         pairs.into_iter().try_for_each(|(x, y)| self.unify(x, y))
     }
 
@@ -263,4 +305,41 @@ impl Types {
 pub struct Leaf {
     pub lists: usize,
     pub of: TyId,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_taken_back_never_was() {
+        let mut types = Types::default();
+        let place = types.belief(&("b".to_owned(), 1))[0];
+        let int = types.number(false);
+        types.unify(place, int).unwrap();
+        let mark = types.mark();
+        let float = types.number(true);
+        types.unify(place, float).unwrap();
+        types.belief(&("c".to_owned(), 2));
+        assert_eq!(*types.get(int), Ty::Number { float: true });
+        types.back(mark);
+        assert_eq!((types.get(place), types.beliefs.len()), (&Ty::Number { float: false }, 1));
+    }
+
+    #[test]
+    fn a_value_does_not_contain_itself() {
+        let mut types = Types::default();
+        let x = types.fresh();
+        let list = types.add(Ty::List(x));
+        assert!(types.unify(x, list).is_err());
+    }
+
+    #[test]
+    fn a_list_of_structures_is_as_many_lists() {
+        let mut types = Types::default();
+        let (a, b) = (types.number(false), types.add(Ty::Text));
+        let pair = types.add(Ty::Struct("pair".to_owned(), vec![a, b]));
+        let list = types.add(Ty::List(pair));
+        assert_eq!(types.leaves(list), [Leaf { lists: 1, of: a }, Leaf { lists: 1, of: b }]);
+    }
 }

@@ -144,10 +144,17 @@ impl Agent {
             Ok(text) => {
                 self.plans += &text;
                 self.left_out.extend(left_out);
-                if plan.trigger.kind == TriggerKind::Achieve
-                    && let Ok(of) = literal(&plan.trigger.of)
-                {
-                    self.used.planned.insert(of.key());
+                if let Ok(of) = literal(&plan.trigger.of) {
+                    match plan.trigger.kind {
+                        TriggerKind::Achieve => self.used.planned.insert(of.key()),
+                        // What can fail must have a plan to fail in.
+                        TriggerKind::Failed => self.used.adopted.insert(of.key()),
+                        TriggerKind::Added
+                        | TriggerKind::Removed
+                        | TriggerKind::Test
+                        | TriggerKind::TestFailed
+                        | TriggerKind::State => false,
+                    };
                 }
                 self.label_remarks(plan);
             }

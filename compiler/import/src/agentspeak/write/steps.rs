@@ -143,7 +143,7 @@ impl Clause<'_> {
                 let word = if matches!(step.kind, StepKind::While { .. }) { "while" } else { "for" };
                 let before = self.bound.clone();
                 let condition = self.formula(condition).map(|c| c.text);
-                let body = condition.is_ok().then(|| self.steps(body, out)).unwrap_or_default();
+                let body = if condition.is_ok() { self.steps(body, out) } else { Vec::new() };
                 self.bound = before;
                 one(format!("{word} {} {}", condition?, block(&body)))
             }
