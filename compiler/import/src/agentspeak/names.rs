@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 use super::{
     System,
     ast::Key,
-    survey::Survey,
+    survey::{Mention, Survey, What},
     types::{Leaf, Ty, TyId, Types},
     write::Sort,
 };
@@ -115,6 +115,18 @@ impl Names {
             goals: called(types.goals.keys()),
             ..Self::default()
         };
+        // What is sent is a belief or a goal by its name alone.
+        let is_sent = |key: &Key| {
+            let sent = |m: &Mention| m.key == *key && matches!(m.what, What::Sent { .. });
+            surveys.iter().any(|s| s.goals.iter().any(sent))
+        };
+        let beliefs: IndexSet<String> = names.beliefs.values().cloned().collect();
+        let goals: IndexSet<String> = names.goals.values().cloned().collect();
+        for (_, name) in names.goals.iter_mut().filter(|(key, _)| is_sent(key)) {
+            while beliefs.contains(name) {
+                *name = unused(format!("{name}_"), &goals);
+            }
+        }
         let mut used = IndexSet::new();
         for agent in &system.agents {
             let name = unused(ident(&agent.name), &used);

@@ -272,6 +272,11 @@ impl Types {
         }
     }
 
+    /// Whether only agents know such a value: events and stimuli have no strings and lists.
+    pub fn is_for_agents(&self, leaf: Leaf) -> bool {
+        leaf.lists > 0 || *self.get(leaf.of) == Ty::Text
+    }
+
     /// Whether values of the class are taken apart.
     pub fn is_compound(&self, id: TyId) -> bool {
         match self.get(id) {

@@ -252,6 +252,9 @@ impl Clause<'_> {
 
     fn send(&mut self, message: &Message<'_>) -> Written<Vec<String>> {
         let Some(to) = message.to else {
+            if self.cx.system.agents.len() < 2 {
+                return Err("there is no other agent to send this to".into());
+            }
             let content = self.content(message, None)?;
             return Ok(vec![format!(".broadcast({}, {content})", message.performative)]);
         };

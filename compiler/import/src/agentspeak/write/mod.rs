@@ -116,6 +116,9 @@ impl Writer<'_> {
             let leaves = types.leaves(*place);
             let single = leaves.len() == 1;
             for (k, leaf) in leaves.into_iter().enumerate() {
+                if sort == Sort::Action && types.is_for_agents(leaf) {
+                    continue;
+                }
                 let mut name = if single { base.clone() } else { format!("{base}_{}", k + 1) };
                 while used.contains(&name) || self.names.is_value(&name) {
                     name.push('_');

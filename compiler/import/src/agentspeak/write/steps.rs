@@ -125,12 +125,7 @@ impl Clause<'_> {
             StepKind::Action(action) if action.is_internal() => self.internal_step(action, step.span, out),
             StepKind::Action(action) => {
                 let key = action.key();
-                let args = action
-                    .args
-                    .iter()
-                    .map(|a| self.values(a, Want::Value))
-                    .collect::<Written<Vec<_>>>()?
-                    .concat();
+                let args = self.action_args(&action.args)?;
                 let name = self.cx.names.actions.get(&(self.agent.to_owned(), key.clone())).cloned();
                 self.used.actions.insert(key);
                 if !action.annotations.is_empty() {
@@ -151,6 +146,24 @@ impl Clause<'_> {
             // What is in it stands for itself.
             StepKind::Block(_) => Ok(Vec::new()),
         }
+    }
+
+    /// The arguments of an action of the environment: a stimulus has no strings and lists.
+    fn action_args(&mut self, terms: &[Term]) -> Written<Vec<String>> {
+        let mut args = Vec::new();
+        for term in terms {
+            let leaves = self.cx.types.leaves(self.type_of(term)?);
+            for (value, leaf) in self.values(term, Want::Value)?.into_iter().zip(leaves) {
+                if self.cx.types.is_for_agents(leaf) {
+                    let message =
+                        "only agents know strings and lists: this argument of the action is dropped";
+                    self.remarks.push((term.span, message.to_owned()));
+                } else {
+                    args.push(value);
+                }
+            }
+        }
+        Ok(args)
     }
 
     fn choice(
