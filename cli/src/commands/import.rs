@@ -82,7 +82,10 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         Ok(imported) => imported_to(args, &imported),
         Err(errors) => {
             if args.json {
-                print(&Document { errors: errors.iter().map(Row::of_error).collect(), ..Document::default() })?;
+                print(&Document {
+                    errors: errors.iter().map(Row::of_error).collect(),
+                    ..Document::default()
+                })?;
             }
             errors.iter().for_each(|e| eprintln!("error: {e}"));
             Ok(Exit::Errors)

@@ -251,10 +251,12 @@ impl Clause<'_> {
     // ── Messages ──
 
     fn send(&mut self, message: &Message<'_>) -> Written<Vec<String>> {
+        let named =
+            message.to.is_some_and(|to| atom(to).is_some() || matches!(to.kind, TermKind::List { .. }));
+        if !named && self.cx.system.agents.len() < 2 {
+            return Err("there is no other agent to send this to".into());
+        }
         let Some(to) = message.to else {
-            if self.cx.system.agents.len() < 2 {
-                return Err("there is no other agent to send this to".into());
-            }
             let content = self.content(message, None)?;
             return Ok(vec![format!(".broadcast({}, {content})", message.performative)]);
         };
