@@ -1,0 +1,159 @@
+//! `hrdsl import`: programs of other tools to scenarios.
+
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+use hrdsl_import::{
+    Imported, Loader, Note, Severity, Source, SyntaxError,
+    agentspeak::{self, Options},
+};
+use serde::Serialize;
+
+use crate::{
+    exit::Exit,
+    input::{self, Fault},
+};
+
+/// Make a scenario from the programs of another tool.
+///
+/// What a scenario cannot say is left out, with a comment at its place and a row of the report.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl import agentspeak house.mas2j -o house.hri
+  hrdsl import agentspeak robot.asl owner.asl --name house > house.hri
+  hrdsl import agentspeak house.mas2j --strict --json | jq .notes")]
+pub struct Args {
+    #[command(subcommand)]
+    from: From,
+}
+
+#[derive(Subcommand)]
+enum From {
+    Agentspeak(AgentSpeak),
+}
+
+/// From Jason's AgentSpeak: agents with their beliefs, rules, goals and plans.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl import agentspeak house.mas2j -o house.hri
+  hrdsl import agentspeak robot.asl owner.asl --name house > house.hri")]
+struct AgentSpeak {
+    /// Programs (`.asl`, one agent each) and projects (`.mas2j`).
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The file to write; otherwise the scenario goes to stdout.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// The scenario's name; otherwise that of the project or of the first file.
+    #[arg(long, value_name = "SCENARIO")]
+    name: Option<String>,
+    /// Print the report as JSON on stdout, with the scenario if it is not written to a file.
+    #[arg(long)]
+    json: bool,
+    /// Exit with 1 if anything is left out.
+    #[arg(long)]
+    strict: bool,
+}
+
+/// Files that programs and projects name, relative to them.
+struct Disk;
+
+impl Loader for Disk {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let file = Path::new(from).parent().map_or_else(|| PathBuf::from(path), |folder| folder.join(path));
+        Ok(Source { text: input::read(&file)?, name: file.display().to_string() })
+    }
+}
+
+/// # Errors
+/// A file that cannot be read or written.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let From::Agentspeak(args) = &args.from;
+    let mut files = Vec::new();
+    for path in &args.files {
+        if !path.extension().is_some_and(|e| e == "asl" || e == "mas2j") {
+            return Err(format!("{} is neither a program (.asl) nor a project (.mas2j)", path.display()));
+        }
+        files.push(Source { name: path.display().to_string(), text: input::read(path)? });
+    }
+    match agentspeak::import(&files, &Disk, &Options { name: args.name.clone() }) {
+        Ok(imported) => imported_to(args, &imported),
+        Err(errors) => {
+            if args.json {
+                print(&Document {
+                    errors: errors.iter().map(Row::of_error).collect(),
+                    ..Document::default()
+                })?;
+            }
+            errors.iter().for_each(|e| eprintln!("error: {e}"));
+            Ok(Exit::Errors)
+        }
+    }
+}
+
+fn imported_to(args: &AgentSpeak, imported: &Imported) -> Result<Exit, Fault> {
+    if let Some(path) = &args.out {
+        input::write(path, &imported.text)?;
+    }
+    if args.json {
+        let text = args.out.is_none().then_some(imported.text.as_str());
+        let notes = imported.notes.iter().map(Row::of_note).collect();
+        print(&Document { text, notes, ..Document::default() })?;
+    } else {
+        if args.out.is_none() {
+            input::print(&imported.text)?;
+        }
+        imported.notes.iter().for_each(|note| eprintln!("{note}"));
+    }
+    let left_out = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).count();
+    if left_out > 0 {
+        eprintln!("{left_out} left out");
+    }
+    Ok(if args.strict && left_out > 0 { Exit::Errors } else { Exit::Ok })
+}
+
+fn print(document: &Document<'_>) -> Result<(), Fault> {
+    let text = serde_json::to_string_pretty(document).map_err(|e| format!("cannot print: {e}"))?;
+    input::print(&(text + "\n"))
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: &'static str,
+    version: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    text: Option<&'a str>,
+    notes: Vec<Row<'a>>,
+    errors: Vec<Row<'a>>,
+}
+
+impl Default for Document<'_> {
+    fn default() -> Self {
+        Self { format: "hrdsl-import", version: 1, text: None, notes: Vec::new(), errors: Vec::new() }
+    }
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    file: &'a str,
+    line: u32,
+    column: u32,
+    severity: &'static str,
+    message: &'a str,
+    help: Option<&'a str>,
+}
+
+impl<'a> Row<'a> {
+    fn of_note(note: &'a Note) -> Self {
+        let Note { file, line, column, severity, message, help } = note;
+        let (line, column) = (*line, *column);
+        Self { file, line, column, severity: severity.word(), message, help: help.as_deref() }
+    }
+
+    fn of_error(error: &'a SyntaxError) -> Self {
+        let SyntaxError { file, line, column, message } = error;
+        Self { file, line: *line, column: *column, severity: "error", message, help: None }
+    }
+}

@@ -1,0 +1,36 @@
+//! Programs of other tools to scenarios: text in, `.hri` text and notes out. It is pure: files come from a [`Loader`].
+//!
+//! - [`agentspeak`]: Jason's `.asl` and `.mas2j`
+//!
+//! What a scenario cannot say is left out, with a comment at its place and a [`Note`]; nothing is left out silently.
+
+pub mod agentspeak;
+mod note;
+
+pub use note::{Imported, Note, Severity, SyntaxError};
+
+/// A file: its name as it is to be shown, and its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    pub name: String,
+    pub text: String,
+}
+
+/// Reads the files that others name: the programs of a project, what a program includes.
+pub trait Loader {
+    /// The file `path`, as it is written in the file `from`.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn load(&self, from: &str, path: &str) -> Result<Source, String>;
+}
+
+/// There are no other files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, _: &str, path: &str) -> Result<Source, String> {
+        Err(format!("there is no file `{path}`"))
+    }
+}

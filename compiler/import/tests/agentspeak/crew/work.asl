@@ -1,0 +1,2 @@
+!work.
++!work <- dig(1).
