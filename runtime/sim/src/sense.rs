@@ -39,7 +39,8 @@ impl View<'_> {
         signal.value.eval(&term).unwrap_or(match signal.ty {
             Type::Bool => Value::Bool(false),
             Type::Int { lo, .. } => Value::Int(lo),
-            Type::Float(_) => Value::Float(f64::NAN),
+            // No signal is a string or a list.
+            Type::Float(_) | Type::Text | Type::List(_) => Value::Float(f64::NAN),
             Type::Enum(e) => e.values().first().map_or(Value::Float(f64::NAN), |s| Value::Symbol(*s)),
         })
     }

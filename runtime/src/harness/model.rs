@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{Detail, Logged, Measured, Society, show};
+use hrdsl_bdi::{Detail, Logged, Society, measure::Measured, show};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, Fact},

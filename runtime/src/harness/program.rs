@@ -252,6 +252,9 @@ fn argument(event: &str, param: &Param, given: Option<&Arg>) -> Result<Value, An
             Type::Int { lo, hi } => format!("an integer of {lo}..{hi}"),
             Type::Float(_) => "a number".to_owned(),
             Type::Enum(e) => format!("the name of a value of `{e}` ({})", e.listed()),
+            // The checker lets no event have these.
+            Type::Text => "a string".to_owned(),
+            Type::List(_) => "a list".to_owned(),
         };
         refuse(format!("`{event}`: `{}` is {given}, but must be {ty}", param.name), None)
     })

@@ -83,7 +83,7 @@ impl Model<'_> {
     /// Runs the agents with a set of beliefs; `number` is its place among all sets.
     fn run(&self, number: u64, set: &BeliefSet) -> Result<Outcome, String> {
         let seed = concrete::seed_of(self.seed, number);
-        let ModelRun { trace, ended, measured, warnings } =
+        let ModelRun { trace, ended, measured, warnings, .. } =
             model_run(self.program, self.players, &set.facts, seed, self.suite.horizon);
         if let Ended::Fault(fault) = ended {
             return Err(format!("suite `{}`, with {}: {fault}", self.suite.name, set.text.join(", ")));
