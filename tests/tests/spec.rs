@@ -5,6 +5,8 @@
 mod agents;
 #[path = "spec/blocks.rs"]
 mod blocks;
+#[path = "spec/conformance.rs"]
+mod conformance;
 #[path = "spec/draws.rs"]
 mod draws;
 #[path = "spec/ebnf.rs"]

@@ -1,6 +1,6 @@
 //! What records, arrays, vectors and enumerations mean when they run: compared with arrays, structures and f64 of Rust.
 
-use hrdsl_bdi::{Action, Machine};
+use hrdsl_bdi::{Action, Society};
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
     Program, Symbol, Value,
@@ -273,26 +273,25 @@ fn cell(col: i64, row: i64) -> [Value; 2] {
 #[test]
 fn an_agent_matches_keeps_and_says_records() {
     let p = program(AGENT, &[]);
-    let mut machine = Machine::new(&p, AgentId(0), &[]);
+    let mut society = Society::new(&p, &[(AgentId(0), Vec::new())], 0);
     let mut done: Vec<(String, Vec<Value>)> = Vec::new();
-    let step = |machine: &mut Machine<'_>, done: &mut Vec<(String, Vec<Value>)>, now: i64| loop {
-        let mut out: Vec<Action> = Vec::new();
-        machine.run(now, &mut out);
-        machine.settle(now, &mut out);
+    let step = |society: &mut Society<'_>, done: &mut Vec<(String, Vec<Value>)>, now: i64| loop {
+        let mut out: Vec<(usize, Action)> = Vec::new();
+        society.run(now, &mut out);
         if out.is_empty() {
             break;
         }
-        for action in out {
+        for (agent, action) in out {
             done.push((p.event(action.event).name.clone(), action.args.clone()));
-            machine.stimulus_done(action.token, now);
+            society.stimulus_done(agent, action.token, now);
         }
     };
-    step(&mut machine, &mut done, 0);
+    step(&mut society, &mut done, 0);
     let seen = p.event_named("seen").unwrap();
-    machine.perceive(seen, &cell(2, 1), SECOND);
-    step(&mut machine, &mut done, SECOND);
-    machine.perceive(seen, &cell(2, 1), 2 * SECOND);
-    step(&mut machine, &mut done, 2 * SECOND);
+    society.perceive(0, seen, &cell(2, 1));
+    step(&mut society, &mut done, SECOND);
+    society.perceive(0, seen, &cell(2, 1));
+    step(&mut society, &mut done, 2 * SECOND);
     let symbol = |name: &str| Value::Symbol(Symbol::intern(name));
     let job = |c: [Value; 2], what: &str, a: bool, b: bool| {
         ("go".to_owned(), vec![c[0], c[1], symbol(what), Value::Bool(a), Value::Bool(b)])

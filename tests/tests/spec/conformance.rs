@@ -1,0 +1,94 @@
+//! The conformance suite of agents: each section of `spec/agentspeak` is a small program with the log of its run. hrdsl and
+//! the reference in Python must both print that log.
+//!
+//! A block `hri,run` is a scenario; all its agents play, in their order, without chosen beliefs. The block `log` after it is
+//! what is printed. With `HRDSL_RENEW=1` the logs are written anew; read them before they are believed.
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use hrdsl_bdi::choose::BeliefSet;
+use hrdsl_compiler::{Input, compile};
+
+use crate::{
+    agents::{Cast, by_the_pages, difference, printed},
+    page::{Block, pages, root, shown, split},
+};
+
+/// As many programs as there must be.
+const ENOUGH: usize = 150;
+
+struct Checked {
+    faults: Vec<String>,
+    programs: usize,
+    page: String,
+}
+
+#[test]
+fn every_program_has_its_log() {
+    let folder = root().join("spec/agentspeak");
+    let renew = std::env::var_os("HRDSL_RENEW").is_some();
+    let (mut faults, mut programs) = (Vec::new(), 0);
+    for path in pages(&folder) {
+        let checked = page(&path, renew);
+        programs += checked.programs;
+        faults.extend(checked.faults);
+        if renew {
+            fs::write(&path, checked.page).unwrap();
+        }
+    }
+    assert!(faults.is_empty(), "{} of {programs} programs:\n{}", faults.len(), faults.join("\n\n"));
+    assert!(programs >= ENOUGH, "only {programs} programs of {ENOUGH}");
+}
+
+fn page(path: &Path, renew: bool) -> Checked {
+    let text = fs::read_to_string(path).unwrap();
+    let blocks = split(&text).0;
+    let mut checked = Checked { faults: Vec::new(), programs: 0, page: text.clone() };
+    let mut seen = BTreeSet::new();
+    for (at, block) in blocks.iter().enumerate().filter(|(_, b)| b.info == "hri,run") {
+        let place = format!("{}:{}", shown(path), block.line);
+        checked.programs += 1;
+        if !seen.insert(block.text.as_str()) {
+            checked.faults.push(format!("{place}: the same program twice"));
+        }
+        let Some(log) = blocks.get(at + 1).filter(|b| b.info == "log") else {
+            checked.faults.push(format!("{place}: no block `log` follows"));
+            continue;
+        };
+        match run(block) {
+            Ok(ours) if renew => {
+                let (from, to) = (format!("{}```log\n{}```", head(block), log.text), format!("{}```log\n{ours}```", head(block)));
+                checked.page = checked.page.replacen(&from, &to, 1);
+            }
+            Ok(ours) => {
+                checked.faults.extend(difference(&ours, &log.text).map(|d| format!("{place}: not the log\n{d}")));
+            }
+            Err(fault) => checked.faults.push(format!("{place}: {fault}")),
+        }
+    }
+    checked
+}
+
+/// The end of a program, up to its log: what tells its log from an equal one of another program.
+fn head(block: &Block) -> String {
+    format!("{}```\n\n", block.text)
+}
+
+/// The log, if the reference has the same.
+fn run(block: &Block) -> Result<String, String> {
+    let compilation = compile(Input { name: "program.hri", text: &block.text }, &[]);
+    if let Some(said) = compilation.diagnostics.iter().find(|d| d.is_error()) {
+        return Err(format!("{}: {}", said.code, said.message));
+    }
+    let program = compilation.program.ok_or("no program")?;
+    let agents = (0..program.agents.len() as u16).collect();
+    let cast: Cast = (agents, BeliefSet::default());
+    let ours = printed(&program, &block.text, &cast);
+    if block.text.contains(".random(") || block.text.contains(".shuffle(") {
+        // The reference has no chance.
+        return Ok(ours);
+    }
+    let theirs = by_the_pages(&program, &block.text, &[cast]);
+    let theirs = theirs.first().map_or("", String::as_str);
+    difference(&ours, theirs).map_or(Ok(ours.clone()), |d| Err(format!("the reference differs\n{d}")))
+}
