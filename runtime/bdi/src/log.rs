@@ -29,7 +29,8 @@ pub enum Detail {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogEntry {
     pub time: Nanos,
-    /// Counted over the run: what agents do in one round comes in their order.
+    /// Counts rounds, and the ends of actions and waits between them, over the run: what agents do in one round comes in
+    /// their order.
     pub round: u64,
     /// Cycles at this instant.
     pub cycle: u64,

@@ -23,7 +23,7 @@ impl<'p> Machine<'p> {
             let verdict = self.attempt(index, event);
             if let (Verdict::Faulty(fault), None) = (verdict, selected) {
                 let origin = self.mind.library.plan(index).origin;
-                self.enter(number, Logged::Fault { plan: index, fault, origin });
+                self.enter(0, Logged::Fault { plan: index, fault, origin });
             }
             if self.log.detail >= Detail::Reasons && selected.is_none() {
                 let (on, args) = (event.on, event.args.clone());

@@ -50,6 +50,15 @@ fn performative(p: Performative) -> &'static str {
     }
 }
 
+/// What an expression stands in, which says whether it needs parentheses.
+#[derive(Clone, Copy)]
+enum Within {
+    Nothing,
+    /// `&&`, `||`, `not`
+    Logical,
+    Other,
+}
+
 /// Names of one agent's program, and the values of one plan's variables.
 struct Show<'a> {
     program: &'a Program,
@@ -413,23 +422,29 @@ impl Show<'_> {
         }
     }
 
+    /// The value; if there is none, the expression.
     fn expr(&self, e: &Expr) -> String {
-        match (eval(e, self.slots), e) {
-            (Ok(v), _) => v.to_string(),
-            (_, Expr::Const(v)) => v.to_string(),
-            (_, Expr::Var(v)) => self.name(*v),
-            (_, Expr::Unary(op, a)) => match op {
-                UnaryOp::Not => format!("not {}", self.operand(a)),
-                UnaryOp::Neg => format!("-{}", self.operand(a)),
-            },
-            (_, Expr::Binary(op, a, b)) => {
-                format!("{} {} {}", self.operand(a), operator(*op), self.operand(b))
-            }
-            (_, Expr::If(c, a, b)) => {
+        eval(e, self.slots).map_or_else(|_| self.expression(e, Within::Nothing), |v| v.to_string())
+    }
+
+    /// The expression as it stands, with the values of the variables that have one.
+    fn expression(&self, e: &Expr, within: Within) -> String {
+        match e {
+            Expr::Const(v) => v.to_string(),
+            Expr::Var(v) => self
+                .slots
+                .get(usize::from(*v))
+                .copied()
+                .flatten()
+                .map_or_else(|| self.name(*v), |v| v.to_string()),
+            Expr::Unary(UnaryOp::Not, a) => format!("not {}", self.expression(a, Within::Logical)),
+            Expr::Unary(UnaryOp::Neg, a) => format!("-{}", self.expression(a, Within::Other)),
+            Expr::Binary(op, a, b) => self.binary(*op, [a, b], within),
+            Expr::If(c, a, b) => {
                 format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b))
             }
-            (_, Expr::Call(f, args)) => call(function(*f), args.iter().map(|a| self.expr(a))),
-            (_, Expr::List(items, rest)) => {
+            Expr::Call(f, args) => call(function(*f), args.iter().map(|a| self.expr(a))),
+            Expr::List(items, rest) => {
                 let items: Vec<String> = items.iter().map(|i| self.expr(i)).collect();
                 let rest = rest.as_ref().map_or(String::new(), |r| format!(" | {}", self.expr(r)));
                 format!("[{}{rest}]", items.join(", "))
@@ -437,30 +452,42 @@ impl Show<'_> {
         }
     }
 
-    /// In parentheses, if it is an operation that has no value yet.
-    fn operand(&self, e: &Expr) -> String {
-        let text = self.expr(e);
-        let open = eval(e, self.slots).is_err() && matches!(e, Expr::Binary(..) | Expr::If(..));
-        if open { format!("({text})") } else { text }
+    fn binary(&self, op: BinaryOp, operands: [&Expr; 2], within: Within) -> String {
+        let (logical, compared) = match op {
+            BinaryOp::And | BinaryOp::Or => (true, false),
+            BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
+                (false, true)
+            }
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => (false, false),
+        };
+        let here = if logical { Within::Logical } else { Within::Other };
+        let [a, b] =
+            operands.map(|e| if compared { self.expr(e) } else { self.expression(e, here) });
+        let text = format!("{a} {} {b}", operator(op));
+        let parenthesised = match within {
+            Within::Nothing => false,
+            Within::Logical => !compared,
+            Within::Other => true,
+        };
+        if parenthesised { format!("({text})") } else { text }
     }
 
     fn context(&self, context: &Context) -> String {
-        let part = |c: &Context| match c {
-            Context::And(_) | Context::Or(_) => format!("({})", self.context(c)),
-            _ => self.context(c),
+        self.formula(context, false)
+    }
+
+    fn formula(&self, context: &Context, inner: bool) -> String {
+        let joined = |all: &[Context], by: &str| {
+            let text = all.iter().map(|c| self.formula(c, true)).collect::<Vec<_>>().join(by);
+            if inner && all.len() > 1 { format!("({text})") } else { text }
         };
-        let joined = |all: &[Context], by: &str| all.iter().map(part).collect::<Vec<_>>().join(by);
         match context {
             Context::True => "true".to_owned(),
             Context::Belief(literal) => self.literal(literal),
-            Context::Not(inner) => format!("not {}", part(inner)),
+            Context::Not(inner) => format!("not {}", self.formula(inner, true)),
             Context::And(all) => joined(all, " && "),
             Context::Or(all) => joined(all, " || "),
-            // A comparison is shown as it is compared, not as its outcome.
-            Context::Test(Expr::Binary(op, a, b)) => {
-                format!("{} {} {}", self.operand(a), operator(*op), self.operand(b))
-            }
-            Context::Test(e) => self.expr(e),
+            Context::Test(e) => self.expression(e, if inner { Within::Logical } else { Within::Nothing }),
             Context::Unify(term, e) => format!("{} = {}", self.term(term), self.expr(e)),
             Context::Internal(internal) => self.internal(internal),
         }

@@ -28,7 +28,7 @@ pub struct Society<'p> {
     machines: Vec<Machine<'p>>,
     actors: Vec<Option<ActorId>>,
     now: Nanos,
-    /// Counted over the run.
+    /// Counts rounds, and the ends of actions and waits between them, over the run.
     round: u64,
     /// Rounds at the instant `now`.
     rounds: u64,
@@ -119,7 +119,9 @@ impl<'p> Society<'p> {
     /// progress has no effect.
     pub fn stimulus_done(&mut self, agent: usize, token: ActionToken, now: Nanos) {
         self.pass(now);
+        self.round += 1;
         if let Some(machine) = self.machines.get_mut(agent) {
+            machine.log.round = self.round;
             machine.action_done(token);
         }
     }
@@ -141,6 +143,7 @@ impl<'p> Society<'p> {
     /// agents are to be settled.
     pub fn expire(&mut self, agent: usize, now: Nanos) -> bool {
         self.pass(now);
+        self.round += 1;
         let round = self.round;
         let halted = self.halted.is_some();
         self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {

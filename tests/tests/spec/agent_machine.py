@@ -120,7 +120,7 @@ class Agent:
     def settle(self):
         if self.ended:
             return
-        done, remembered = 0, None
+        done, remembered, until = 0, None, 0
         while True:
             if not self.events and not self.ready:
                 if not self.inbox:
@@ -135,11 +135,10 @@ class Agent:
             if self.ready:
                 self.step(self.ready.pop(0))
             if done >= FIRST_STATE:
-                state = self.state()
-                if state == remembered:
+                if remembered and done <= until and self.state() == remembered:
                     return self.end("livelock")
                 if done & (done - 1) == 0:
-                    remembered = state
+                    remembered, until = self.state(), done + done // 16
 
     def end(self, how):
         self.ended = how
@@ -590,6 +589,11 @@ def applicable(agent, plan, event):
     query = Query(agent, called)
     for theta in match_annotations(trigger["annotations"], event.annotations, first, called):
         yield from query.answers(plan["context"], theta)
+
+
+def fits_one(patterns, event, values):
+    """Whether an event is one of these."""
+    return any(of_pattern(p, event, values) for p in patterns)
 
 
 def of_pattern(pattern, event, values):

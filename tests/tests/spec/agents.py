@@ -61,7 +61,7 @@ class Company:
 
     def rounds(self, happen):
         """Until nobody has anything to do at this instant."""
-        quiet, remembered = 0, None
+        quiet, remembered, until = 0, None, 0
         while True:
             for agent in self.agents:
                 agent.settle()
@@ -72,12 +72,11 @@ class Company:
                 return
             quiet = 0 if acted else quiet + 1
             if quiet >= FIRST_STATE:
-                state = [agent.state() for agent in self.agents]
-                if state == remembered:
+                if remembered and quiet <= until and [agent.state() for agent in self.agents] == remembered:
                     next(a for a in self.agents if a.inbox).end("livelock")
                     self.look_for_ends()
                 if quiet & (quiet - 1) == 0:
-                    remembered = state
+                    remembered, until = [agent.state() for agent in self.agents], quiet + quiet // 16
 
     def look_for_ends(self):
         for agent in self.agents:

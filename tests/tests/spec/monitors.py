@@ -4,7 +4,8 @@ import json
 import math
 import sys
 
-from agents import Fault, evaluate, fits
+from agent_machine import fits_one
+from agent_values import Fault, evaluate
 
 NEVER = math.inf
 
@@ -94,12 +95,12 @@ class Monitor:
                 self.sigma[what["signal"]] = (value, i)
                 self.s = (t, i)
             return
-        is_it = lambda on: on not in ("sample", "deadline") and fits(on["event"], what, value)
+        is_it = lambda on: on not in ("sample", "deadline") and fits_one(on["event"], what, value)
         at = self.it["margin"]["at"] if self.it["margin"] else []
         named = lambda patterns: any(p["event"] == what for p in patterns)
         if named(at) or any(e["on"] not in ("sample", "deadline") and named(e["on"]["event"]) for e in self.it["edges"]):
             self.sampled()
-        if fits(at, what, value):
+        if fits_one(at, what, value):
             self.take_margin(t)
         self.react(is_it, t, i)
 

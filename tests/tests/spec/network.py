@@ -6,7 +6,8 @@ import json
 import sys
 from itertools import product
 
-from agents import evaluate, fits
+from agent_machine import fits_one
+from agent_values import evaluate
 
 TICK = 250_000_000
 
@@ -67,7 +68,7 @@ def receptions(i, ells, v, u, event, args):
             continue
         patterns = sync["receive"]["args"]
         wanted = ["any" if p == "bind" else p["match"] for p in patterns]
-        if not fits([{"event": event, "args": wanted}], event, args) or not holds(i, edge["clock_guard"], u):
+        if not fits_one([{"event": event, "args": wanted}], event, args) or not holds(i, edge["clock_guard"], u):
             continue
         bound = [a for p, a in zip(patterns, args) if p == "bind"]
         for binding in bindings(edge, bound):
@@ -83,11 +84,11 @@ def after(state, moves, event, args):
     ells, v, u, counts, limited = list(ells), list(v), list(u), list(counts), list(limited)
     if event is not None:
         for n, limit in enumerate(limits):
-            limited[n] += fits(limit["events"], event, args)
+            limited[n] += fits_one(limit["events"], event, args)
             if limited[n] > limit["at_most"]:
                 return None
         for n, point in enumerate(points):
-            counts[n] = min(caps[n], counts[n] + fits(point["count"], event, args))
+            counts[n] = min(caps[n], counts[n] + fits_one(point["count"], event, args))
     for i, number, binding in moves:
         edge = network[i]["edges"][number]
         own = [n for n, (of, _) in enumerate(slots) if of in ("shared", i)]
