@@ -117,8 +117,8 @@ impl Machine<'_> {
             if let Some(place) = event.of {
                 self.drop_one(place);
             }
-            if let Some(reply) = event.reply {
-                self.answer_nothing(*reply);
+            if let Some(reply) = event.reply() {
+                self.answer_nothing(reply);
             }
         }
     }

@@ -144,15 +144,7 @@ impl<'p> Machine<'p> {
         }
         for (goal, args) in &agent.initial_goals {
             let args = args.iter().map(|v| Some(*v)).collect();
-            self.post(Event {
-                on: TriggerOn::GoalAdded(*goal),
-                args,
-                annotations: None,
-                of: None,
-                origin: agent.origin,
-                by: None,
-                reply: None,
-            });
+            self.post(Event::new(TriggerOn::GoalAdded(*goal), args));
         }
     }
 
@@ -193,7 +185,7 @@ impl<'p> Machine<'p> {
             self.cycles += 1;
             self.cycle();
             done += 1;
-            if self.repeats(done) {
+            if !self.repetition.is_idle(done) && self.repeats(done) {
                 self.halted = Some(Status::Livelock);
                 self.enter(0, Logged::Livelock);
                 return;
@@ -327,7 +319,7 @@ impl<'p> Machine<'p> {
             (Some(plan), _) => self.adopt(plan, event),
             (None, on) => {
                 let number = event.of.map_or(0, |place| self.mind.pool.see(place).number);
-                let (args, origin) = (event.args.clone(), event.origin);
+                let (args, origin) = (event.args.clone(), self.origin_of(event));
                 self.enter(number, Logged::Unhandled { on, args, origin });
                 self.fail_by_itself(event);
             }
@@ -338,7 +330,7 @@ impl<'p> Machine<'p> {
     pub fn adopt(&mut self, plan: u16, event: &Event) {
         let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
         if event.of.is_none() {
-            self.mind.pool.at(place).reply = event.reply.as_deref().copied();
+            self.mind.pool.at(place).reply = event.reply();
         }
         self.begin(place, plan, event);
     }
@@ -380,7 +372,7 @@ impl<'p> Machine<'p> {
         let number = intention.number;
         if let Some(top) = intention.frames.last_mut() {
             top.under = under.unwrap_or(top.under);
-            top.told = event.annotations.as_ref().and_then(|a| a.first()).and_then(|(_, v)| v.as_symbol());
+            top.told = event.annotations().and_then(|a| a.first()).and_then(|(_, v)| v.as_symbol());
         }
         if let Some(measured) = &mut self.measured {
             let under = intention.frames.last().map_or([crate::intention::NO_PLAN; 2], |f| f.under);
@@ -422,8 +414,7 @@ impl<'p> Machine<'p> {
     pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<Annotations>) {
         if !self.mind.library.relevant(on).is_empty() {
             let args: Args = args.iter().map(|v| Some(*v)).collect();
-            let (origin, annotations) = (self.agent_origin(), annotations.map(Box::new));
-            self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
+            self.post(Event::new(on, args).annotated(annotations.unwrap_or_default()));
         }
     }
 
@@ -466,8 +457,11 @@ impl<'p> Machine<'p> {
         self.serial
     }
 
-    pub fn agent_origin(&self) -> Span {
-        self.mind.agent.map_or_else(Span::default, |a| a.origin)
+    /// The step that posted an event, or the agent.
+    fn origin_of(&self, event: &Event) -> Span {
+        let step =
+            event.by.and_then(|(plan, site)| self.mind.library.code(plan).iter().find(|l| l.site == site));
+        step.map(|l| l.origin).or(self.mind.agent.map(|a| a.origin)).unwrap_or_default()
     }
 
     // ── Log and measure ──

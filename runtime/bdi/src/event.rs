@@ -1,7 +1,7 @@
 //! What goes in and out of an agent: the events that it reasons about, the actions that it does, the messages it sends.
 
 use hrdsl_ir::{
-    EventId, Span, Value,
+    EventId, Value,
     bdi::{ContentId, Performative, TriggerOn},
 };
 use smallvec::SmallVec;
@@ -39,21 +39,54 @@ pub struct Action {
     pub args: Vec<Value>,
 }
 
-/// An event in the agent's queue.
+/// An event in the agent's queue. It is moved often, and so it is kept small.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
     pub on: TriggerOn,
-    pub args: Args,
-    /// Of a belief that was added those that are new; of a goal who asked for it, if that was another agent.
-    pub annotations: Option<Box<Annotations>>,
-    /// The intention that waits for the event's plan; `None`: the plan becomes an intention of its own.
-    pub of: Option<u32>,
-    /// What posted a goal: a step, or the agent.
-    pub origin: Span,
     /// The plan and the site of the step that posted a goal.
     pub by: Option<(u16, u16)>,
-    /// Who asked, and waits for the answer of this test goal.
-    pub reply: Option<Box<Reply>>,
+    /// The intention that waits for the event's plan; `None`: the plan becomes an intention of its own.
+    pub of: Option<u32>,
+    pub args: Args,
+    pub more: Option<Box<More>>,
+}
+
+/// What few events have.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct More {
+    annotations: Annotations,
+    reply: Option<Reply>,
+}
+
+impl Event {
+    pub fn new(on: TriggerOn, args: Args) -> Self {
+        Self { on, by: None, of: None, args, more: None }
+    }
+
+    #[must_use]
+    pub fn annotated(mut self, annotations: Annotations) -> Self {
+        if !annotations.is_empty() {
+            self.more.get_or_insert_default().annotations = annotations;
+        }
+        self
+    }
+
+    /// Another agent asked, and waits for the answer of this test goal.
+    #[must_use]
+    pub fn asked(mut self, reply: Reply) -> Self {
+        self.more.get_or_insert_default().reply = Some(reply);
+        self
+    }
+
+    /// Of a belief that was added those that are new, of one that left those it had; of a goal who asked for it, if that
+    /// was another agent.
+    pub fn annotations(&self) -> Option<&Annotations> {
+        self.more.as_ref().map(|m| &m.annotations).filter(|a| !a.is_empty())
+    }
+
+    pub fn reply(&self) -> Option<Reply> {
+        self.more.as_ref().and_then(|m| m.reply)
+    }
 }
 
 /// To whom an answer goes.

@@ -210,9 +210,7 @@ impl<'p> Machine<'p> {
             }
             Performative::Achieve => {
                 let Some(goal) = self.goal(content) else { return };
-                let (on, origin) = (TriggerOn::GoalAdded(goal), self.agent_origin());
-                let annotations = Some(Box::new(told_by(name)));
-                self.post(Event { on, args, annotations, of: None, origin, by: None, reply: None });
+                self.post(Event::new(TriggerOn::GoalAdded(goal), args).annotated(told_by(name)));
             }
             Performative::Unachieve => {
                 if let Some(goal) = self.goal(content) {
@@ -261,9 +259,7 @@ impl<'p> Machine<'p> {
             }
         };
         if found.is_empty() && !all && self.plans_answer(belief) {
-            let (origin, reply) = (self.agent_origin(), Some(Box::new(reply)));
-            let on = TriggerOn::TestAdded(belief);
-            self.post(Event { on, args, annotations: None, of: None, origin, by: None, reply });
+            self.post(Event::new(TriggerOn::TestAdded(belief), args).asked(reply));
         } else if found.is_empty() && !all {
             self.answer_nothing(reply);
         } else if let Some(question) = question {

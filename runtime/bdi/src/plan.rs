@@ -4,7 +4,7 @@ use hrdsl_ir::{
     EventId, Program,
     bdi::{
         Agent, AgentId, BeliefId, Context, GoalId, Internal, Performative, Plan, Rule, StepKind, Subject,
-        TriggerOn, each_step,
+        Term, TriggerOn, each_step,
     },
 };
 use smallvec::SmallVec;
@@ -20,6 +20,8 @@ pub(crate) struct Library<'p> {
     /// The relevant plans in source order, by [`place`](Self::place).
     relevant: Vec<SmallVec<[u16; 4]>>,
     code: Vec<Vec<Line<'p>>>,
+    /// Whether the trigger's terms are different variables, so that they match any values.
+    plain: Vec<bool>,
     /// Whether the plan's frame may be dropped as soon as its body is finished, even below a sub-goal.
     leaves_early: Vec<bool>,
     /// By belief.
@@ -39,6 +41,7 @@ impl<'p> Library<'p> {
                 plans.push(index);
             }
         }
+        library.plain = agent.plans.iter().map(is_plain).collect();
         library.code = agent.plans.iter().map(|p| compile(&p.body).unwrap_or_default()).collect();
         library.rules.resize(beliefs, Vec::new());
         for rule in &agent.rules {
@@ -95,6 +98,10 @@ impl<'p> Library<'p> {
         &self.plans[usize::from(index)]
     }
 
+    pub fn is_plain(&self, index: u16) -> bool {
+        self.plain[usize::from(index)]
+    }
+
     pub fn code(&self, index: u16) -> &[Line<'p>] {
         &self.code[usize::from(index)]
     }
@@ -110,6 +117,13 @@ impl<'p> Library<'p> {
     pub fn percepts(&self, event: EventId) -> &[BeliefId] {
         self.percepts.get(usize::from(event.0)).map_or(&[], |p| p.as_slice())
     }
+}
+
+fn is_plain(plan: &Plan) -> bool {
+    let variable = |term: &Term| if let Term::Var(v) = term { Some(*v) } else { None };
+    let vars: Option<Vec<u16>> = plan.trigger.args.iter().map(variable).collect();
+    let different = |v: Vec<u16>| v.iter().enumerate().all(|(i, a)| !v[..i].contains(a));
+    plan.trigger.annotations.is_empty() && vars.is_some_and(different)
 }
 
 /// By goal: an internal action asks for it or changes it, or another agent may take it back.

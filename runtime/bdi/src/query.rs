@@ -136,6 +136,7 @@ pub(crate) struct Solver<'p> {
 
 impl<'p> Solver<'p> {
     /// Begins with as many open variables.
+    #[inline]
     pub fn open(&mut self, variables: usize) {
         self.slots.clear();
         self.slots.resize(variables, None);

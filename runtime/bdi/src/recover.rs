@@ -197,8 +197,8 @@ impl<'p> Machine<'p> {
             self.adopt(plan, &event);
         } else if let Some(place) = event.of {
             self.unwind(place);
-        } else if let Some(reply) = event.reply {
-            self.answer_nothing(*reply);
+        } else if let Some(reply) = event.reply() {
+            self.answer_nothing(reply);
         }
     }
 
@@ -224,10 +224,10 @@ impl<'p> Machine<'p> {
             let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = Args::from_slice(self.mind.pool.see(place).args(top));
-                let annotations = top.told.map(|who| Box::new(told_by(Value::Symbol(who))));
-                let (origin, of) = (self.mind.library.plan(top.plan).origin, Some(place));
-                let event = Event { on, args, annotations, of, origin, by: None, reply: None };
-                self.select(&event, of).map(|plan| (plan, event))
+                let annotations = top.told.map(|who| told_by(Value::Symbol(who)));
+                let event = Event::new(on, args).annotated(annotations.unwrap_or_default());
+                let event = Event { of: Some(place), ..event };
+                self.select(&event, Some(place)).map(|plan| (plan, event))
             });
             self.leave(place);
             if !top.branch {

@@ -44,6 +44,12 @@ impl Repetition {
         self.kept = None;
     }
 
+    /// Whether there is nothing to compare or to keep at this cycle.
+    #[inline]
+    pub fn is_idle(&self, cycle: u64) -> bool {
+        self.kept.is_none() && (cycle < FIRST || !cycle.is_power_of_two())
+    }
+
     /// Whether the state at this cycle is the one that was kept.
     pub fn seen(&mut self, cycle: u64, of: &impl Repeats) -> bool {
         if let Some((fingerprint, state)) = &self.kept {
@@ -205,7 +211,7 @@ fn event(out: &mut Vec<u64>, e: &Event, rank: &dyn Fn(u32) -> u64) {
         .map(u64::from),
     );
     slots(out, &e.args);
-    e.annotations.iter().for_each(|a| annotations(out, a));
+    e.annotations().iter().for_each(|a| annotations(out, a));
     out.push(e.of.map_or(0, rank));
 }
 

@@ -1,6 +1,10 @@
 //! Selection of a plan: the first relevant one whose context has an answer.
 
-use hrdsl_ir::bdi::{Plan, TriggerOn};
+use hrdsl_ir::{
+    Value,
+    bdi::{Context, Plan, Term, TriggerOn},
+    expr::EvalError,
+};
 
 use crate::{
     Detail, Logged, Verdict,
@@ -8,12 +12,33 @@ use crate::{
     cycle::Machine,
     event::Event,
     query::{Fault, Solver},
-    unify::{Slot, unify, unify_all, well_bound},
+    unify::{Slot, eval, unify, unify_all, well_bound},
 };
 
 impl<'p> Machine<'p> {
     /// The first applicable plan; its variables are in the solver. What went wrong on the way is logged.
     pub fn select(&mut self, event: &Event, of: Option<u32>) -> Option<u16> {
+        if self.measured.is_some() || self.log.detail >= Detail::Reasons {
+            return self.select_closely(event, of);
+        }
+        for at in 0..self.mind.library.relevant(event.on).len() {
+            let index = self.mind.library.relevant(event.on)[at];
+            match self.attempt(index, event) {
+                Verdict::Applicable => return Some(index),
+                Verdict::Unlike | Verdict::False { .. } => {}
+                Verdict::Faulty(fault) => self.enter_fault(index, fault),
+            }
+        }
+        None
+    }
+
+    fn enter_fault(&mut self, plan: u16, fault: Fault) {
+        let origin = self.mind.library.plan(plan).origin;
+        self.enter(0, Logged::Fault { plan, fault, origin });
+    }
+
+    /// The same, with all that was tried counted and logged; how many more would be applicable is counted, too.
+    fn select_closely(&mut self, event: &Event, of: Option<u32>) -> Option<u16> {
         let number = of.map_or(0, |place| self.mind.pool.see(place).number);
         let mut selected = None;
         let mut applicable = 0;
@@ -21,24 +46,20 @@ impl<'p> Machine<'p> {
         for at in 0..self.mind.library.relevant(event.on).len() {
             let index = self.mind.library.relevant(event.on)[at];
             let verdict = self.attempt(index, event);
-            if let (Verdict::Faulty(fault), None) = (verdict, selected) {
-                let origin = self.mind.library.plan(index).origin;
-                self.enter(0, Logged::Fault { plan: index, fault, origin });
-            }
-            if self.log.detail >= Detail::Reasons && selected.is_none() {
-                let (on, args) = (event.on, event.args.clone());
-                self.enter(number, Logged::Tried { on, args, plan: index, verdict });
-            }
             if selected.is_none() {
+                if let Verdict::Faulty(fault) = verdict {
+                    self.enter_fault(index, fault);
+                }
+                if self.log.detail >= Detail::Reasons {
+                    let (on, args) = (event.on, event.args.clone());
+                    self.enter(number, Logged::Tried { on, args, plan: index, verdict });
+                }
                 self.measure_attempt(index, verdict);
             }
             if verdict == Verdict::Applicable {
                 applicable += 1;
                 if selected.is_none() {
                     selected = Some(index);
-                    if self.measured.is_none() {
-                        return selected;
-                    }
                     vars.clone_from(&self.solver.slots);
                 }
             }
@@ -55,6 +76,14 @@ impl<'p> Machine<'p> {
         let plan: &'p Plan = self.mind.library.plan(index);
         self.solver.open(plan.vars.len());
         let Solver { slots, trail, .. } = &mut self.solver;
+        if self.mind.library.is_plain(index) {
+            for (term, value) in plan.trigger.args.iter().zip(&event.args) {
+                if let Term::Var(var) = term {
+                    slots[usize::from(*var)] = *value;
+                }
+            }
+            return self.verdict(plan);
+        }
         let likes = well_bound(&plan.trigger.args, slots)
             .and_then(|()| unify_all(&plan.trigger.args, event.args.iter().copied(), 0, slots, trail));
         match likes {
@@ -68,7 +97,16 @@ impl<'p> Machine<'p> {
         self.verdict(plan)
     }
 
+    #[inline]
     fn verdict(&mut self, plan: &'p Plan) -> Verdict {
+        if let Context::Test(expr) = &plan.context {
+            return match eval(expr, &self.solver.slots) {
+                Ok(Value::Bool(true)) => Verdict::Applicable,
+                Ok(Value::Bool(false)) => Verdict::False { part: 0 },
+                Ok(_) => Verdict::Faulty(Fault::NoValue(EvalError::Type)),
+                Err(error) => Verdict::Faulty(Fault::NoValue(error)),
+            };
+        }
         match self.solver.solve(&self.mind, &mut self.dice, &plan.context) {
             Ok(true) => Verdict::Applicable,
             Ok(false) => Verdict::False { part: self.solver.farthest },
@@ -79,8 +117,8 @@ impl<'p> Machine<'p> {
     /// Each way in which the trigger's annotations match the event's is tried, the last changing fastest.
     fn attempt_annotated(&mut self, plan: &'p Plan, event: &Event) -> Verdict {
         let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
-        let held: Annotations = match &event.annotations {
-            Some(held) => (**held).clone(),
+        let held: Annotations = match event.annotations() {
+            Some(held) => held.clone(),
             None if is_goal => own(),
             None => Annotations::new(),
         };

@@ -461,8 +461,7 @@ impl Show<'_> {
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => (false, false),
         };
         let here = if logical { Within::Logical } else { Within::Other };
-        let [a, b] =
-            operands.map(|e| if compared { self.expr(e) } else { self.expression(e, here) });
+        let [a, b] = operands.map(|e| if compared { self.expr(e) } else { self.expression(e, here) });
         let text = format!("{a} {} {b}", operator(op));
         let parenthesised = match within {
             Within::Nothing => false,

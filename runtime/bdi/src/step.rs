@@ -1,7 +1,7 @@
 //! Execution of one step of a plan's body.
 
 use hrdsl_ir::{
-    EventId, EventPattern, Expr, Nanos, Span, Value,
+    EventId, EventPattern, Expr, Nanos, Value,
     bdi::{
         Annotation, Assertion, BeliefId, Context, GoalId, Literal, StepKind, Term, TriggerOn, source_self,
     },
@@ -50,14 +50,13 @@ fn given(exprs: &[Expr], slots: &[Slot]) -> Result<Args, Cause> {
     Ok(all)
 }
 
-/// Where a step is: its intention, its plan, its place in the body, and in the text.
+/// Where a step is: its intention, its plan, and its place in the body.
 #[derive(Clone, Copy)]
 pub(crate) struct Here {
     pub place: u32,
     pub plan: u16,
     pub line: u16,
     pub site: u16,
-    pub origin: Span,
 }
 
 impl<'p> Machine<'p> {
@@ -76,7 +75,7 @@ impl<'p> Machine<'p> {
             let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(Flow::Next) };
             let code = self.mind.library.code(top.plan);
             let Some(line) = code.get(usize::from(top.next)) else { return Ok(Flow::Next) };
-            let here = Here { place, plan: top.plan, line: top.next, site: line.site, origin: line.origin };
+            let here = Here { place, plan: top.plan, line: top.next, site: line.site };
             let after = settle(code, top.next + 1);
             if let Some(top) = self.mind.pool.at(place).frames.last_mut() {
                 top.at = here.line;
@@ -355,7 +354,7 @@ impl<'p> Machine<'p> {
 
     fn post_goal(&mut self, here: Here, on: TriggerOn, args: Args, of: Option<u32>) {
         let by = Some((here.plan, here.site));
-        self.post(Event { on, args, annotations: None, of, origin: here.origin, by, reply: None });
+        self.post(Event { of, by, ..Event::new(on, args) });
     }
 
     /// The arguments, as the goal's declaration has them, if it is declared.

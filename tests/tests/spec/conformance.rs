@@ -57,11 +57,16 @@ fn page(path: &Path, renew: bool) -> Checked {
         };
         match run(block) {
             Ok(ours) if renew => {
-                let (from, to) = (format!("{}```log\n{}```", head(block), log.text), format!("{}```log\n{ours}```", head(block)));
+                let (from, to) = (
+                    format!("{}```log\n{}```", head(block), log.text),
+                    format!("{}```log\n{ours}```", head(block)),
+                );
                 checked.page = checked.page.replacen(&from, &to, 1);
             }
             Ok(ours) => {
-                checked.faults.extend(difference(&ours, &log.text).map(|d| format!("{place}: not the log\n{d}")));
+                checked
+                    .faults
+                    .extend(difference(&ours, &log.text).map(|d| format!("{place}: not the log\n{d}")));
             }
             Err(fault) => checked.faults.push(format!("{place}: {fault}")),
         }
