@@ -134,6 +134,9 @@ impl<'p> Society<'p> {
         let working = (0u16..).zip(&self.machines).filter(|(_, m)| m.has_work());
         self.active.extend(working.map(|(place, _)| place));
         self.reason();
+        if self.halted.is_some() {
+            return;
+        }
         for (place, machine) in self.machines.iter_mut().enumerate() {
             out.extend(machine.actions.drain(..).map(|action| (place, action)));
         }
@@ -190,6 +193,9 @@ impl<'p> Society<'p> {
                 return self.halt(Status::Endless);
             }
             self.settle_active();
+            if self.halted.is_some() {
+                return;
+            }
             self.deliver();
             if self.machines.iter().any(|m| !m.actions.is_empty()) {
                 return;

@@ -9,6 +9,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{Context, Fault, Message, Player, draw_samples, is_perceived, stimulus::Performance};
 
+/// From so many agents on they reason on several threads.
+const MANY: usize = 32;
+
 /// All agents of a run; each has a player of its own, but they reason together.
 pub struct Company<'p> {
     program: &'p Program,
@@ -28,9 +31,10 @@ struct Member {
 
 impl<'p> Company<'p> {
     #[must_use]
-    pub fn new(program: &'p Program, society: Society<'p>) -> Rc<RefCell<Self>> {
+    pub fn new(program: &'p Program, mut society: Society<'p>) -> Rc<RefCell<Self>> {
         let member = |actor| Member { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
-        let members = society.actors().map(member).collect();
+        let members: Vec<Member> = society.actors().map(member).collect();
+        society.set_parallel(members.len() >= MANY);
         Rc::new(RefCell::new(Self { program, society, members, heard: 0 }))
     }
 
@@ -72,10 +76,9 @@ impl<'p> Company<'p> {
             Status::Livelock => {
                 "livelock: at one instant its state repeats, so time can never pass".to_owned()
             }
-            Status::Endless => format!(
-                "cycle bound: more than {} cycles at one instant, without coming to rest",
-                hrdsl_bdi::CYCLE_LIMIT
-            ),
+            Status::Endless => {
+                "cycle bound: too many cycles at one instant, without coming to rest".to_owned()
+            }
             Status::Malformed => {
                 self.society.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
             }

@@ -19,7 +19,7 @@ use hrdsl_trace::{Step, Trace, What};
 
 pub use agent::{AgentPlayer, Company};
 pub use automaton::AutomatonPlayer;
-pub use model::{LogLine, ModelRun, model_run, model_run_in_detail};
+pub use model::{How, LogLine, ModelRun, model_run, model_run_as, model_run_in_detail};
 pub use program::{ProgramPlayer, SutFault};
 pub use script::ScriptPlayer;
 pub use stage::Stage;

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{Detail, Logged, Society, measure::Measured, show};
+use hrdsl_bdi::{CYCLE_LIMIT, Detail, Logged, Society, measure::Measured, show};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, Fact},
@@ -70,6 +70,29 @@ pub fn model_run_in_detail(
     horizon: Nanos,
     detail: Detail,
 ) -> ModelRun {
+    let how = How { seed, horizon, detail, cycles: CYCLE_LIMIT };
+    model_run_as(program, players, facts, &how)
+}
+
+/// How a model is run.
+#[derive(Clone, Copy, Debug)]
+pub struct How {
+    /// Of `.random`.
+    pub seed: u64,
+    pub horizon: Nanos,
+    pub detail: Detail,
+    /// So many cycles of an agent at one instant end the run.
+    pub cycles: u64,
+}
+
+/// The same, as it is said.
+#[must_use]
+pub fn model_run_as(
+    program: &Program,
+    players: &[PlayerRef],
+    facts: &[(AgentId, Fact)],
+    how: &How,
+) -> ModelRun {
     let agent = |player: &PlayerRef| match player {
         PlayerRef::Agent(id) => {
             let own = facts.iter().filter(|(a, _)| a == id).map(|(_, f)| f.clone());
@@ -78,7 +101,8 @@ pub fn model_run_in_detail(
         PlayerRef::Automaton(_) => None,
     };
     let agents: Vec<(AgentId, Vec<Fact>)> = players.iter().filter_map(agent).collect();
-    let mut society = Society::with_detail(program, &agents, seed, detail);
+    let mut society = Society::with_detail(program, &agents, how.seed, how.detail);
+    society.set_cycle_limit(how.cycles);
     society.measure();
     let company = Company::new(program, society);
     let mut members = AgentPlayer::all(&company).into_iter();
@@ -89,8 +113,8 @@ pub fn model_run_in_detail(
         }
     };
     let cast = players.iter().filter_map(play).collect();
-    let run = Harness::new(program, cast, None, horizon).run();
-    told(&company, run.trace, run.ended, detail)
+    let run = Harness::new(program, cast, None, how.horizon).run();
+    told(&company, run.trace, run.ended, how.detail)
 }
 
 fn told(company: &Rc<RefCell<Company<'_>>>, trace: Trace, ended: Ended, detail: Detail) -> ModelRun {

@@ -9,7 +9,6 @@ from agent_text import PERFORMATIVES, Writer
 from agent_values import Fault, alike, applied, contained, evaluate, fits, kind, typed, value_of, values_of, written
 
 FRAMES = 10_000_000
-CYCLES = 1_000_000
 FIRST_STATE = 1024
 
 
@@ -128,7 +127,7 @@ class Agent:
                 self.take_in(self.inbox.pop(0))
                 continue
             done, self.cycles = done + 1, self.cycles + 1
-            if self.cycles > CYCLES:
+            if self.cycles > self.company.cycles:
                 return self.end("cycle bound")
             if self.events:
                 self.deliberate(self.events.pop(0))

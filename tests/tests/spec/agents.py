@@ -22,6 +22,7 @@ from agent_text import time_text
 from agent_values import evaluate, written
 
 EVENTS = 10_000  # at one instant
+CYCLES = 1_000_000  # of one agent at one instant
 
 
 class Ended(Exception):
@@ -31,7 +32,8 @@ class Ended(Exception):
 class Company:
     """The agents of a run, in their order, and the rounds in which they act."""
 
-    def __init__(self, program, cast, sources):
+    def __init__(self, program, cast, sources, cycles):
+        self.cycles = cycles
         self.now, self.lines, self.requests = 0, [], 0
         self.sources = [text.encode() for text in sources]
         self.agents = [Agent(self, program, one["agent"]) for one in cast]
@@ -150,9 +152,9 @@ def taken(steps, names):
 class Harness:
     """The loop of `spec/harness.md`, without a world, for agents alone."""
 
-    def __init__(self, program, cast, sources, limit):
+    def __init__(self, program, cast, sources, limit, cycles):
         self.program, self.limit = program, limit
-        self.company = Company(program, cast, sources)
+        self.company = Company(program, cast, sources, cycles)
         self.queue, self.trace, self.at_instant = [], [], 0
         role = lambda agent: program["actors"][agent.actor]["role"]
         self.players = sorted(self.company.agents, key=lambda agent: role(agent) != "system")
@@ -224,7 +226,8 @@ class Harness:
 def main():
     given = json.load(sys.stdin)
     for cast in given["runs"]:
-        harness = Harness(given["program"], cast, given.get("sources", []), given["limit"])
+        cycles = given.get("cycles", CYCLES)
+        harness = Harness(given["program"], cast, given.get("sources", []), given["limit"], cycles)
         ended = harness.run()
         print(*harness.company.lines, sep="\n")
         for time, name, values in harness.trace:

@@ -8,7 +8,7 @@ use std::{
 };
 
 use hrdsl_bdi::{
-    Detail,
+    CYCLE_LIMIT, Detail,
     choose::{BeliefSet, explore, factors},
 };
 use hrdsl_compiler::{Input, compile};
@@ -18,10 +18,13 @@ use hrdsl_ir::{
     suite::{Method, PlayerRef},
     value::SECOND,
 };
-use hrdsl_runtime::harness::{Ended, Fault, LogLine, model_run_in_detail};
+use hrdsl_runtime::harness::{Ended, Fault, How, LogLine, model_run_as};
 use hrdsl_trace::What;
 
 use crate::page::root;
+
+#[path = "../../../runtime/bdi/tests/programs/random.rs"]
+mod random;
 
 /// Each by itself, with its name.
 const SCENARIOS: [(&str, &str); 4] = [
@@ -33,13 +36,17 @@ const SCENARIOS: [(&str, &str); 4] = [
 
 pub const LIMIT: i64 = 60 * SECOND;
 
+/// Cycles at one instant of programs that may never come to rest.
+const FEW: u64 = 1500;
+
 /// Agents that play together, with what is chosen for them.
 pub type Cast = (Vec<u16>, BeliefSet);
 
 /// What a run prints: the log, what happened, how it ended.
-pub fn printed(program: &Program, text: &str, (agents, set): &Cast) -> String {
+pub fn printed(program: &Program, text: &str, (agents, set): &Cast, cycles: u64) -> String {
     let players: Vec<PlayerRef> = agents.iter().map(|n| PlayerRef::Agent(AgentId(*n))).collect();
-    let run = model_run_in_detail(program, &players, &set.facts, 0, LIMIT, Detail::Steps);
+    let how = How { seed: 0, horizon: LIMIT, detail: Detail::Steps, cycles };
+    let run = model_run_as(program, &players, &set.facts, &how);
     let mut out = String::new();
     for line in &run.log {
         let _ = writeln!(out, "{}{}", line.line(), place(line, text));
@@ -79,7 +86,7 @@ fn ended(ended: &Ended) -> String {
 }
 
 /// What the reference prints of each cast.
-pub fn by_the_pages(program: &Program, text: &str, runs: &[Cast]) -> Vec<String> {
+pub fn by_the_pages(program: &Program, text: &str, runs: &[Cast], cycles: u64) -> Vec<String> {
     let mut child = Command::new("python3")
         .arg(root().join("tests/tests/spec/agents.py"))
         .stdin(Stdio::piped())
@@ -94,7 +101,8 @@ pub fn by_the_pages(program: &Program, text: &str, runs: &[Cast]) -> Vec<String>
         agents.iter().map(one).collect::<Vec<_>>()
     };
     let runs: Vec<_> = runs.iter().map(cast).collect();
-    let given = serde_json::json!({ "program": program, "sources": [text], "runs": runs, "limit": LIMIT });
+    let given = serde_json::json!({ "program": program, "sources": [text], "runs": runs, "limit": LIMIT,
+        "cycles": cycles });
     child.stdin.take().unwrap().write_all(given.to_string().as_bytes()).unwrap();
     let all = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
     all.split_terminator("\n.\n").map(|run| format!("{run}\n")).collect()
@@ -122,10 +130,10 @@ fn compared(name: &str, text: &str) -> usize {
     let sets = explore(&factors(&program, choose).unwrap(), *how, suite.tests, 0).sets;
     let casts: [&[u16]; 5] = [&[0, 1, 2], &[2, 1, 0], &[1, 0], &[0, 2], &[0]];
     let runs: Vec<Cast> = casts.into_iter().map(<[u16]>::to_vec).cycle().zip(sets).collect();
-    let got = by_the_pages(&program, text, &runs);
+    let got = by_the_pages(&program, text, &runs, CYCLE_LIMIT);
     let mut happened = 0;
     for (cast, got) in runs.iter().zip(&got) {
-        let expected = printed(&program, text, cast);
+        let expected = printed(&program, text, cast, CYCLE_LIMIT);
         let who = format!("{name}: {:?} with {}", cast.0, cast.1.text.join(", "));
         if let Some(difference) = difference(&expected, got) {
             panic!("{who}\n{difference}");
@@ -140,4 +148,35 @@ fn compared(name: &str, text: &str) -> usize {
 fn the_reference_has_the_same_log() {
     let happened: usize = SCENARIOS.iter().map(|(name, text)| compared(name, text)).sum();
     assert!(happened > 2000, "only {happened} events happened");
+}
+
+/// Programs that nobody wrote: the rules meet in ways that nobody thought of.
+#[test]
+fn the_reference_has_the_same_log_of_random_programs() {
+    let mut lines = 0;
+    for seed in 0..80 {
+        let agents = 2 + (seed % 3) as u16;
+        let program = random::society(seed, agents);
+        let cast: Cast = ((0..agents).collect(), BeliefSet::default());
+        let ours = printed(&program, "", &cast, FEW);
+        let theirs = by_the_pages(&program, "", &[cast], FEW);
+        if let Some(difference) = difference(&ours, theirs.first().map_or("", String::as_str)) {
+            panic!("seed {seed}\n{difference}");
+        }
+        lines += ours.lines().count();
+    }
+    assert!(lines > 3000, "only {lines} lines");
+}
+
+/// The harness with one thread and with many: the same log, events and end.
+#[test]
+fn one_thread_and_many_run_models_alike() {
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let (one, many) = (pool(1), pool(4));
+    for seed in 0..100 {
+        let program = random::society(seed, 40);
+        let cast: Cast = ((0..40).collect(), BeliefSet::default());
+        let alone = one.install(|| printed(&program, "", &cast, FEW));
+        assert_eq!(many.install(|| printed(&program, "", &cast, FEW)), alone, "seed {seed}");
+    }
 }

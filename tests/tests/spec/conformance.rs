@@ -6,7 +6,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_bdi::choose::BeliefSet;
+use hrdsl_bdi::{CYCLE_LIMIT, choose::BeliefSet};
 use hrdsl_compiler::{Input, compile};
 
 use crate::{
@@ -88,12 +88,12 @@ fn run(block: &Block) -> Result<String, String> {
     let program = compilation.program.ok_or("no program")?;
     let agents = (0..program.agents.len() as u16).collect();
     let cast: Cast = (agents, BeliefSet::default());
-    let ours = printed(&program, &block.text, &cast);
+    let ours = printed(&program, &block.text, &cast, CYCLE_LIMIT);
     if block.text.contains(".random(") || block.text.contains(".shuffle(") {
         // The reference has no chance.
         return Ok(ours);
     }
-    let theirs = by_the_pages(&program, &block.text, &[cast]);
+    let theirs = by_the_pages(&program, &block.text, &[cast], CYCLE_LIMIT);
     let theirs = theirs.first().map_or("", String::as_str);
     difference(&ours, theirs).map_or(Ok(ours.clone()), |d| Err(format!("the reference differs\n{d}")))
 }
