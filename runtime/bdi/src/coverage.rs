@@ -11,7 +11,7 @@ mod text;
 mod universe;
 mod why;
 
-pub use text::{context, name, trigger};
+pub use text::{name, trigger};
 pub use universe::{Applicable, Item, Kind, items, sites, universe};
 pub use why::{Team, times};
 

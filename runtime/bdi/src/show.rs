@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use hrdsl_ir::{
-    ArgPattern, EventPattern, Expr, Nanos, Program, Type, Unit, Value,
+    ArgPattern, EventPattern, Expr, Nanos, Program, Value,
     bdi::{
         Agent, Annotation, Assertion, BeliefId, ContentId, Context, Control, GoalId, Internal, Literal,
         Performative, StepKind, Term, TriggerOn,
@@ -39,7 +39,8 @@ fn slot(slot: &Slot) -> String {
     slot.map_or_else(|| "_".to_owned(), |v| v.to_string())
 }
 
-fn performative(p: Performative) -> &'static str {
+/// A performative as it is written.
+pub(crate) fn performative(p: Performative) -> &'static str {
     match p {
         Performative::Tell => "tell",
         Performative::Untell => "untell",
@@ -583,14 +584,5 @@ fn list_function(f: ListFunction) -> &'static str {
         ListFunction::Prefix => ".prefix",
         ListFunction::Suffix => ".suffix",
         ListFunction::Sublist => ".sublist",
-    }
-}
-
-/// A value of a parameter with its unit, as it is written.
-#[must_use]
-pub fn value(ty: Type, value: Value) -> String {
-    match (ty, value) {
-        (Type::Float(unit), Value::Float(x)) if unit != Unit::None => format!("{x} {}", unit.symbol()),
-        _ => value.to_string(),
     }
 }

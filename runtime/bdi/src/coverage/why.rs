@@ -10,8 +10,10 @@ use hrdsl_ir::{
     },
 };
 
+use crate::show;
+
 use super::{
-    text::{belief, context, goal, trigger},
+    text::{belief, goal, trigger},
     universe::{Applicable, Item, is_always_applicable, numbered, sites},
 };
 use crate::measure::Measured;
@@ -189,7 +191,7 @@ impl<'a> Member<'a> {
             | Context::Unify(..)
             | Context::Internal(_) => &declared.context,
         };
-        let text = context(self.agent, &declared.vars, part);
+        let text = show::context(self.team.program, self.agent, &declared.vars, part);
         Some(match blocked.len() {
             1 => format!("`{text}`"),
             _ => format!("mostly for want of `{text}`: {}", times(most)),

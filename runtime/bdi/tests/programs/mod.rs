@@ -2,15 +2,13 @@
 //! `benches/agentspeak`.
 
 use hrdsl_ir::{
-    Actor, ActorId, Expr, Param, Program, Role, Span, Symbol, Type, Value,
+    Actor, ActorId, Expr, Program, Role, Span, Symbol, Value,
     bdi::{
-        Agent, AgentId, Belief, Content, ContentId, Context, Fact, Goal, GoalId, Performative, Plan, Step,
+        Agent, AgentId, Content, ContentId, Context, Fact, Goal, GoalId, Performative, Plan, Step,
         StepKind, Subject, Term, Trigger, TriggerOn,
     },
     expr::BinaryOp,
 };
-
-pub const INT: Type = Type::Int { lo: i64::MIN, hi: i64::MAX };
 
 pub fn var(v: u16) -> Expr {
     Expr::Var(v)
@@ -40,11 +38,6 @@ pub fn agent(name: &str) -> Agent {
 
 pub fn goal(name: &str, arity: u16) -> Goal {
     Goal { name: name.to_owned(), arity, params: None }
-}
-
-pub fn belief(name: &str, types: &[Type]) -> Belief {
-    let params = types.iter().map(|ty| Param { name: "p".to_owned(), ty: *ty }).collect();
-    Belief { name: name.to_owned(), params, annotations: Vec::new(), percept: None, origin: Span::default() }
 }
 
 pub fn plan(on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind>, vars: usize) -> Plan {
