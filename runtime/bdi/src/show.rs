@@ -58,18 +58,23 @@ struct Show<'a> {
     slots: &'a [Slot],
 }
 
-impl Machine<'_> {
+impl<'p> Machine<'p> {
+    /// The names of its program; `None` if it cannot be run.
+    pub(crate) fn names(&self) -> Option<Names<'_, 'p>> {
+        Some(Names { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
+    }
+
     /// An entry of this agent's log, without time and agent.
     pub fn describe(&self, entry: &LogEntry) -> String {
-        let Some(agent) = self.mind.agent else { return String::new() };
-        let names = Names { mind: &self.mind, program: self.mind.program, agent };
+        let Some(names) = self.names() else { return String::new() };
         let what = names.entry(entry);
         let alone = matches!(&entry.what, Logged::Selected { fresh: true, .. });
         if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
     }
 }
 
-struct Names<'a, 'p> {
+/// Names of a running agent's program.
+pub(crate) struct Names<'a, 'p> {
     mind: &'a Mind<'p>,
     program: &'p Program,
     agent: &'p Agent,
@@ -159,7 +164,7 @@ impl Names<'_, '_> {
         self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
     }
 
-    fn on(&self, on: TriggerOn, args: &Args) -> String {
+    pub(crate) fn on(&self, on: TriggerOn, args: &Args) -> String {
         let (sign, name) = match on {
             TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
             TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
@@ -192,6 +197,16 @@ impl Names<'_, '_> {
         };
         let all: Vec<String> = all.iter().map(one).collect();
         format!("[{}]", all.join(", "))
+    }
+
+    /// A fact with its annotations.
+    pub(crate) fn fact(&self, belief: BeliefId, args: &Args, annotations: &Annotations) -> String {
+        call(self.belief(belief), args.iter().map(slot)) + &self.annotations(belief, annotations)
+    }
+
+    /// The step on a line of a plan, with the variables as they are.
+    pub(crate) fn line(&self, plan: u16, line: u16, vars: &[Slot]) -> String {
+        self.step(plan, line, vars, Outcome::Done)
     }
 
     fn verdict(&self, plan: u16, verdict: Verdict) -> String {
