@@ -160,7 +160,7 @@ fn trace(
     let folder = traces_of(&args.out, &suite.name);
     clear(&folder)?;
     let place = |span| compilation.files.place(span);
-    let picked = Picked::default();
+    let picked = Picked { all: true, ..Picked::default() };
     let mut runs: BTreeMap<u64, String> = BTreeMap::new();
     let mut paths = Vec::new();
     for (number, origin) in (1..).zip(&generated.origins) {

@@ -20,7 +20,7 @@ use crate::{
     cycle::Machine,
     event::Args,
     mind::Mind,
-    unify::{Slot, eval, known},
+    unify::{Slot, Trail, eval, known, unify_all},
 };
 
 /// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
@@ -88,7 +88,7 @@ impl Names<'_, '_> {
                 format!("{} → {}{}{begun}", self.on(*on, args), self.plan(*plan), self.bound(*plan, vars))
             }
             Logged::Tried { on, args, plan, verdict } => {
-                format!("{}: {}", self.on(*on, args), self.verdict(*plan, *verdict))
+                format!("{}: {}", self.on(*on, args), self.verdict(*plan, args, *verdict))
             }
             Logged::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
             Logged::Fault { plan, fault, .. } => {
@@ -209,7 +209,7 @@ impl Names<'_, '_> {
         self.step(plan, line, vars, Outcome::Done)
     }
 
-    fn verdict(&self, plan: u16, verdict: Verdict) -> String {
+    fn verdict(&self, plan: u16, args: &Args, verdict: Verdict) -> String {
         let label = self.plan(plan);
         match verdict {
             Verdict::Unlike => format!("{label} is for other arguments"),
@@ -221,7 +221,15 @@ impl Names<'_, '_> {
                     Context::And(all) => all.get(part).unwrap_or(&plan.context),
                     other => other,
                 };
-                let show = Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &[] };
+                // What the event says is known; what the parts before found is not, and need not be the same each time.
+                let mut slots = vec![None; plan.vars.len()];
+                let likes =
+                    unify_all(&plan.trigger.args, args.iter().copied(), 0, &mut slots, &mut Trail::default());
+                if !matches!(likes, Ok(true)) {
+                    slots.fill(None);
+                }
+                let show =
+                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &slots };
                 format!("{label} is not applicable, `{}` has no answer", show.context(context))
             }
         }

@@ -307,7 +307,7 @@ impl<'p> Society<'p> {
         self.machines.iter().filter_map(|m| m.measured.as_deref()).collect()
     }
 
-    /// The agents' logs as one: by round, then by agent, then as entered. With each entry the agent's place.
+    /// The agents' logs as one: by time, round and agent, then as entered. With each entry the agent's place.
     #[must_use]
     pub fn log(&self) -> Vec<(usize, &LogEntry)> {
         let entries = self
@@ -316,7 +316,8 @@ impl<'p> Society<'p> {
             .enumerate()
             .flat_map(|(place, m)| m.log.entries.iter().map(move |entry| (place, entry)));
         let mut all: Vec<(usize, &LogEntry)> = entries.collect();
-        all.sort_by_key(|(place, entry)| (entry.round, *place));
+        // What ends at a time of its own is entered with the round before.
+        all.sort_by_key(|(place, entry)| (entry.time, entry.round, *place));
         all
     }
 

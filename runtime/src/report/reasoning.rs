@@ -9,6 +9,11 @@ use serde::Serialize;
 use super::text;
 use crate::harness::{Ended, Fault, Inspection, LogLine};
 
+/// Of more cycles of an agent in a round than this only the first and last are shown.
+const MANY: usize = 60;
+const FIRST: usize = 40;
+const LAST: usize = 10;
+
 /// What of a run is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Picked<'a> {
@@ -18,11 +23,13 @@ pub struct Picked<'a> {
     pub from: Nanos,
     /// What happens later is left out.
     pub until: Nanos,
+    /// Of an agent that goes on and on at one instant, all cycles.
+    pub all: bool,
 }
 
 impl Default for Picked<'_> {
     fn default() -> Self {
-        Self { agent: None, from: 0, until: Nanos::MAX }
+        Self { agent: None, from: 0, until: Nanos::MAX, all: false }
     }
 }
 
@@ -170,7 +177,17 @@ pub fn reasoning(
         for agent in instant.chunk_by(|a, b| (a.round, &a.agent) == (b.round, &b.agent)) {
             let round = format!("round {}", agent[0].round);
             page.line("  ", &[(Style::Bold, &agent[0].agent), (Style::Dim, &round)]);
-            turn(&mut page, agent);
+            let cycles: Vec<&[&LogLine]> = agent.chunk_by(|a, b| a.cycle == b.cycle).collect();
+            if picked.all || cycles.len() <= MANY {
+                turn(&mut page, agent);
+                continue;
+            }
+            let (first, rest) = cycles.split_at(FIRST);
+            let (middle, last) = rest.split_at(rest.len() - LAST);
+            turn(&mut page, &first.concat());
+            let left_out = format!("… {} cycles (--all shows them)", middle.len());
+            page.line("       ", &[(Style::Dim, &left_out)]);
+            turn(&mut page, &last.concat());
         }
         still_to_do(&mut page, inspection, picked, time);
         page.out.push('\n');
@@ -265,13 +282,9 @@ pub fn ending(end: &End, color: bool) -> String {
             page.line("    ", &[(Style::Dim, "intends nothing")]);
         }
         agent.intentions.iter().for_each(|standing| page.standing("    ", "", standing));
-        if agent.beliefs.is_empty() {
-            page.line("    ", &[(Style::Dim, "believes nothing")]);
-        }
-        agent
-            .beliefs
-            .iter()
-            .for_each(|belief| page.line("    ", &[(Style::Dim, "believes"), (Style::Plain, belief)]));
+        let what = if agent.beliefs.is_empty() { "believes nothing" } else { "believes" };
+        page.line("    ", &[(Style::Dim, what)]);
+        agent.beliefs.iter().for_each(|belief| page.line("      ", &[(Style::Plain, belief)]));
     }
     page.out
 }

@@ -65,6 +65,9 @@ pub struct Args {
     /// Also each plan that was tried, and why it was not chosen: the default.
     #[arg(long)]
     reasons: bool,
+    /// Of an agent that goes on and on at one instant, show all its cycles.
+    #[arg(long)]
+    all: bool,
     /// Only how the run ended: what is waited for, and what is believed.
     #[arg(long)]
     end: bool,
@@ -109,6 +112,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         agent: args.agent.as_deref(),
         from: args.from.unwrap_or(0),
         until: args.until.unwrap_or(Nanos::MAX),
+        all: args.all,
     };
     if let Some(agent) = &args.agent {
         let names: Vec<&str> = chosen.agents(program).map(|(_, name)| name).collect();
