@@ -115,7 +115,8 @@ fn fact(
     let file = compilation.files.get(declared.origin.file).ok_or_else(undeclared)?;
     let (end, has_some) = declaration(compilation, given.name, declared.origin).ok_or_else(undeclared)?;
     let mark = if has_some { "," } else { " =" };
-    let text = format!("{}{mark} {}{}", &file.text[..end], given.text, &file.text[end..]);
+    // What ends with nothing, like `belief away`, ends where the next word begins.
+    let text = format!("{}{mark} {} {}", &file.text[..end], given.text, &file.text[end..]);
     let changed = Changed { name: &file.name, text: &text };
     let name = scenario.display().to_string();
     let own = input::read(scenario)?;
