@@ -1,15 +1,15 @@
 //! `hrdsl gen`: tests from a scenario's suites, written as `.hri`.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, btree_map::Entry},
     fs,
     path::{Path, PathBuf},
 };
 
 use hrdsl_compiler::Compilation;
-use hrdsl_ir::{Program, suite::Suite};
+use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
-    harness::Detail,
+    harness::{Detail, Inspection},
     report::{End, Picked, ending, explain_text, reasoning},
     testgen::{Explanation, Generated, GoalReport, GoalStatus, ModelCoverage, Options, generate_with, write},
 };
@@ -160,30 +160,34 @@ fn trace(
     let folder = traces_of(&args.out, &suite.name);
     clear(&folder)?;
     let place = |span| compilation.files.place(span);
-    let picked = Picked { all: true, ..Picked::default() };
     let mut runs: BTreeMap<u64, String> = BTreeMap::new();
     let mut paths = Vec::new();
     for (number, origin) in (1..).zip(&generated.origins) {
         let name = format!("{}.t{number:03}", suite.name);
         let Some(chosen) = Chosen::of_test(suite, &name, origin, args.seed) else { continue };
-        if !runs.contains_key(&origin.number) {
-            let inspection = chosen.inspect(program, Detail::Reasons);
-            let text = if args.json {
-                json_lines(&inspection, &picked, &place)?
-            } else {
-                let end = ending(&End::of(&inspection, &picked), false);
-                reasoning(&inspection, &picked, false, &place) + &end
-            };
-            runs.insert(origin.number, text);
-        }
-        let text = &runs[&origin.number];
+        let text = match runs.entry(origin.number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                new.insert(traced(&chosen.inspect(program, Detail::Reasons), args.json, &place)?)
+            }
+        };
         let (ending, heading) =
             if args.json { ("jsonl", String::new()) } else { ("log", chosen.heading(program, false) + "\n") };
         let path = folder.join(format!("t{number:03}.{ending}"));
-        input::write(&path, &(heading + text))?;
+        input::write(&path, &(heading + text.as_str()))?;
         paths.push(path);
     }
     Ok(paths)
+}
+
+/// The log of a run: for a person with how it ended, or as lines of JSON.
+fn traced(inspection: &Inspection, json: bool, place: &dyn Fn(Span) -> String) -> Result<String, Fault> {
+    let picked = Picked { all: true, ..Picked::default() };
+    if json {
+        return json_lines(inspection, &picked, place);
+    }
+    let end = ending(&End::of(inspection, &picked), false);
+    Ok(reasoning(inspection, &picked, false, place) + &end)
 }
 
 /// Removes the traces of an earlier generation, which may have had more tests.

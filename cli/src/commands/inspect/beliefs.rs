@@ -146,15 +146,14 @@ fn declaration(compilation: &Compilation, wanted: &str, origin: hrdsl_source::Sp
         ast::ItemKind::Agent(agent) => Some(agent),
         _ => None,
     });
-    let member = agents.flat_map(|a| &a.members).find_map(|member| match &member.kind {
+    agents.flat_map(|a| &a.members).find_map(|member| match &member.kind {
         ast::AgentMemberKind::Belief { name, initial, .. } => {
             let is_it =
                 name.text == wanted && member.span.start <= origin.start && origin.end <= member.span.end;
             is_it.then_some((member.span.range().end, !initial.is_empty()))
         }
         _ => None,
-    });
-    member
+    })
 }
 
 /// The files on disk, one of them changed.
