@@ -141,12 +141,15 @@ impl<'p> Society<'p> {
     /// agents are to be settled.
     pub fn expire(&mut self, agent: usize, now: Nanos) -> bool {
         self.pass(now);
-        let round = self.round;
+        // What ends so is a round of its own in the log: after the rounds before, before those that follow from it.
+        let round = self.round + 1;
         let halted = self.halted.is_some();
-        self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {
+        let any = self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {
             machine.log.round = round;
             machine.expire()
-        })
+        });
+        self.round += u64::from(any);
+        any
     }
 
     /// Settles, and lets what is due expire, until nothing is left to do at this instant but actions: for agents that are
@@ -307,7 +310,7 @@ impl<'p> Society<'p> {
         self.machines.iter().filter_map(|m| m.measured.as_deref()).collect()
     }
 
-    /// The agents' logs as one: by time, round and agent, then as entered. With each entry the agent's place.
+    /// The agents' logs as one: by round, then by agent, then as entered. With each entry the agent's place.
     #[must_use]
     pub fn log(&self) -> Vec<(usize, &LogEntry)> {
         let entries = self
@@ -316,8 +319,7 @@ impl<'p> Society<'p> {
             .enumerate()
             .flat_map(|(place, m)| m.log.entries.iter().map(move |entry| (place, entry)));
         let mut all: Vec<(usize, &LogEntry)> = entries.collect();
-        // What ends at a time of its own is entered with the round before.
-        all.sort_by_key(|(place, entry)| (entry.time, entry.round, *place));
+        all.sort_by_key(|(place, entry)| (entry.round, *place));
         all
     }
 
