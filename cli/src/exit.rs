@@ -6,8 +6,8 @@ use std::process::ExitCode;
 pub enum Exit {
     /// All is well; there may be warnings that are not denied.
     Ok = 0,
-    /// A scenario has errors, or warnings that are denied, a file is not formatted, or one to import cannot
-    /// be understood.
+    /// A scenario has errors, or warnings that are denied, a file is not formatted, one to import cannot be understood,
+    /// or the agents of a run cannot go on.
     Errors = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
@@ -20,7 +20,8 @@ pub const HELP: &str = "\
 Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
-     `import`: a file is no program, or `--strict` and something is left out
+     `import`: a file is no program, or `--strict` and something is left out; `inspect`: the agents cannot go on
+     (a livelock, the cycle bound, a fault of the model)
   2  the command line is wrong, or a file cannot be read or written
   3  `sim`: a requirement was violated, or a test broke off (see --exit-zero)";
 

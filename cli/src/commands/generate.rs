@@ -1,10 +1,21 @@
 //! `hrdsl gen`: tests from a scenario's suites, written as `.hri`.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    fs,
+    path::{Path, PathBuf},
+};
 
-use hrdsl_ir::{Program, suite::Suite};
-use hrdsl_runtime::testgen::{Generated, GoalStatus, generate, write};
+use hrdsl_compiler::Compilation;
+use hrdsl_ir::{Program, Span, suite::Suite};
+use hrdsl_runtime::{
+    harness::{Detail, Inspection},
+    report::{End, Picked, ending, explain_text, reasoning},
+    testgen::{Explanation, Generated, GoalReport, GoalStatus, ModelCoverage, Options, generate_with, write},
+};
+use serde::Serialize;
 
+use super::inspect::{Chosen, json_lines};
 use crate::{
     exit::Exit,
     input::{self, Fault},
@@ -13,7 +24,7 @@ use crate::{
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl gen scenario.hri\n  hrdsl gen scenario.hri --suite bdi_tests -n 20 --seed 7 -o tests"
+    after_help = "Examples:\n  hrdsl gen scenario.hri\n  hrdsl gen scenario.hri --suite bdi_tests -n 20 --seed 7 -o tests\n  hrdsl gen scenario.hri --suite bdi_tests --minimise --explain\n  hrdsl gen scenario.hri --suite bdi_tests --trace"
 )]
 pub struct Args {
     /// The scenario.
@@ -30,6 +41,18 @@ pub struct Args {
     /// The folder to write to, one file for each suite.
     #[arg(short, long, value_name = "DIR", default_value = "hrdsl-tests")]
     out: PathBuf,
+    /// Of suites by agents, keep only the tests that are needed for what all of them reach.
+    #[arg(long)]
+    minimise: bool,
+    /// Of suites by agents, say what each test is for, what was not reached, and why.
+    #[arg(long)]
+    explain: bool,
+    /// Of suites by agents, write beside the tests how the agents reasoned: `SUITE.traces/tNNN.log`, with --json `.jsonl`.
+    #[arg(long)]
+    trace: bool,
+    /// Print what was generated as one JSON document.
+    #[arg(long)]
+    json: bool,
 }
 
 /// # Errors
@@ -37,12 +60,145 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let minimise = args.minimise.then_some(true);
+    let mut suites = Vec::new();
     for suite in chosen(program, &args.suite)? {
-        let generated = generate(program, suite, args.count, args.seed)?;
+        let options = Options { count: args.count, seed: args.seed, minimise };
+        let generated = generate_with(program, suite, options)?;
         let path = save(&args.out, program, &generated)?;
-        input::print(&format!("{}  written to {}\n", describe(&generated), path.display()))?;
+        let traces = if args.trace { trace(args, &compilation, program, suite, &generated)? } else { vec![] };
+        if args.json {
+            suites.push(Made::of(&generated, &path, &traces));
+            continue;
+        }
+        let mut text = format!("{}  written to {}\n", describe(&generated), path.display());
+        if !traces.is_empty() {
+            text += &format!("  traces in {}\n", traces_of(&args.out, &suite.name).display());
+        }
+        if let Some(explanation) = generated.explanation.as_ref().filter(|_| args.explain) {
+            text += &format!("\n{}\n", explain_text(&suite.name, explanation, generated.coverage.as_ref()));
+        }
+        input::print(&text)?;
+    }
+    if args.json {
+        let document = Document { format: "hrdsl-gen", version: 1, suites };
+        let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
+        input::print(&(text + "\n"))?;
     }
     Ok(Exit::Ok)
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Document {
+    format: &'static str,
+    version: u32,
+    suites: Vec<Made>,
+}
+
+#[derive(Serialize)]
+struct Made {
+    suite: String,
+    method: &'static str,
+    file: String,
+    abstract_tests: usize,
+    tests: Vec<MadeTest>,
+    notes: Vec<String>,
+    goals: Vec<GoalReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    coverage: Option<ModelCoverage>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    explanation: Option<Explanation>,
+}
+
+#[derive(Serialize)]
+struct MadeTest {
+    name: String,
+    seed: u64,
+    /// The belief set that it came from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trace: Option<String>,
+}
+
+impl Made {
+    fn of(generated: &Generated, path: &Path, traces: &[PathBuf]) -> Self {
+        let test = |(at, test): (usize, &hrdsl_ir::test::Test)| MadeTest {
+            name: test.name.clone(),
+            seed: test.seed,
+            set: generated.origins.get(at).map(|o| o.number),
+            trace: traces.get(at).map(|p| p.display().to_string()),
+        };
+        Self {
+            suite: generated.suite.clone(),
+            method: generated.method,
+            file: path.display().to_string(),
+            abstract_tests: generated.abstract_tests,
+            tests: generated.tests.iter().enumerate().map(test).collect(),
+            notes: generated.notes.clone(),
+            goals: generated.goals.clone(),
+            coverage: generated.coverage.clone(),
+            explanation: generated.explanation.clone(),
+        }
+    }
+}
+
+fn traces_of(out: &Path, suite: &str) -> PathBuf {
+    out.join(format!("{suite}.traces"))
+}
+
+/// Writes how the agents reasoned in the run that each test came from; gives the files, one for each test of a suite by
+/// agents. Tests of one belief set share their run.
+fn trace(
+    args: &Args,
+    compilation: &Compilation,
+    program: &Program,
+    suite: &Suite,
+    generated: &Generated,
+) -> Result<Vec<PathBuf>, Fault> {
+    let folder = traces_of(&args.out, &suite.name);
+    clear(&folder)?;
+    let place = |span| compilation.files.place(span);
+    let mut runs: BTreeMap<u64, String> = BTreeMap::new();
+    let mut paths = Vec::new();
+    for (number, origin) in (1..).zip(&generated.origins) {
+        let name = format!("{}.t{number:03}", suite.name);
+        let Some(chosen) = Chosen::of_test(suite, &name, origin, args.seed) else { continue };
+        let text = match runs.entry(origin.number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                new.insert(traced(&chosen.inspect(program, Detail::Reasons), args.json, &place)?)
+            }
+        };
+        let (ending, heading) =
+            if args.json { ("jsonl", String::new()) } else { ("log", chosen.heading(program, false) + "\n") };
+        let path = folder.join(format!("t{number:03}.{ending}"));
+        input::write(&path, &(heading + text.as_str()))?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// The log of a run: for a person with how it ended, or as lines of JSON.
+fn traced(inspection: &Inspection, json: bool, place: &dyn Fn(Span) -> String) -> Result<String, Fault> {
+    let picked = Picked { all: true, ..Picked::default() };
+    if json {
+        return json_lines(inspection, &picked, place);
+    }
+    let end = ending(&End::of(inspection, &picked), false);
+    Ok(reasoning(inspection, &picked, false, place) + &end)
+}
+
+/// Removes the traces of an earlier generation, which may have had more tests.
+fn clear(folder: &Path) -> Result<(), Fault> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+        if path.extension().is_some_and(|e| e == "log" || e == "jsonl") {
+            fs::remove_file(&path).map_err(|e| format!("cannot remove {}: {e}", path.display()))?;
+        }
+    }
+    Ok(())
 }
 
 /// The suites of these names; all, without names.

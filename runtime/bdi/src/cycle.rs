@@ -467,6 +467,11 @@ impl<'p> Machine<'p> {
     // ── Log and measure ──
 
     pub fn enter(&mut self, intention: u32, what: Logged) {
+        let is_full = self.log.most.is_some_and(|most| self.log.entries.len() >= most);
+        if is_full && !matches!(what, Logged::Livelock | Logged::Endless) {
+            self.log.left_out += 1;
+            return;
+        }
         let (time, round, cycle) = (self.mind.now, self.log.round, self.cycles);
         self.log.entries.push(LogEntry { time, round, cycle, intention, what });
     }

@@ -41,6 +41,7 @@ mod repeat;
 mod select;
 pub mod show;
 mod society;
+mod standing;
 mod step;
 mod unify;
 
@@ -52,3 +53,4 @@ pub use log::{Cause, Detail, Failure, LogEntry, Logged, Outcome, PlanIndex, Verd
 pub use measure::Measured;
 pub use query::Fault;
 pub use society::Society;
+pub use standing::Standing;

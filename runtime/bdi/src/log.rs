@@ -143,6 +143,30 @@ pub enum Logged {
     Endless,
 }
 
+impl Logged {
+    /// What kind of entry it is, in a word.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Logged::Selected { .. } => "selected",
+            Logged::Tried { .. } => "tried",
+            Logged::Unhandled { .. } => "unhandled",
+            Logged::Fault { .. } | Logged::FaultyAnswer { .. } => "fault",
+            Logged::Step { .. } => "step",
+            Logged::Failed(_) => "failed",
+            Logged::Finished => "finished",
+            Logged::Dropped => "dropped",
+            Logged::Added { .. } | Logged::Left { .. } | Logged::Taken { .. } => "belief",
+            Logged::StillHeld { .. } | Logged::Refused { .. } => "warning",
+            Logged::Perceived { .. } => "perceived",
+            Logged::Heard { .. } | Logged::Asked { .. } | Logged::Answered { .. } => "heard",
+            Logged::Printed(_) => "printed",
+            Logged::Livelock => "livelock",
+            Logged::Endless => "cycle_bound",
+        }
+    }
+}
+
 /// What became of a step, if that is not plain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -252,6 +276,9 @@ impl fmt::Display for Cause {
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     pub entries: Vec<LogEntry>,
+    /// How many entries are kept, at most; those that come later are counted. The end of all reasoning is always kept.
+    pub most: Option<usize>,
+    pub left_out: u64,
     pub detail: Detail,
     pub round: u64,
 }

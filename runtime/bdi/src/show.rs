@@ -20,7 +20,7 @@ use crate::{
     cycle::Machine,
     event::Args,
     mind::Mind,
-    unify::{Slot, eval, known},
+    unify::{Slot, Trail, eval, known, unify_all},
 };
 
 /// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
@@ -68,18 +68,23 @@ struct Show<'a> {
     slots: &'a [Slot],
 }
 
-impl Machine<'_> {
+impl<'p> Machine<'p> {
+    /// The names of its program; `None` if it cannot be run.
+    pub(crate) fn names(&self) -> Option<Names<'_, 'p>> {
+        Some(Names { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
+    }
+
     /// An entry of this agent's log, without time and agent.
     pub fn describe(&self, entry: &LogEntry) -> String {
-        let Some(agent) = self.mind.agent else { return String::new() };
-        let names = Names { mind: &self.mind, program: self.mind.program, agent };
+        let Some(names) = self.names() else { return String::new() };
         let what = names.entry(entry);
         let alone = matches!(&entry.what, Logged::Selected { fresh: true, .. });
         if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
     }
 }
 
-struct Names<'a, 'p> {
+/// Names of a running agent's program.
+pub(crate) struct Names<'a, 'p> {
     mind: &'a Mind<'p>,
     program: &'p Program,
     agent: &'p Agent,
@@ -93,7 +98,7 @@ impl Names<'_, '_> {
                 format!("{} → {}{}{begun}", self.on(*on, args), self.plan(*plan), self.bound(*plan, vars))
             }
             Logged::Tried { on, args, plan, verdict } => {
-                format!("{}: {}", self.on(*on, args), self.verdict(*plan, *verdict))
+                format!("{}: {}", self.on(*on, args), self.verdict(*plan, args, *verdict))
             }
             Logged::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
             Logged::Fault { plan, fault, .. } => {
@@ -169,7 +174,7 @@ impl Names<'_, '_> {
         self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
     }
 
-    fn on(&self, on: TriggerOn, args: &Args) -> String {
+    pub(crate) fn on(&self, on: TriggerOn, args: &Args) -> String {
         let (sign, name) = match on {
             TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
             TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
@@ -204,7 +209,17 @@ impl Names<'_, '_> {
         format!("[{}]", all.join(", "))
     }
 
-    fn verdict(&self, plan: u16, verdict: Verdict) -> String {
+    /// A fact with its annotations.
+    pub(crate) fn fact(&self, belief: BeliefId, args: &Args, annotations: &Annotations) -> String {
+        call(self.belief(belief), args.iter().map(slot)) + &self.annotations(belief, annotations)
+    }
+
+    /// The step on a line of a plan, with the variables as they are.
+    pub(crate) fn line(&self, plan: u16, line: u16, vars: &[Slot]) -> String {
+        self.step(plan, line, vars, Outcome::Done)
+    }
+
+    fn verdict(&self, plan: u16, args: &Args, verdict: Verdict) -> String {
         let label = self.plan(plan);
         match verdict {
             Verdict::Unlike => format!("{label} is for other arguments"),
@@ -216,7 +231,15 @@ impl Names<'_, '_> {
                     Context::And(all) => all.get(part).unwrap_or(&plan.context),
                     other => other,
                 };
-                let show = Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &[] };
+                // What the event says is known; what the parts before found is not, and need not be the same each time.
+                let mut slots = vec![None; plan.vars.len()];
+                let likes =
+                    unify_all(&plan.trigger.args, args.iter().copied(), 0, &mut slots, &mut Trail::default());
+                if !matches!(likes, Ok(true)) {
+                    slots.fill(None);
+                }
+                let show =
+                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &slots };
                 format!("{label} is not applicable, `{}` has no answer", show.context(context))
             }
         }

@@ -12,7 +12,7 @@ use hrdsl_ir::{
 use rayon::prelude::*;
 
 use crate::{
-    Action, ActionToken, CYCLE_LIMIT, Detail, LogEntry, Logged, Malformed, Measured, Status,
+    Action, ActionToken, CYCLE_LIMIT, Detail, LogEntry, Logged, Malformed, Measured, Standing, Status,
     cycle::Machine,
     mind::Peers,
     repeat::{Repeats, Repetition},
@@ -146,13 +146,15 @@ impl<'p> Society<'p> {
     /// agents are to be settled.
     pub fn expire(&mut self, agent: usize, now: Nanos) -> bool {
         self.pass(now);
-        self.round += 1;
-        let round = self.round;
+        // What ends so is a round of its own in the log: after the rounds before, before those that follow from it.
+        let round = self.round + 1;
         let halted = self.halted.is_some();
-        self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {
+        let any = self.machines.get_mut(agent).filter(|_| !halted).is_some_and(|machine| {
             machine.log.round = round;
             machine.expire()
-        })
+        });
+        self.round += u64::from(any);
+        any
     }
 
     /// Settles, and lets what is due expire, until nothing is left to do at this instant but actions: for agents that are
@@ -338,6 +340,35 @@ impl<'p> Society<'p> {
     #[must_use]
     pub fn describe(&self, agent: usize, entry: &LogEntry) -> String {
         self.machines.get(agent).map_or_else(String::new, |m| m.describe(entry))
+    }
+
+    /// The event that an entry of an agent's log is about, if it is about the choice of a plan.
+    #[must_use]
+    pub fn event_of(&self, agent: usize, entry: &LogEntry) -> Option<String> {
+        self.machines.get(agent).and_then(|m| m.event_of(entry))
+    }
+
+    /// What an agent intends, in the order of adoption.
+    #[must_use]
+    pub fn standing(&self, agent: usize) -> Vec<Standing> {
+        self.machines.get(agent).map(Machine::standing).unwrap_or_default()
+    }
+
+    /// What an agent believes, as text, in the order of [`beliefs`](Self::beliefs).
+    #[must_use]
+    pub fn believed(&self, agent: usize) -> Vec<String> {
+        self.machines.get(agent).map(Machine::believed).unwrap_or_default()
+    }
+
+    /// Keeps so many entries of each agent's log at most.
+    pub fn keep_log(&mut self, most: usize) {
+        self.machines.iter_mut().for_each(|m| m.log.most = Some(most));
+    }
+
+    /// How many entries were left out of the logs.
+    #[must_use]
+    pub fn left_out(&self) -> u64 {
+        self.machines.iter().map(|m| m.log.left_out).sum()
     }
 
     /// All that an agent believes now: by the order of declarations, then oldest first.

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{Action, ActionToken, Society, Status};
+use hrdsl_bdi::{Action, ActionToken, Society, Standing, Status};
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -19,6 +19,17 @@ pub struct Company<'p> {
     members: Vec<Member>,
     /// The delivery that they have all heard.
     heard: u64,
+    /// If it is wanted: how they stand at the end of each instant at which they reasoned.
+    pub snapshots: Option<Vec<Snapshot>>,
+}
+
+/// What the agents intend at the end of an instant.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Snapshot {
+    /// In nanoseconds.
+    pub time: Nanos,
+    /// By agent, in their order.
+    pub agents: Vec<Vec<Standing>>,
 }
 
 /// What an agent is doing in the world.
@@ -35,11 +46,11 @@ impl<'p> Company<'p> {
         let member = |actor| Member { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
         let members: Vec<Member> = society.actors().map(member).collect();
         society.set_parallel(members.len() >= MANY);
-        Rc::new(RefCell::new(Self { program, society, members, heard: 0 }))
+        Rc::new(RefCell::new(Self { program, society, members, heard: 0, snapshots: None }))
     }
 
     /// Rounds, until nobody says or does anything more.
-    fn reason(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn reason_in_rounds(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
         let mut actions = Vec::new();
         loop {
             self.society.settle(cx.now, &mut actions);
@@ -50,6 +61,18 @@ impl<'p> Company<'p> {
                 self.begin(agent, action, cx)?;
             }
         }
+    }
+
+    /// The same, and how they stand then is noted.
+    fn reason(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+        let done = self.reason_in_rounds(cx);
+        let Some(snapshots) = &mut self.snapshots else { return done };
+        if snapshots.last().is_some_and(|s| s.time == cx.now) {
+            snapshots.pop();
+        }
+        let agents = (0..self.members.len()).map(|agent| self.society.standing(agent)).collect();
+        snapshots.push(Snapshot { time: cx.now, agents });
+        done
     }
 
     fn begin(&mut self, agent: usize, action: Action, cx: &mut Context<'_>) -> Result<(), Fault> {

@@ -17,9 +17,10 @@ use std::collections::VecDeque;
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value, world::WorldAction};
 use hrdsl_trace::{Step, Trace, What};
 
-pub use agent::{AgentPlayer, Company};
+pub use agent::{AgentPlayer, Company, Snapshot};
 pub use automaton::AutomatonPlayer;
-pub use model::{How, LogLine, ModelRun, model_run, model_run_as, model_run_in_detail};
+pub use hrdsl_bdi::{Detail, Standing, Status};
+pub use model::{How, Inspection, LogLine, ModelRun, inspect, model_run};
 pub use program::{ProgramPlayer, SutFault};
 pub use script::ScriptPlayer;
 pub use stage::Stage;

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{CYCLE_LIMIT, Detail, Logged, Society, measure::Measured, show};
+use hrdsl_bdi::{CYCLE_LIMIT, Detail, Logged, Society, Status, measure::Measured, show};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, Fact},
@@ -10,7 +10,10 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::Trace;
 
-use super::{AgentPlayer, AutomatonPlayer, Company, Ended, Harness, Player};
+use super::{AgentPlayer, AutomatonPlayer, Company, Ended, Harness, Player, Run, Snapshot};
+
+/// Entries of each agent's log that an inspection keeps.
+const KEPT: usize = 200_000;
 
 /// What a model run yields.
 pub struct ModelRun {
@@ -34,6 +37,11 @@ pub struct LogLine {
     pub agent: String,
     /// 0: none
     pub intention: u32,
+    /// `tried`, `selected`, `step`, …: [`Logged::kind`].
+    pub kind: &'static str,
+    /// The event that a plan was looked for: `+!leg(1)`; `text` has it, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event: Option<String>,
     pub text: String,
     /// Where the step or plan stands that the line is about, if it is a failure or a fault.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,77 +56,109 @@ impl LogLine {
     }
 }
 
-/// Runs the players together, the agents with these facts besides their own; `seed` is that of `.random`.
-#[must_use]
-pub fn model_run(
-    program: &Program,
-    players: &[PlayerRef],
-    facts: &[(AgentId, Fact)],
-    seed: u64,
-    horizon: Nanos,
-) -> ModelRun {
-    model_run_in_detail(program, players, facts, seed, horizon, Detail::Failures)
-}
-
-/// The same, with a log.
-#[must_use]
-pub fn model_run_in_detail(
-    program: &Program,
-    players: &[PlayerRef],
-    facts: &[(AgentId, Fact)],
-    seed: u64,
-    horizon: Nanos,
-    detail: Detail,
-) -> ModelRun {
-    let how = How { seed, horizon, detail, cycles: CYCLE_LIMIT };
-    model_run_as(program, players, facts, &how)
-}
-
 /// How a model is run.
 #[derive(Clone, Copy, Debug)]
 pub struct How {
     /// Of `.random`.
     pub seed: u64,
     pub horizon: Nanos,
+    /// Of the log.
     pub detail: Detail,
     /// So many cycles of an agent at one instant end the run.
     pub cycles: u64,
 }
 
-/// The same, as it is said.
-#[must_use]
-pub fn model_run_as(
-    program: &Program,
-    players: &[PlayerRef],
-    facts: &[(AgentId, Fact)],
-    how: &How,
-) -> ModelRun {
-    let agent = |player: &PlayerRef| match player {
-        PlayerRef::Agent(id) => {
-            let own = facts.iter().filter(|(a, _)| a == id).map(|(_, f)| f.clone());
-            Some((*id, own.collect::<Vec<Fact>>()))
-        }
-        PlayerRef::Automaton(_) => None,
-    };
-    let agents: Vec<(AgentId, Vec<Fact>)> = players.iter().filter_map(agent).collect();
-    let mut society = Society::with_detail(program, &agents, how.seed, how.detail);
-    society.set_cycle_limit(how.cycles);
-    society.measure();
-    let company = Company::new(program, society);
-    let mut members = AgentPlayer::all(&company).into_iter();
-    let play = |player: &PlayerRef| -> Option<Box<dyn Player + '_>> {
-        match player {
-            PlayerRef::Agent(_) => Some(Box::new(members.next()?)),
-            PlayerRef::Automaton(automaton) => Some(Box::new(AutomatonPlayer::new(program, *automaton))),
-        }
-    };
-    let cast = players.iter().filter_map(play).collect();
-    let run = Harness::new(program, cast, None, how.horizon).run();
-    told(&company, run.trace, run.ended, how.detail)
+impl How {
+    /// With the usual bound of cycles.
+    #[must_use]
+    pub fn new(seed: u64, horizon: Nanos, detail: Detail) -> Self {
+        Self { seed, horizon, detail, cycles: CYCLE_LIMIT }
+    }
 }
 
-fn told(company: &Rc<RefCell<Company<'_>>>, trace: Trace, ended: Ended, detail: Detail) -> ModelRun {
-    let company = company.borrow();
+/// Runs the players together, the agents with these facts besides their own.
+#[must_use]
+pub fn model_run(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact)], how: &How) -> ModelRun {
+    let (company, run) = Cast { program, players, facts, how }.run(false);
+    told(&company.borrow(), run, how.detail)
+}
+
+/// A model run with all that there is to say about it.
+pub struct Inspection {
+    pub run: ModelRun,
+    /// The agents' names, in their order.
+    pub agents: Vec<String>,
+    /// How the agents stood at the end of each instant at which they reasoned.
+    pub snapshots: Vec<Snapshot>,
+    /// What each agent believes at the end.
+    pub beliefs: Vec<Vec<String>>,
+    /// How the agents stand together at the end.
+    pub status: Status,
+    /// How many entries of the logs were left out, since there are too many.
+    pub left_out: u64,
+}
+
+/// Runs the players as [`model_run`] does, and looks at the agents at the end of each instant.
+#[must_use]
+pub fn inspect(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact)], how: &How) -> Inspection {
+    let (company, run) = Cast { program, players, facts, how }.run(true);
+    let mut company = company.borrow_mut();
+    let snapshots = company.snapshots.take().unwrap_or_default();
+    let run = told(&company, run, how.detail);
+    let society = &company.society;
+    let agents: Vec<String> = society.names().map(str::to_owned).collect();
+    Inspection {
+        run,
+        snapshots,
+        beliefs: (0..agents.len()).map(|agent| society.believed(agent)).collect(),
+        agents,
+        status: society.status(),
+        left_out: society.left_out(),
+    }
+}
+
+/// Who plays, with what.
+struct Cast<'p, 'a> {
+    program: &'p Program,
+    players: &'a [PlayerRef],
+    facts: &'a [(AgentId, Fact)],
+    how: &'a How,
+}
+
+impl<'p> Cast<'p, '_> {
+    fn run(&self, watch: bool) -> (Rc<RefCell<Company<'p>>>, Run) {
+        let program = self.program;
+        let agent = |player: &PlayerRef| match player {
+            PlayerRef::Agent(id) => {
+                let own = self.facts.iter().filter(|(a, _)| a == id).map(|(_, f)| f.clone());
+                Some((*id, own.collect::<Vec<Fact>>()))
+            }
+            PlayerRef::Automaton(_) => None,
+        };
+        let agents: Vec<(AgentId, Vec<Fact>)> = self.players.iter().filter_map(agent).collect();
+        let mut society = Society::with_detail(program, &agents, self.how.seed, self.how.detail);
+        society.set_cycle_limit(self.how.cycles);
+        society.measure();
+        if watch {
+            society.keep_log(KEPT);
+        }
+        let company = Company::new(program, society);
+        company.borrow_mut().snapshots = watch.then(Vec::new);
+        let mut members = AgentPlayer::all(&company).into_iter();
+        let play = |player: &PlayerRef| -> Option<Box<dyn Player + 'p>> {
+            match player {
+                PlayerRef::Agent(_) => Some(Box::new(members.next()?)),
+                PlayerRef::Automaton(automaton) => Some(Box::new(AutomatonPlayer::new(program, *automaton))),
+            }
+        };
+        let cast = self.players.iter().filter_map(play).collect();
+        let run = Harness::new(program, cast, None, self.how.horizon).run();
+        (company, run)
+    }
+}
+
+fn told(company: &Company<'_>, run: Run, detail: Detail) -> ModelRun {
+    let Run { trace, ended } = run;
     let society = &company.society;
     let names: Vec<&str> = society.names().collect();
     let mut warnings: Vec<String> = Vec::new();
@@ -148,7 +188,9 @@ fn told(company: &Rc<RefCell<Company<'_>>>, trace: Trace, ended: Ended, detail: 
         }
         if detail >= Detail::Steps {
             let (time, round, cycle, intention) = (entry.time, entry.round, entry.cycle, entry.intention);
-            log.push(LogLine { time, round, cycle, agent: names[agent].to_owned(), intention, text, origin });
+            let (kind, event) = (entry.what.kind(), society.event_of(agent, entry));
+            let agent = names[agent].to_owned();
+            log.push(LogLine { time, round, cycle, agent, intention, kind, event, text, origin });
         }
     }
     let measured = society.agents().zip(society.measured().into_iter().cloned()).collect();

@@ -9,10 +9,12 @@ pub(crate) mod fixture;
 mod html;
 mod junit;
 mod model;
+mod reasoning;
 mod terminal;
 mod text;
 
 pub use html::html;
 pub use junit::junit;
 pub use model::explain_text;
+pub use reasoning::{AgentEnd, End, Picked, ending, reasoning};
 pub use terminal::summary;

@@ -3,23 +3,23 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_bdi::{
-    choose::{BeliefSet, Explorer, factors},
+    choose::{BeliefSet, Explorer, explore, factors},
     coverage::Team,
     measure::Measured,
 };
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
-    suite::{Method, PlayerRef, Suite},
+    suite::{Explore, Method, PlayerRef, Suite},
 };
 use rayon::prelude::*;
 
 use super::{
-    AbstractTest, Found, Harvest, concrete, extract,
+    AbstractTest, Found, Harvest, Origin, concrete, extract,
     goals::{Goals, Reached, agents},
     model::{self, ModelCoverage},
 };
-use crate::harness::{Ended, ModelRun, model_run};
+use crate::harness::{Detail, Ended, How, ModelRun, model_run};
 
 /// Different warnings of runs that are told, at most.
 const WARNINGS: usize = 20;
@@ -43,20 +43,84 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         if batch.is_empty() {
             break;
         }
-        // Sets are numbered from 1.
-        let numbered: Vec<(u64, BeliefSet)> = (sum.sets + 1..).zip(batch).collect();
-        let runs: Vec<Result<Outcome, String>> =
-            numbered.par_iter().map(|(number, set)| model.run(*number, set)).collect();
-        let mut rewards = Vec::new();
-        for run in runs {
-            if sum.is_over() {
-                break;
-            }
-            rewards.push(sum.add(run?));
-        }
+        let rewards = run_batch(&model, &mut sum, batch)?;
         explorer.learn(&rewards);
     }
     Ok(sum.harvest(&model, &explorer))
+}
+
+/// Runs the agents with each set, all at once, and adds up what that brought, in the order of the sets.
+fn run_batch(model: &Model<'_>, sum: &mut Sum, batch: Vec<BeliefSet>) -> Result<Vec<u32>, String> {
+    // Sets are numbered from 1.
+    let numbered: Vec<(u64, BeliefSet)> = (sum.sets + 1..).zip(batch).collect();
+    let runs: Vec<Result<Outcome, String>> =
+        numbered.par_iter().map(|(number, set)| model.run(*number, set)).collect();
+    let mut rewards = Vec::new();
+    for run in runs {
+        if sum.is_over() {
+            break;
+        }
+        rewards.push(sum.add(run?));
+    }
+    Ok(rewards)
+}
+
+/// The belief set of this number, from 1, of a suite by agents; `count` and `seed` are those of its generation. Only a
+/// suite that learns has to be run for it.
+///
+/// # Errors
+/// A suite of another method, a choice without alternatives, a number that is too high, or a model that cannot be run.
+pub fn belief_set(
+    program: &Program,
+    suite: &Suite,
+    count: Option<u32>,
+    seed: u64,
+    number: u64,
+) -> Result<BeliefSet, String> {
+    let Method::Agents { players, choose, explore, stop_after, goals, minimise: _ } = &suite.method else {
+        return Err(format!("suite `{}` is not by agents", suite.name));
+    };
+    let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
+    let mut explorer = Explorer::new(&factors, *explore, count.unwrap_or(suite.tests), seed);
+    let awaits = extract::Awaits::of(program, players);
+    let goals = Goals::of(program, players, goals);
+    let model = Model { program, suite, players, awaits, goals: &goals, seed };
+    let mut sum = Sum::new(program, players, *stop_after);
+    let mut made = 0;
+    loop {
+        let mut batch = explorer.next_batch();
+        if batch.is_empty() || sum.is_over() || number == 0 {
+            let end = format!("suite `{}` has no belief set {number}", suite.name);
+            return Err(if number == 0 { end } else { format!("{end}: it has {made}") });
+        }
+        let here = usize::try_from(number - made - 1).unwrap_or(usize::MAX);
+        if here < batch.len() {
+            return Ok(batch.swap_remove(here));
+        }
+        made += batch.len() as u64;
+        if *explore == Explore::Learn {
+            let rewards = run_batch(&model, &mut sum, batch)?;
+            explorer.learn(&rewards);
+        }
+    }
+}
+
+/// How many belief sets are tried for a suite by agents, at most, and how many there are.
+///
+/// # Errors
+/// A suite of another method, or a choice without alternatives.
+pub fn how_many_sets(
+    program: &Program,
+    suite: &Suite,
+    count: Option<u32>,
+    seed: u64,
+) -> Result<(usize, u128), String> {
+    let Method::Agents { choose, explore: how, .. } = &suite.method else {
+        return Err(format!("suite `{}` is not by agents", suite.name));
+    };
+    let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
+    let explored = explore(&factors, *how, count.unwrap_or(suite.tests), seed);
+    Ok((explored.sets.len(), explored.space))
 }
 
 /// What is the same for all runs.
@@ -83,8 +147,12 @@ impl Model<'_> {
     /// Runs the agents with a set of beliefs; `number` is its place among all sets.
     fn run(&self, number: u64, set: &BeliefSet) -> Result<Outcome, String> {
         let seed = concrete::seed_of(self.seed, number);
-        let ModelRun { trace, ended, measured, warnings, .. } =
-            model_run(self.program, self.players, &set.facts, seed, self.suite.horizon);
+        let ModelRun { trace, ended, measured, warnings, .. } = model_run(
+            self.program,
+            self.players,
+            &set.facts,
+            &How::new(seed, self.suite.horizon, Detail::Failures),
+        );
         if let Ended::Fault(fault) = ended {
             return Err(format!("suite `{}`, with {}: {fault}", self.suite.name, set.text.join(", ")));
         }
@@ -94,6 +162,7 @@ impl Model<'_> {
             because: vec![set.text.join(", ")],
             predicts: covered.cross_names(&self.program.coverage),
             reaches: self.goals.reached(&measured, &covered),
+            origin: Some(Origin { number, beliefs: set.clone() }),
         };
         let keeps_assumptions = extract::keeps_assumptions(self.program, &trace);
         Ok(Outcome { test, measured, numbers: covered.numbers, warnings, keeps_assumptions })

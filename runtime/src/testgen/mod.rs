@@ -26,6 +26,9 @@ use hrdsl_ir::{
     test::{Provenance, Test, TestStep},
 };
 
+pub use agents::{belief_set, how_many_sets};
+pub use concrete::seed_of;
+pub use hrdsl_bdi::choose::BeliefSet;
 pub use model::{
     AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation, Uncovered, Unreached,
 };
@@ -40,6 +43,16 @@ pub struct AbstractTest {
     pub predicts: Vec<String>,
     /// Of a suite by agents: which of its goals the run reached.
     pub reaches: goals::Reached,
+    /// Of a suite by agents: the first run that it came from.
+    pub origin: Option<Origin>,
+}
+
+/// The run that a test by agents came from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// The number of its belief set, from 1.
+    pub number: u64,
+    pub beliefs: BeliefSet,
 }
 
 /// What became of one goal of a suite by search.
@@ -68,6 +81,8 @@ pub struct Generated {
     /// How many different abstract tests there are.
     pub abstract_tests: usize,
     pub tests: Vec<Test>,
+    /// Of a suite by agents: where each test came from.
+    pub origins: Vec<Origin>,
     /// Of a suite by search: every goal's fate.
     pub goals: Vec<GoalReport>,
     /// Of a suite by agents: what was reached of their programs.
@@ -149,12 +164,14 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
     }
     let tests = make_concrete(program, suite, method, &different, number, seed)?;
     let made = &different[..different.len().min(number as usize)];
+    let origins = different.iter().cycle().take(tests.len()).filter_map(|t| t.origin.clone()).collect();
     let explanation = found.as_ref().map(|found| explain(found, made, suite));
     Ok(Generated {
         suite: suite.name.clone(),
         method,
         abstract_tests: different.len(),
         tests,
+        origins,
         goals,
         coverage: found.map(|found| found.coverage),
         explanation,

@@ -64,9 +64,9 @@ pub enum Arg {
     /// The name of a value of an enumeration, perhaps. First, so that no text becomes a symbol before it is known to be
     /// one: symbols are kept for ever.
     Text(String),
-    Scalar(Value),
-    /// A place (x, y, z; metres) or joint angles (radians).
+    /// A place (x, y, z; metres) or joint angles (radians). Before values, of which some are lists, too.
     Numbers(Vec<f64>),
+    Scalar(Value),
 }
 
 impl fmt::Display for Arg {

@@ -18,7 +18,7 @@ use hrdsl_ir::{
     suite::{Method, PlayerRef},
     value::SECOND,
 };
-use hrdsl_runtime::harness::{Ended, Fault, How, LogLine, model_run_as};
+use hrdsl_runtime::harness::{Ended, Fault, How, LogLine, model_run};
 use hrdsl_trace::What;
 
 use crate::page::root;
@@ -46,7 +46,7 @@ pub type Cast = (Vec<u16>, BeliefSet);
 pub fn printed(program: &Program, text: &str, (agents, set): &Cast, cycles: u64) -> String {
     let players: Vec<PlayerRef> = agents.iter().map(|n| PlayerRef::Agent(AgentId(*n))).collect();
     let how = How { seed: 0, horizon: LIMIT, detail: Detail::Steps, cycles };
-    let run = model_run_as(program, &players, &set.facts, &how);
+    let run = model_run(program, &players, &set.facts, &how);
     let mut out = String::new();
     for line in &run.log {
         let _ = writeln!(out, "{}{}", line.line(), place(line, text));

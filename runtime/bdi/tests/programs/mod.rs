@@ -4,8 +4,8 @@
 use hrdsl_ir::{
     Actor, ActorId, Expr, Program, Role, Span, Symbol, Value,
     bdi::{
-        Agent, AgentId, Content, ContentId, Context, Fact, Goal, GoalId, Performative, Plan, Step,
-        StepKind, Subject, Term, Trigger, TriggerOn,
+        Agent, AgentId, Content, ContentId, Context, Fact, Goal, GoalId, Performative, Plan, Step, StepKind,
+        Subject, Term, Trigger, TriggerOn,
     },
     expr::BinaryOp,
 };

@@ -1,0 +1,298 @@
+//! `hrdsl inspect`, and what `hrdsl gen` says of agents' reasoning.
+
+mod support;
+
+use std::{fs, process::Output};
+
+use serde_json::Value;
+use support::{command, expect_code, folder, handover, hrdsl, hrdsl_in, stderr, stdout, tree};
+use tempfile::TempDir;
+
+/// Two agents that talk.
+fn kitchen() -> TempDir {
+    folder(&[("scenario.hri", include_str!("reasoning/scenario.hri"))])
+}
+
+/// Of the example, with these arguments besides.
+fn inspect(more: &[&str]) -> Output {
+    let scenario = handover();
+    hrdsl(["inspect", scenario.to_str().unwrap()].iter().chain(more))
+}
+
+fn lines(out: &Output) -> Vec<Value> {
+    stdout(out).lines().map(|l| serde_json::from_str(l).unwrap()).collect()
+}
+
+// ── What is shown ──
+
+#[test]
+fn messages_refused_plans_and_failures_are_told_with_their_places() {
+    let here = kitchen();
+    let out = hrdsl_in(here.path(), "inspect scenario.hri calm --set 2");
+    expect_code(&out, 0);
+    insta::assert_snapshot!("a_failing_goal", stdout(&out));
+    let out = hrdsl_in(here.path(), "inspect scenario.hri calm --set 3 --from 0 --until 0");
+    expect_code(&out, 0);
+    insta::assert_snapshot!("a_plan_that_nobody_has", stdout(&out));
+}
+
+#[test]
+fn the_example_with_beliefs_by_hand() {
+    let beliefs = "wants(1), shows(1, true, false, true), Sensors.away";
+    let given = ["--beliefs", beliefs, "--agent", "Human", "--until", "30 s"];
+    let out = inspect(&given);
+    expect_code(&out, 0);
+    insta::assert_snapshot!("beliefs_by_hand", stdout(&out));
+    let steps = stdout(&inspect(&[&given[..], &["--steps"]].concat()));
+    assert!(
+        !steps.contains("is not applicable")
+            && steps.contains("→ show#4 (L = 1, G = true, P = false, X = true)")
+    );
+    assert_eq!(stdout(&inspect(&[&given[..], &["--reasons"]].concat())), stdout(&out));
+}
+
+#[test]
+fn beliefs_by_hand_are_those_of_a_set() {
+    let here = kitchen();
+    let of = |line: &str| {
+        let out = hrdsl_in(here.path(), &format!("inspect scenario.hri calm {line} --json"));
+        expect_code(&out, 0);
+        stdout(&out)
+    };
+    assert_eq!(of("--beliefs hungry(2)"), of("--set 2"));
+    assert_ne!(of("--beliefs hungry(1)"), of("--set 2"));
+    assert_ne!(of("--beliefs hungry(1),hungry(2)"), of("--beliefs hungry(2),hungry(1)"), "in their order");
+}
+
+#[test]
+fn a_livelock_is_an_error_and_its_log_is_folded() {
+    let here = kitchen();
+    let out = hrdsl_in(here.path(), "inspect scenario.hri meals --set 2");
+    expect_code(&out, 1);
+    let (text, end) =
+        (stdout(&out), "the end, at 0 s: livelock (agent `Guest`: at one instant its state repeats");
+    assert!(text.contains(end) && text.contains(" cycles (--all shows them)\n"), "{text}");
+    assert!(text.contains("\n       livelock\n"));
+    assert!(text.lines().count() < 300);
+    let all = hrdsl_in(here.path(), "inspect scenario.hri meals --set 2 --all");
+    expect_code(&all, 1);
+    assert!(stdout(&all).lines().count() > 3000);
+
+    let end = hrdsl_in(here.path(), "inspect scenario.hri meals --set 2 --end --json");
+    expect_code(&end, 1);
+    let end: Value = serde_json::from_slice(&end.stdout).unwrap();
+    assert_eq!((&end["how"], &end["time"]), (&Value::from("livelock"), &Value::from(0)));
+    assert_eq!(end["agents"][0]["beliefs"][1], "dizzy[source(self)]");
+}
+
+#[test]
+fn the_bound_of_cycles_is_an_error_too() {
+    let spin = include_str!("reasoning/scenario.hri").replace(
+        "plan @round +!spin { !!spin }",
+        "belief turns(n: int) = turns(0)\n  plan @round +!spin { ?turns(N); -+turns(N + 1); !!spin }",
+    );
+    let here = folder(&[("scenario.hri", &spin)]);
+    let out = hrdsl_in(here.path(), "inspect scenario.hri meals --set 2 --end");
+    expect_code(&out, 1);
+    let text = stdout(&out);
+    assert!(text.contains("the end, at 0 s: cycle bound (agent `Guest`: more than 1000000 cycles"), "{text}");
+    assert!(text.contains(" entries of the log are left out"), "{text}");
+}
+
+#[test]
+fn the_end_says_what_is_waited_for_and_believed() {
+    let out = inspect(&["--set", "2", "--end"]);
+    expect_code(&out, 0);
+    let text = stdout(&out);
+    assert!(text.starts_with("handover, suite bdi_tests, belief set 2\n  beliefs: wants("), "{text}");
+    assert!(
+        text.contains("\nthe end, at ") && text.contains("\n  Sensors\n    intends nothing\n    believes\n")
+    );
+    assert!(!text.contains("round "), "{text}");
+}
+
+#[test]
+fn one_agent_and_some_time() {
+    let all = lines(&inspect(&["--set", "2", "--json"]));
+    let some =
+        lines(&inspect(&["--set", "2", "--json", "--agent", "Human", "--from", "5 s", "--until", "2min"]));
+    let wanted = |l: &&Value| {
+        l["agent"] == "Human" && (5_000_000_000..=120_000_000_000).contains(&l["time"].as_i64().unwrap())
+    };
+    assert!(!some.is_empty() && some.len() < all.len());
+    assert_eq!(some, all.iter().filter(wanted).cloned().collect::<Vec<_>>());
+}
+
+#[test]
+fn lines_of_json_say_all() {
+    let here = kitchen();
+    let all = lines(&hrdsl_in(here.path(), "inspect scenario.hri calm --set 2 --json"));
+    let of = |kind: &str| all.iter().filter(|l| l["kind"] == kind).collect::<Vec<_>>();
+    assert_eq!(of("tried")[0]["event"], "+!eat");
+    assert_eq!(of("tried")[0]["text"], "+!eat: wise is not applicable, `patient` has no answer");
+    assert_eq!(of("heard")[0]["text"], "hears achieve serve(2) from Guest");
+    let failed = of("failed");
+    assert_eq!((failed[0]["agent"].as_str(), failed[1]["agent"].as_str()), (Some("Robot"), Some("Guest")));
+    assert_eq!(failed[1]["text"], "#1 failed !get(2) in get#1: the time is over");
+    assert_eq!(failed[1]["place"], "scenario.hri:23:30");
+    assert!(all.is_sorted_by_key(|l| l["time"].as_i64()), "in the order of time");
+}
+
+#[test]
+fn colours_are_for_terminals() {
+    assert!(!stdout(&inspect(&[])).contains('\u{1b}'));
+    assert!(stdout(&inspect(&["--color", "always"])).contains("\u{1b}[36m+!table\u{1b}[0m"));
+}
+
+// ── Which run ──
+
+#[test]
+fn without_a_name_the_only_suite_is_shown_or_all_are_listed() {
+    expect_code(&inspect(&["--end"]), 0);
+    let here = kitchen();
+    let out = hrdsl_in(here.path(), "inspect scenario.hri");
+    expect_code(&out, 2);
+    let wanted = "the suites by agents are:\n  calm: 3 of 3 belief sets\n  meals: 6 of 6 belief sets\nhelp: hrdsl inspect scenario.hri calm --set 1\n";
+    assert!(stderr(&out).ends_with(wanted), "{}", stderr(&out));
+}
+
+#[test]
+fn what_does_not_exist_is_named_with_what_does() {
+    for (args, reason) in [
+        (&["nope"][..], "no suite or test `nope`"),
+        (&["ta_tests"], "suite `ta_tests` is not by agents"),
+        (&["bdi_tests.t999"], "no test `bdi_tests.t999`: the suite has 160"),
+        (&["--test", "bdi_tests"], "no test `bdi_tests`: write it like `SUITE.t001`"),
+        (&["--set", "161"], "suite `bdi_tests` has no belief set 161: it has 160"),
+        (&["--agent", "Robot"], "no agent `Robot` in the suite; it has: Human, Sensors"),
+        (&["bdi_tests.t001", "--set", "2"], "a test has its beliefs"),
+        (&["--until", "1 h"], "no unit `h`"),
+        (&["--set", "2", "--beliefs", "wants(1)"], "cannot be used with"),
+        (&["--beliefs", "wnts(1)"], "no belief `wnts`; the suite's agents have: Human.wants, "),
+        (&["--beliefs", "wants(9)"], "--beliefs: `wants(9)`: 9 is outside 0..4"),
+        (&["--beliefs", "Sensors.wants(1)"], "no belief `wants`; the suite's agents have: Sensors.away"),
+        (&["--beliefs", "Robot.wants(1)"], "no agent `Robot` in the suite; it has: Human, Sensors"),
+        (&["--beliefs", "wants(1"], "something that is not closed"),
+        (&["--beliefs", "wants(1),"], "something that is no belief"),
+    ] {
+        let out = inspect(args);
+        expect_code(&out, 2);
+        assert!(stderr(&out).contains(reason), "{args:?}: {}", stderr(&out));
+    }
+    let out = hrdsl_in(kitchen().path(), "inspect scenario.hri calm --beliefs dizzy");
+    expect_code(&out, 2);
+    assert!(
+        stderr(&out).contains("several agents have `dizzy`: write `Guest.dizzy` or `Robot.dizzy`"),
+        "{}",
+        stderr(&out)
+    );
+}
+
+// ── gen ──
+
+/// The run of a test is that which its trace shows, and starts with the beliefs that the test says it came from.
+#[test]
+fn traces_are_the_runs_that_tests_came_from() {
+    let here = tempfile::tempdir().unwrap();
+    let (scenario, out) = (handover(), here.path().join("tests"));
+    let args = [
+        "gen",
+        scenario.to_str().unwrap(),
+        "--suite",
+        "bdi_tests",
+        "-n",
+        "30",
+        "--seed",
+        "5",
+        "--trace",
+        "-o",
+    ];
+    let run = hrdsl(args.iter().copied().chain([out.to_str().unwrap()]));
+    expect_code(&run, 0);
+    let files = tree(&out);
+    assert_eq!(files.len(), 31);
+    let tests = String::from_utf8(files["bdi_tests.hri"].clone()).unwrap();
+    for name in ["t001", "t017"] {
+        let log = String::from_utf8(files[&format!("bdi_tests.traces/{name}.log")].clone()).unwrap();
+        let test = format!("bdi_tests.{name}");
+        for by in [&[test.as_str()][..], &["--test", &test], &[&format!("handover.{test}")]] {
+            let shown = inspect(&[by, &["--all", "-n", "30", "--seed", "5"]].concat());
+            expect_code(&shown, 0);
+            assert_eq!(stdout(&shown), log, "{by:?}");
+        }
+        let of_it = tests.split(&format!("\ntest {test} ")).nth(1).unwrap();
+        let beliefs = log.lines().nth(1).unwrap().trim().strip_prefix("beliefs: ").unwrap();
+        assert!(of_it.split("\ntest ").next().unwrap().contains(beliefs), "{beliefs}\n{of_it}");
+    }
+}
+
+#[test]
+fn traces_are_the_same_with_any_number_of_threads() {
+    let here = kitchen();
+    let make = |threads: &str, line: &str| {
+        let mut command = command();
+        command.current_dir(here.path()).env("RAYON_NUM_THREADS", threads);
+        let out = command.args(line.split(' ')).output().unwrap();
+        expect_code(&out, 0);
+        (stdout(&out), tree(here.path()))
+    };
+    let line = "gen scenario.hri --suite calm --trace -o tests";
+    let one = make("1", line);
+    assert_eq!(one, make("4", line));
+    assert_eq!(one.1.keys().filter(|k| k.starts_with("tests/calm.traces/t")).count(), 5);
+    // A later generation of fewer tests leaves none of the earlier ones.
+    let fewer = make("2", &format!("{line} -n 2 --json"));
+    let traces: Vec<&String> = fewer.1.keys().filter(|k| k.contains(".traces/")).collect();
+    assert_eq!(traces, ["tests/calm.traces/t001.jsonl", "tests/calm.traces/t002.jsonl"]);
+    let document: Value = serde_json::from_str(&fewer.0).unwrap();
+    let test = &document["suites"][0]["tests"][1];
+    assert_eq!((&test["set"], &test["trace"]), (&Value::from(2), &Value::from(traces[1].as_str())));
+    let shown = hrdsl_in(here.path(), "inspect scenario.hri calm.t002 -n 2 --json");
+    assert_eq!(shown.stdout, fewer.1[traces[1]]);
+}
+
+#[test]
+fn what_tests_are_for_is_explained() {
+    let here = kitchen();
+    let out = hrdsl_in(here.path(), "gen scenario.hri --suite calm --explain");
+    expect_code(&out, 0);
+    let text = stdout(&out);
+    assert!(
+        text.contains("\n  calm.t001  reaches ")
+            && text.contains("\nGoals that no test reaches\n  plan Guest.wise\n"),
+        "{text}"
+    );
+    let plain = stdout(&hrdsl_in(here.path(), "gen scenario.hri --suite calm"));
+    assert!(text.starts_with(plain.as_str()) && !plain.contains("reaches"), "{plain}");
+
+    let out = hrdsl_in(here.path(), "gen scenario.hri --suite calm --json");
+    expect_code(&out, 0);
+    let document: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!((document["format"].as_str(), document["version"].as_i64()), (Some("hrdsl-gen"), Some(1)));
+    let suite = &document["suites"][0];
+    let uncovered = suite["explanation"]["uncovered"].as_array().unwrap();
+    assert!(uncovered.iter().any(|u| u["goal"] == "plan Guest.wise" && u["reason"] != ""), "{suite}");
+    assert_eq!(suite["tests"].as_array().unwrap().len(), 5);
+}
+
+#[test]
+fn suites_are_minimised_on_request() {
+    let (here, scenario) = (tempfile::tempdir().unwrap(), handover());
+    let count = |more: &[&str]| {
+        let args = ["gen", scenario.to_str().unwrap(), "--suite", "bdi_tests", "--json", "-o"];
+        let args = args.into_iter().chain([here.path().to_str().unwrap()]).chain(more.iter().copied());
+        let out = hrdsl(args);
+        expect_code(&out, 0);
+        let document: Value = serde_json::from_slice(&out.stdout).unwrap();
+        document["suites"][0]["tests"].as_array().unwrap().len()
+    };
+    assert_eq!(count(&[]), 160);
+    let few = count(&["--minimise"]);
+    assert!(few > 2 && few < 80, "{few}");
+    let text = fs::read_to_string(here.path().join("bdi_tests.hri")).unwrap();
+    assert_eq!(text.matches("\ntest ").count(), few);
+    let last = format!("bdi_tests.t{few:03}");
+    expect_code(&inspect(&[&last, "--minimise", "--end"]), 0);
+    let beyond = format!("bdi_tests.t{:03}", few + 1);
+    expect_code(&inspect(&[&beyond, "--minimise", "--end"]), 2);
+}

@@ -1,0 +1,104 @@
+//! How an agent stands: what it intends, what each intention waits for, what it believes.
+
+use serde::Serialize;
+
+use crate::{
+    LogEntry, Logged,
+    belief::Annotations,
+    cycle::Machine,
+    event::Args,
+    intention::{Intention, NO_LINE, State, Timer},
+    show::{self, call},
+};
+
+/// An intention, to be read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Standing {
+    /// As in the log; 0: it has no plan yet.
+    pub intention: u32,
+    /// Its plans with the arguments of what they were selected for, the lowest first: `leg#2(1)`.
+    pub plans: Vec<String>,
+    /// `await released within 90 s, until 95 s`
+    pub waits: String,
+    pub suspended: bool,
+}
+
+impl Machine<'_> {
+    /// The event that an entry is about, if it is about the choice of a plan.
+    pub fn event_of(&self, entry: &LogEntry) -> Option<String> {
+        match &entry.what {
+            Logged::Selected { on, args, .. }
+            | Logged::Tried { on, args, .. }
+            | Logged::Unhandled { on, args, .. } => Some(self.names()?.on(*on, args)),
+            _ => None,
+        }
+    }
+
+    /// What it intends, in the order of adoption.
+    pub fn standing(&self) -> Vec<Standing> {
+        let places = self.mind.pool.in_order();
+        places.into_iter().map(|place| self.stands(place, self.mind.pool.see(place))).collect()
+    }
+
+    fn stands(&self, place: u32, intention: &Intention) -> Standing {
+        let plan = |frame: &crate::intention::Frame| {
+            let label = &self.mind.library.plan(frame.plan).label;
+            let args = intention.args(*frame).iter();
+            call(label, args.map(|a| a.map_or_else(|| "_".to_owned(), |v| v.to_string())))
+        };
+        let mut waits = self.waits(place, intention);
+        if let Some(due) = intention.deadlines.iter().map(|d| d.timer.due).min() {
+            waits += &format!(", deadline {}", show::time(due));
+        }
+        Standing {
+            intention: intention.number,
+            plans: intention.frames.iter().map(plan).collect(),
+            waits,
+            suspended: intention.suspended,
+        }
+    }
+
+    fn waits(&self, place: u32, intention: &Intention) -> String {
+        let until = |timer: Option<Timer>| {
+            timer.map_or_else(String::new, |t| format!(", until {}", show::time(t.due)))
+        };
+        match intention.state {
+            State::Free | State::Ready | State::Held => "for its turn".to_owned(),
+            State::Posted => match self.posted(place) {
+                Some(event) => format!("for a plan for {event}"),
+                None => "for a plan".to_owned(),
+            },
+            State::Acting(_) => format!("for the end of {}", self.step_of(intention)),
+            State::Sleeping(timer) => self.step_of(intention) + &until(Some(timer)),
+            State::Awaiting { timer, .. } | State::Asking { timer, .. } => {
+                self.step_of(intention) + &until(timer)
+            }
+            State::Forked { left, all } => {
+                let which = if all { "all" } else { "the first" };
+                format!("for {which} of its branches ({left} not finished)")
+            }
+        }
+    }
+
+    fn posted(&self, place: u32) -> Option<String> {
+        let event = self.mind.events.iter().find(|e| e.of == Some(place))?;
+        Some(self.names()?.on(event.on, &event.args))
+    }
+
+    /// The step that the top plan is at.
+    fn step_of(&self, intention: &Intention) -> String {
+        let top = intention.frames.last().filter(|f| f.at != NO_LINE);
+        let text = top.and_then(|f| Some(self.names()?.line(f.plan, f.at, intention.vars())));
+        text.unwrap_or_else(|| "?".to_owned())
+    }
+
+    /// What it believes, in the order of declarations, then oldest first: `wants(2)[source(self)]`.
+    pub fn believed(&self) -> Vec<String> {
+        let Some(names) = self.names() else { return Vec::new() };
+        let text = |fact: hrdsl_ir::bdi::Fact| {
+            let args: Args = fact.args.iter().map(|v| Some(*v)).collect();
+            names.fact(fact.belief, &args, &Annotations::from_slice(&fact.annotations))
+        };
+        self.mind.beliefs.facts().map(text).collect()
+    }
+}
