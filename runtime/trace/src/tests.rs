@@ -314,6 +314,7 @@ fn values(ty: Type) -> BoxedStrategy<Value> {
         Type::Int { lo, hi } => (lo..=hi).prop_map(Value::Int).boxed(),
         Type::Float(_) => floats().prop_map(Value::Float).boxed(),
         Type::Enum(e) => prop::sample::select(e.values()).prop_map(Value::Symbol).boxed(),
+        Type::Text | Type::List(_) => unreachable!("no event and no signal has these"),
     }
 }
 
