@@ -576,7 +576,7 @@ cross c(a:cover)=legs*ok{
 "#
     suites r#"
 suite s by agents Human,Robot{
-  choose one wants of Human choose any shows of Human per leg
+  choose one wants of Human choose any shows of Human per leg where wants(L)&&not L>2
   explore pairwise;tests 160;horizon 300s
   patience 60s
 }

@@ -48,7 +48,7 @@ pub use belief::Annotations;
 pub use check::Malformed;
 pub use cycle::{CYCLE_LIMIT, Status};
 pub use event::{Action, ActionToken, Args};
-pub use measure::Measured;
 pub use log::{Cause, Detail, Failure, LogEntry, Logged, Outcome, PlanIndex, Verdict};
+pub use measure::Measured;
 pub use query::Fault;
 pub use society::Society;

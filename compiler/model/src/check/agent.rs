@@ -42,7 +42,10 @@ pub(super) struct Scope {
 
 impl Scope {
     fn new(index: usize) -> Self {
-        let id = AgentId(u16::try_from(index).unwrap_or(u16::MAX));
+        Self::of(AgentId(u16::try_from(index).unwrap_or(u16::MAX)))
+    }
+
+    pub fn of(id: AgentId) -> Self {
         Self { id, labels: Table::default(), plans_of: Map::default() }
     }
 }
