@@ -4,7 +4,8 @@ import json
 import math
 import sys
 
-from agents import Fault, evaluate, fits
+from agent_values import Fault, evaluate
+from events import fits
 
 NEVER = math.inf
 

@@ -6,7 +6,8 @@ import json
 import sys
 from itertools import product
 
-from agents import evaluate, fits
+from agent_values import evaluate
+from events import fits
 
 TICK = 250_000_000
 

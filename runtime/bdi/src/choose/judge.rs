@@ -171,3 +171,121 @@ fn reads(agent: &Agent, formula: &Context) -> BTreeSet<BeliefId> {
     }
     reads
 }
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{
+        ActorId, Expr, Param, Type, Value,
+        bdi::{Belief, Literal, Rule, Term},
+        expr::BinaryOp,
+        suite::{ChoiceKind, Explore},
+    };
+
+    use super::*;
+    use crate::choose::{Explorer, factors};
+
+    const N: Type = Type::Int { lo: 0, hi: 3 };
+
+    fn literal(belief: u16, args: Vec<Term>) -> Context {
+        Context::Belief(Literal { belief: BeliefId(belief), args, annotations: vec![] })
+    }
+
+    fn binary(op: BinaryOp, left: Expr, right: Expr) -> Expr {
+        Expr::Binary(op, Box::new(left), Box::new(right))
+    }
+
+    /// `wants(n)`, `tired`, `limit(n)`, of which `limit(2)` is held, and `rule most(N) when wants(N) && not tired`
+    fn program() -> Program {
+        let belief = |name: &str, params: usize| Belief {
+            name: name.into(),
+            params: vec![Param { name: "n".into(), ty: N }; params],
+            annotations: vec![],
+            percept: None,
+            origin: Default::default(),
+        };
+        let body =
+            Context::And(vec![literal(0, vec![Term::Var(0)]), Context::Not(Box::new(literal(1, vec![])))]);
+        let agent = Agent {
+            name: "Human".into(),
+            actor: ActorId(0),
+            beliefs: vec![belief("wants", 1), belief("tired", 0), belief("limit", 1), belief("most", 1)],
+            goals: vec![],
+            rules: vec![Rule {
+                belief: BeliefId(3),
+                args: vec![Term::Var(0)],
+                body,
+                vars: vec!["N".into()],
+                origin: Default::default(),
+            }],
+            initial_beliefs: vec![Fact {
+                belief: BeliefId(2),
+                args: vec![Value::Int(2)],
+                annotations: vec![],
+            }],
+            initial_goals: vec![],
+            plans: vec![],
+            origin: Default::default(),
+        };
+        Program { agents: vec![agent], ..Program::default() }
+    }
+
+    fn choices(context: Option<Context>) -> Vec<Choice> {
+        let condition = context.map(|context| Condition {
+            context,
+            vars: vec!["X".into(), "Y".into()],
+            origin: Default::default(),
+        });
+        let choice =
+            |belief, how, condition| Choice { agent: AgentId(0), belief: BeliefId(belief), how, condition };
+        vec![choice(0, ChoiceKind::One, condition), choice(1, ChoiceKind::Any, None)]
+    }
+
+    fn explored(context: Option<Context>) -> Result<Vec<String>, String> {
+        let (program, choices) = (program(), choices(context));
+        let factors = factors(&program, &choices).unwrap();
+        let how = (Explore::Exhaustive, 100, 0);
+        let mut explorer =
+            Explorer::of(&program, &[AgentId(0)], &choices, &factors, how).map_err(|e| e.to_string())?;
+        let sets = explorer.next_batch();
+        for set in &sets {
+            assert!(allows(&program, &[AgentId(0)], &choices, set).unwrap());
+        }
+        Ok(sets.iter().map(|set| set.text.join(" ")).collect())
+    }
+
+    /// `most(X) && limit(Y) && X <= Y`, or what comes last.
+    fn at_most(last: Expr) -> Context {
+        Context::And(vec![
+            literal(3, vec![Term::Var(0)]),
+            literal(2, vec![Term::Var(1)]),
+            Context::Test(last),
+        ])
+    }
+
+    #[test]
+    fn conditions_are_asked_of_initial_and_chosen_beliefs_through_rules() {
+        let below = at_most(binary(BinaryOp::Le, Expr::Var(0), Expr::Var(1)));
+        assert_eq!(explored(Some(below.clone())).unwrap(), ["wants(0)", "wants(1)", "wants(2)"]);
+        assert_eq!(explored(Some(Context::Not(Box::new(below)))).unwrap().len(), 5);
+        assert_eq!(explored(None).unwrap().len(), 8);
+    }
+
+    #[test]
+    fn a_condition_without_a_value_allows_nothing_and_is_told() {
+        let by_zero = binary(BinaryOp::Div, Expr::Const(Value::Int(1)), Expr::Var(0));
+        let not_zero = at_most(binary(BinaryOp::Ge, by_zero, Expr::Const(Value::Int(0))));
+        assert_eq!(explored(Some(not_zero)).unwrap(), ["wants(1)", "wants(2)", "wants(3)"]);
+        let zero = binary(BinaryOp::Sub, Expr::Var(0), Expr::Var(0));
+        let always = binary(BinaryOp::Eq, binary(BinaryOp::Div, Expr::Var(0), zero), Expr::Var(0));
+        let error = explored(Some(at_most(always))).unwrap_err();
+        assert_eq!(error, "no belief set fulfils what `where` says of wants, tired: division by zero");
+    }
+
+    #[test]
+    fn what_cannot_be_asked_is_refused() {
+        let error = explored(Some(literal(9, vec![]))).unwrap_err();
+        assert_eq!(error, "the condition of a choice of Human is ill-formed");
+        let error = explored(Some(literal(0, vec![Term::Var(7)]))).unwrap_err();
+        assert!(error.ends_with("is ill-formed"), "{error}");
+    }
+}
