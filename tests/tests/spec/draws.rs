@@ -46,7 +46,9 @@ fn drawn(seed: u64) -> (String, Vec<u64>) {
                         let _ = match value {
                             Value::Int(n) => writeln!(lines, "{n}"),
                             Value::Float(x) => writeln!(lines, "{:016x}", x.to_bits()),
-                            Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => panic!("{value:?}"),
+                            Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => {
+                                panic!("{value:?}")
+                            }
                         };
                     }
                 }
