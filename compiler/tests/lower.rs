@@ -603,7 +603,7 @@ fn coverage_suites_and_tests() {
          agent A plays person { belief b(n: 0..3, ok: bool) }\nautomaton R plays robot { init location a }\nnetwork net = R\n\
          cover c = count(m(true) or e) bins none = 0, few = 1..3, many = 4..\n\
          cross x = c { bin \"some\" when not c.none && (c.few || c.many)\n ignore when c.many }\n\
-         suite g by agents A, R { choose one b of A per ok\n choose any b of A\n explore random }\n\
+         suite g by agents A, R { choose one b of A per ok\n choose any b of A where b(N, true) && not b(N, false)\n explore random }\n\
          suite h by search of net { reach each bin of x\n reach each location\n reach each edge\n tests 7 }\n\
          suite r by random { stimuli s\n await m\n length 2..4\n pause 1 s .. 2 s }\n\
          test h.t1 {\n seed 17\n method search\n because \"it\"\n predicts \"x.some\"\n s(true)\n s(false) with a = 150 cm\n await m(true) | e within 3 s\n wait 1 s\n}\n\
@@ -624,6 +624,14 @@ fn coverage_suites_and_tests() {
     assert_eq!((*stop_after, goals.as_slice(), *minimise), (None, &[][..], false));
     assert_eq!((players.len(), *explore), (2, Explore::Random));
     assert_eq!((choose[0].how, choose[1].how), (ChoiceKind::OnePer(1), ChoiceKind::Any));
+    let held = |holds| {
+        let args = vec![Term::Var(0), Term::Expr(Expr::Const(Value::Bool(holds)))];
+        Context::Belief(Literal { belief: BeliefId(0), args, annotations: vec![] })
+    };
+    let only_true = Context::And(vec![held(true), Context::Not(Box::new(held(false)))]);
+    let condition = choose[1].condition.as_ref().unwrap();
+    assert_eq!((&condition.context, condition.vars.as_slice()), (&only_true, &["N".to_owned()][..]));
+    assert_eq!(choose[0].condition, None);
     assert_eq!(
         (p.suites[0].tests, p.suites[0].horizon, p.suites[0].patience),
         (100, 300 * SECOND, 60 * SECOND)

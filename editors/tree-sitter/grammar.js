@@ -626,6 +626,7 @@ module.exports = grammar({
         keyword($, "of"),
         field("agent", $.identifier),
         optional(seq(keyword($, "per"), field("per", $.identifier))),
+        optional(seq(keyword($, "where"), field("condition", $.expression))),
       ),
     // A word, and what it is set to.
     setting: ($) =>

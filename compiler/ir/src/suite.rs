@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{EventId, EventPattern, Nanos, Span, bdi::AgentId, bdi::BeliefId, ta::AutomatonId};
+use crate::{
+    EventId, EventPattern, Nanos, Span,
+    bdi::{AgentId, BeliefId, Context},
+    ta::AutomatonId,
+};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Suite {
@@ -60,6 +64,18 @@ pub struct Choice {
     pub agent: AgentId,
     pub belief: BeliefId,
     pub how: ChoiceKind,
+    /// `where F`: only sets of beliefs with which the agent has an answer of F are in the space.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<Condition>,
+}
+
+/// What the beliefs that an agent starts with must answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Condition {
+    pub context: Context,
+    /// The names of its variables; [`Term::Var`](crate::bdi::Term::Var) counts in them.
+    pub vars: Vec<String>,
+    pub origin: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

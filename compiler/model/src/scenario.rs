@@ -876,6 +876,15 @@ pub struct Choice {
     pub agent: AgentId,
     pub belief: BeliefId,
     pub how: ChoiceKind,
+    pub condition: Option<ChoiceCondition>,
+}
+
+/// `where F` of a choice: what the beliefs that the agent starts with must answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChoiceCondition {
+    pub context: Context,
+    pub vars: Vec<String>,
+    pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -128,7 +128,7 @@ fn assertion(a: &model::Assertion) -> Assertion {
     }
 }
 
-fn context(c: &model::Context) -> Context {
+pub(crate) fn context(c: &model::Context) -> Context {
     match c {
         model::Context::True => Context::True,
         model::Context::Belief(l) => Context::Belief(literal(l)),

@@ -3,13 +3,13 @@
 use hrdsl_ir::{
     EventId,
     bdi::{AgentId, BeliefId},
-    suite::{Choice, ChoiceKind, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite},
+    suite::{Choice, ChoiceKind, Condition, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite},
     ta::AutomatonId,
     value::nanos,
 };
 use hrdsl_model as model;
 
-use super::vocabulary::patterns;
+use super::{bdi::context, vocabulary::patterns};
 
 pub(crate) fn suite(s: &model::Suite) -> Suite {
     Suite {
@@ -64,7 +64,12 @@ fn choice(c: &model::Choice) -> Choice {
         model::ChoiceKind::OnePer(param) => ChoiceKind::OnePer(param),
         model::ChoiceKind::Any => ChoiceKind::Any,
     };
-    Choice { agent: AgentId(c.agent.0), belief: BeliefId(c.belief.0), how }
+    let condition = c.condition.as_ref().map(|c| Condition {
+        context: context(&c.context),
+        vars: c.vars.clone(),
+        origin: c.span,
+    });
+    Choice { agent: AgentId(c.agent.0), belief: BeliefId(c.belief.0), how, condition }
 }
 
 fn model_goal(g: model::ModelGoal) -> ModelGoal {

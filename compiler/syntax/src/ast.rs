@@ -729,12 +729,13 @@ pub struct SuiteMember {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SuiteMemberKind {
-    /// `choose one b of A`, `choose any b of A`, `choose one b of A per p`
+    /// `choose one b of A`, `choose any b of A`, `choose one b of A per p`; `where F`, which A's beliefs must answer
     Choose {
         any: bool,
         belief: Name,
         agent: Name,
         per: Option<Name>,
+        condition: Option<Expr>,
     },
     /// `explore pairwise`, `explore wise(3)`
     Explore(Call),

@@ -199,6 +199,7 @@ tokens! {
     One "one" Soft "suite",
     AnyWord "any" Soft "suite",
     Per "per" Soft "suite",
+    Where "where" Soft "suite",
     Explore "explore" Soft "suite",
     Stop "stop" Soft "suite",
     Minimise "minimise" Soft "suite",

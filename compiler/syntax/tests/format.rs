@@ -91,7 +91,9 @@ fn pieces(text: &str) -> Vec<Piece<'_>> {
         } else if c == '"' {
             let mut end = 1;
             while !rest[end..].starts_with('"') {
-                end += if rest[end..].starts_with('\\') { 2 } else { 1 };
+                let escaped = usize::from(rest[end..].starts_with('\\'));
+                end += escaped;
+                end += rest[end..].chars().next().map_or(1, char::len_utf8);
             }
             end + 1
         } else if c.is_ascii_digit() {
@@ -576,7 +578,7 @@ cross c(a:cover)=legs*ok{
 "#
     suites r#"
 suite s by agents Human,Robot{
-  choose one wants of Human choose any shows of Human per leg
+  choose one wants of Human choose any shows of Human per leg where wants(L)&&not L>2
   explore pairwise;tests 160;horizon 300s
   patience 60s
 }

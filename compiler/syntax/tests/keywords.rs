@@ -39,7 +39,7 @@ fn soft_keywords_are_names() {
              require {word} {word} x causes {word} or {word} within {word}
              cover {word} = count({word}) bins {word} = {word}
              cross {word} = {word} * {word} {{ ignore when {word}.{word} }}
-             suite {word} by agents {word}, {word} {{ choose one {word} of {word} per {word} explore {word} }}
+             suite {word} by agents {word}, {word} {{ choose one {word} of {word} per {word} where {word}({word}) && {word} explore {word} }}
              part {word} {{ body {word}: {word} {word}({word}) at {word} joint {word}: {word} -> {word} at {word}
                axis {word} limits {word} .. {word} current {word} in {word} by {word}.{word}
                on x emit {word} }}

@@ -191,7 +191,7 @@ cross c = legs * both {
 "#
     suites r#"
 suite s by agents Human, Robot {
-  choose one wants of Human choose any shows of Human per leg
+  choose one wants of Human choose any shows of Human per leg where wants(L) && not L > 2
   explore pairwise tests 160 horizon 300 s; patience 60 s
 }
 suite t by search of table { reach each bin of c; reach each location reach each edge }

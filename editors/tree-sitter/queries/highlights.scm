@@ -29,7 +29,7 @@
   "scenario" "actor" "const" "stimulus" "agent" "automaton" "network" "require" "assume" "cover" "cross" "suite" "part"
   "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on" "do" "emit" "within" "sample" "hold" "belief" "goal"
   "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "globally" "at"
-  "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "explore" "tests"
+  "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "where" "explore" "tests"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
   "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"

@@ -6,6 +6,7 @@ use divan::counter::ItemsCount;
 use hrdsl_bdi::{Society, Status};
 use hrdsl_ir::Program;
 
+#[allow(dead_code, reason = "what tests alone use")]
 #[path = "../tests/programs/mod.rs"]
 mod programs;
 

@@ -64,6 +64,11 @@ pub(crate) fn agent(program: &Program, id: AgentId) -> Result<&Agent, Malformed>
     bad.map_or(Ok(agent), |index| Err(Malformed::InitialGoal { index }))
 }
 
+/// Whether a formula of the agent's, with so many variables, can be asked.
+pub(crate) fn formula(program: &Program, agent: &Agent, formula: &Context, vars: usize) -> bool {
+    Check { program, agent }.context(formula, vars)
+}
+
 struct Check<'a> {
     program: &'a Program,
     agent: &'a Agent,

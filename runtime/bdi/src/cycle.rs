@@ -13,14 +13,13 @@ use hrdsl_ir::{
 
 use crate::{
     Action, ActionToken, Cause, Detail, LogEntry, Logged, Malformed, Measured,
-    belief::{Annotations, BeliefBase, Withdrawn, from, sourced, typed},
+    belief::{Annotations, Withdrawn, from, sourced, typed},
     check,
     dice::Dice,
     event::{Args, Event, Ground, Incoming, Mail, Speech},
-    intention::{Pool, State, Timer},
+    intention::{State, Timer},
     log::Log,
     mind::{Me, Mind, Peers},
-    plan::Library,
     query::Solver,
     repeat::Repetition,
 };
@@ -94,16 +93,7 @@ impl<'p> Machine<'p> {
         let agent = checked.as_ref().ok().copied();
         let me = Me { name: peers.agents[usize::from(place)].0, place, id, peers: Arc::clone(peers) };
         let mut machine = Self {
-            mind: Mind {
-                program,
-                agent,
-                library: agent.map_or_else(Library::default, |a| Library::new(program, id, a)),
-                beliefs: agent.map_or_else(BeliefBase::default, BeliefBase::new),
-                pool: Pool::default(),
-                events: VecDeque::new(),
-                now: 0,
-                me,
-            },
+            mind: Mind::new(program, agent, me),
             solver: Solver::default(),
             dice: Dice::new(seed, u64::from(id.0) + 1),
             log: Log { detail, ..Log::default() },

@@ -88,6 +88,15 @@ pub(crate) fn agree(args: &[Slot], wanted: &[Slot]) -> bool {
     args.len() == wanted.len() && args.iter().zip(wanted).all(agrees)
 }
 
+impl<'p> Mind<'p> {
+    /// At time 0, without beliefs.
+    pub fn new(program: &'p Program, agent: Option<&'p Agent>, me: Me) -> Self {
+        let library = agent.map_or_else(Library::default, |a| Library::new(program, me.id, a));
+        let beliefs = agent.map_or_else(BeliefBase::default, BeliefBase::new);
+        Self { program, agent, library, beliefs, pool: Pool::default(), events: VecDeque::new(), now: 0, me }
+    }
+}
+
 impl Mind<'_> {
     /// Whether the frame is of the goal: selected for it, or for its failure.
     fn is_of(&self, frame: &Frame, goal: GoalId) -> bool {

@@ -207,11 +207,11 @@ impl<'p> Machine<'p> {
         self.done(here, found.as_ref().map_or(Outcome::Faulty, |(count, _)| Outcome::Answers(*count)));
         let (count, answers) = found?;
         self.enter_loop(here.place, variables, answers);
-        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut() {
-            if l.open.is_empty() {
-                // Nothing is bound: only the number of answers matters.
-                l.answers = vec![None; count];
-            }
+        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut()
+            && l.open.is_empty()
+        {
+            // Nothing is bound: only the number of answers matters.
+            l.answers = vec![None; count];
         }
         Ok(Flow::Next)
     }

@@ -33,7 +33,9 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         return Err(format!("suite `{}` is not by agents", suite.name));
     };
     let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
-    let mut explorer = Explorer::new(&factors, *explore, count, seed);
+    let ids: Vec<AgentId> = agents(program, players).into_iter().map(|(id, _)| id).collect();
+    let mut explorer = Explorer::of(program, &ids, choose, &factors, (*explore, count, seed))
+        .map_err(|e| format!("suite `{}`: {e}", suite.name))?;
     let awaits = extract::Awaits::of(program, players);
     let goals = Goals::of(program, players, goals);
     let model = Model { program, suite, players, awaits, goals: &goals, seed };
@@ -236,7 +238,7 @@ impl Sum {
         u32::try_from(new).unwrap_or(u32::MAX)
     }
 
-    fn harvest(self, model: &Model<'_>, explorer: &Explorer) -> Harvest {
+    fn harvest(self, model: &Model<'_>, explorer: &Explorer<'_>) -> Harvest {
         let notes = self.notes(explorer);
         let team = Team { program: model.program, measured: &self.measured };
         let goals = &model.goals.names;
@@ -258,7 +260,7 @@ impl Sum {
         Harvest { tests: self.tests, notes, found: Some(found), ..Harvest::default() }
     }
 
-    fn notes(&self, explorer: &Explorer) -> Vec<String> {
+    fn notes(&self, explorer: &Explorer<'_>) -> Vec<String> {
         let mut notes = Vec::new();
         if self.left_out > 0 {
             notes.push(format!(
@@ -266,6 +268,7 @@ impl Sum {
                 self.left_out
             ));
         }
+        notes.extend(explorer.notes.iter().cloned());
         notes.push(format!("{} of {} belief sets were run", self.sets, explorer.space));
         if let Some(most) = self.stop_after.filter(|_| self.is_over()) {
             notes.push(format!("exploration ended since {most} belief sets in a row brought nothing new"));

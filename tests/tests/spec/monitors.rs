@@ -31,7 +31,7 @@ impl Chance {
             Type::Int { lo, hi } => Value::Int(lo + self.below((hi - lo + 1) as usize) as i64),
             Type::Float(_) => Value::Float([0.0, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5, 3.0][self.below(9)]),
             Type::Enum(e) => Value::Symbol(e.values()[0]),
-            Type::Text | Type::List(_) => unreachable!("signals have neither"),
+            Type::Text | Type::List(_) => panic!("no event of the scenario has it"),
         }
     }
 

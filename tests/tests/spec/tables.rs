@@ -47,8 +47,8 @@ fn the_types() {
                 ("64-bit floats", unit.unwrap_or_default())
             }
             Some(Type::Bool) => ("`false`, `true`", String::new()),
-            Some(Type::Int { .. }) => ("64-bit whole numbers", String::new()),
-            Some(Type::Text) => ("strings; of agents only", String::new()),
+            Some(Type::Int { .. }) => ("whole numbers of 64 bits", String::new()),
+            Some(Type::Text) => ("texts", String::new()),
             Some(Type::List(_) | Type::Enum(_)) | None => panic!("{name}"),
         };
         let _ = writeln!(table, "| `{name}` | {values} | {unit} |");

@@ -17,7 +17,7 @@ use crate::{
     AgentId, Belief, BeliefId, Context, Fact, Goal, GoalId, Kind, Param, Subject, Value,
     noun::Noun,
     report::{
-        agents::{no_plan, not_adopted},
+        agents::{no_plan, not_adopted, only_declared},
         names, types,
     },
 };
@@ -42,9 +42,46 @@ pub(super) struct Scope {
 
 impl Scope {
     fn new(index: usize) -> Self {
-        let id = AgentId(u16::try_from(index).unwrap_or(u16::MAX));
+        Self::of(AgentId(u16::try_from(index).unwrap_or(u16::MAX)))
+    }
+
+    pub fn of(id: AgentId) -> Self {
         Self { id, labels: Table::default(), plans_of: Map::default() }
     }
+}
+
+/// A goal as it is adopted: `table`, `deliver(…)`.
+fn written(name: &ast::Name, params: &[ast::Param]) -> String {
+    if params.is_empty() { name.text.clone() } else { format!("{}(…)", name.text) }
+}
+
+/// The agent itself adopts the goal.
+fn adopts(agent: &ast::Agent, goal: &str) -> bool {
+    let mut found = false;
+    for member in &agent.members {
+        match &member.kind {
+            Member::Goal(call) => found |= call.name.text == goal,
+            Member::Plan(plan) => each_step(&plan.body, &mut |step| {
+                if let StepKind::Achieve { call, .. } | StepKind::Spawn(call) = &step.kind {
+                    found |= call.name.text == goal;
+                }
+            }),
+            Member::Belief { .. }
+            | Member::Rule { .. }
+            | Member::GoalType { .. }
+            | Member::Allow(_)
+            | Member::Error => {}
+        }
+    }
+    found
+}
+
+/// The declaration of a goal's types, as it would be adopted.
+fn declared(agent: &ast::Agent, goal: &str) -> Option<(String, Span)> {
+    agent.members.iter().find_map(|m| match &m.kind {
+        Member::GoalType { name, params } if name.text == goal => Some((written(name, params), name.span)),
+        _ => None,
+    })
 }
 
 impl<'a> Checker<'a> {
@@ -191,7 +228,15 @@ impl<'a> Checker<'a> {
                 None if super::unread::in_agent(agent) => {}
                 None => {
                     let goals: Vec<String> = self.goal_tables[index].keys().cloned().collect();
-                    self.report(no_plan(&name.text, name.span, goals.iter().map(String::as_str)));
+                    let issue = no_plan(&name.text, name.span, goals.iter().map(String::as_str));
+                    let is_adopted =
+                        adopts(agent, &name.text) || self.asked_goals.contains(name.text.as_str());
+                    let issue = if is_adopted {
+                        issue
+                    } else {
+                        only_declared(issue, &written(name, params), name.span)
+                    };
+                    self.report(issue);
                 }
             }
         }
@@ -251,7 +296,12 @@ impl<'a> Checker<'a> {
                 && !adopted.contains(plan.trigger.literal.call.name.text.as_str())
             {
                 let name = &plan.trigger.literal.call.name;
-                self.report(not_adopted(&name.text, name.span, here.iter().copied()));
+                let issue = not_adopted(&name.text, name.span, here.iter().copied());
+                let issue = match declared(agent, &name.text) {
+                    Some((written, span)) => only_declared(issue, &written, span),
+                    None => issue,
+                };
+                self.report(issue);
             }
         }
     }

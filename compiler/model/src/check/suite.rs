@@ -5,10 +5,10 @@ use hrdsl_syntax::ast::{
     self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
 };
 
-use super::{Checker, Env, NOBODY};
+use super::{Checker, Env, NOBODY, agent::Scope, table::MAX_NAMES};
 use crate::{
-    Choice, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method, ModelGoal, NetworkId,
-    Player, Role, SearchGoal, Suite, Value,
+    Choice, ChoiceCondition, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method,
+    ModelGoal, NetworkId, Player, Role, SearchGoal, Suite, Value,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -168,8 +168,10 @@ impl Checker<'_> {
 
     fn member(&mut self, member: &SuiteMember, players: &[Player], said: &mut Said) {
         match &member.kind {
-            Member::Choose { any, belief, agent, per } => {
-                said.choose.extend(self.choose(*any, belief, agent, per.as_ref(), players));
+            Member::Choose { any, belief, agent, per, condition } => {
+                let choice = self.choose(*any, belief, agent, per.as_ref(), players);
+                let condition = condition.as_ref().and_then(|e| self.choice_condition(agent, e));
+                said.choose.extend(choice.map(|choice| Choice { condition, ..choice }));
             }
             Member::Explore(call) => said.explore = self.explore(call),
             Member::StopAfter(e) => {
@@ -284,7 +286,21 @@ impl Checker<'_> {
                 ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
             }
         };
-        Some(Choice { agent: id, belief: belief_id, how })
+        Some(Choice { agent: id, belief: belief_id, how, condition: None })
+    }
+
+    /// `where F`: a formula over the beliefs of the agent.
+    fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<ChoiceCondition> {
+        let player = self.players.get(&agent.text).map(|id| self.player_ids[usize::from(id)]);
+        let Some(Player::Agent(id)) = player else { return None };
+        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
+        let context = self.context(&Scope::of(id), formula, &mut env);
+        if env.locals.len() > MAX_NAMES {
+            let message = format!("the condition has more than {MAX_NAMES} variables");
+            self.report(super::too_many(message, formula.span));
+        }
+        let vars = env.locals.iter().map(|l| l.name.clone()).collect();
+        Some(ChoiceCondition { context, vars, span: formula.span })
     }
 
     /// A stimulus that a test can do.

@@ -1,8 +1,9 @@
 //! What the rules on plans ask about an agent: which beliefs come about and how, which goals are adopted, by whom.
 
 use crate::{
-    Agent, AgentId, Arg, Belief, BeliefId, ChoiceKind, Context, GoalId, Method, Performative, Plan, Player,
-    Scenario, Step, StepKind, Subject, Suite, TriggerOn, each_step, nearest::nearest,
+    Agent, AgentId, Arg, Belief, BeliefId, ChoiceCondition, ChoiceKind, Context, GoalId, Method,
+    Performative, Plan, Player, Scenario, Step, StepKind, Subject, Suite, TriggerOn, each_step,
+    nearest::nearest,
 };
 use hrdsl_source::{Diagnostic, Span};
 
@@ -208,6 +209,16 @@ impl<'a> AgentFacts<'a> {
             }
             Method::Agents { .. } | Method::Search { .. } | Method::Random { .. } => None,
         })
+    }
+
+    /// What suites ask of the beliefs that it starts with.
+    pub fn choice_conditions(&self) -> impl Iterator<Item = &'a ChoiceCondition> {
+        let id = self.id;
+        let choices = self.scenario.suites.iter().filter_map(|suite| match &suite.method {
+            Method::Agents { choose, .. } => Some(choose),
+            Method::Search { .. } | Method::Random { .. } => None,
+        });
+        choices.flatten().filter(move |c| c.agent == id).filter_map(|c| c.condition.as_ref())
     }
 
     fn is_chosen(&self, belief: BeliefId) -> bool {

@@ -49,6 +49,9 @@ fn reads(facts: &AgentFacts<'_>, belief: BeliefId) -> Vec<Read> {
     for rule in &facts.agent.rules {
         all.extend(reads_in(&rule.body, belief, name));
     }
+    for condition in facts.choice_conditions() {
+        all.extend(reads_in(&condition.context, belief, name));
+    }
     all
 }
 

@@ -142,6 +142,7 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
         let Method::Agents { choose, .. } = &suite.method else { continue };
         for choice in choose.iter().filter(|c| usize::from(c.agent.0) == index) {
             named[usize::from(choice.belief.0)] = true;
+            choice.condition.iter().for_each(|c| reads_beliefs(&c.context, &mut read));
         }
     }
     let places = scenario.places.agents.get(index);

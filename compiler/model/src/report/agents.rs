@@ -27,6 +27,20 @@ pub(crate) fn no_plan<'a>(name: &str, span: Span, goals: impl IntoIterator<Item 
     with_nearest(error, Noun::Goal, name, goals)
 }
 
+/// HR0402 and HR0403 about a goal whose types are declared: perhaps it was to be adopted. `written`: the goal as `goal` has
+/// it, `deliver(…)`.
+pub(crate) fn only_declared(issue: Diagnostic, written: &str, declared: Span) -> Diagnostic {
+    if issue.fixes.is_empty() {
+        let here = if issue.span() == declared {
+            issue
+        } else {
+            issue.label(declared, "this declares its types only")
+        };
+        return here.help(format!("write `goal !{written}` to adopt it at the start"));
+    }
+    issue
+}
+
 /// HR0401: a rule reads an argument that has no value where the belief is asked.
 pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
     let message = format!("the rules for `{name}` need a value for argument {}", index + 1);

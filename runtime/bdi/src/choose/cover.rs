@@ -4,8 +4,10 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::space::Space;
+
 /// Rows that compete for each place in the array.
-const CANDIDATES: usize = 30;
+pub(super) const CANDIDATES: usize = 30;
 
 /// Tuples that are kept track of, at most: a bit each.
 pub(super) const MAX_TUPLES: u128 = 100_000_000;
@@ -14,7 +16,7 @@ pub(super) const MAX_TUPLES: u128 = 100_000_000;
 pub(super) type Row = Vec<u32>;
 
 /// A factor and one of its alternatives.
-type Place = (usize, u32);
+pub(super) type Place = (usize, u32);
 
 /// A covering array, and the strength that it has.
 pub(super) struct Covering {
@@ -33,7 +35,7 @@ struct Group {
 }
 
 /// The tuples of alternatives of `strength` different factors that no row has yet.
-struct Uncovered<'s> {
+pub(super) struct Uncovered<'s> {
     sizes: &'s [u32],
     strength: usize,
     /// In lexicographic order of the factors.
@@ -44,11 +46,11 @@ struct Uncovered<'s> {
     open: Vec<u64>,
     /// Open tuples by factor and alternative.
     of: Vec<Vec<usize>>,
-    left: usize,
+    pub(super) left: usize,
 }
 
 impl<'s> Uncovered<'s> {
-    fn new(sizes: &'s [u32], strength: usize) -> Self {
+    pub(super) fn new(sizes: &'s [u32], strength: usize) -> Self {
         let mut groups = Vec::new();
         let mut of: Vec<Vec<usize>> = sizes.iter().map(|size| vec![0; *size as usize]).collect();
         let mut start = 0;
@@ -97,23 +99,61 @@ impl<'s> Uncovered<'s> {
         self.open[tuple / 64] >> (tuple % 64) & 1 == 1
     }
 
-    fn cover(&mut self, row: &Row) {
+    pub(super) fn cover(&mut self, row: &Row) {
         for index in 0..self.groups.len() {
-            let group = &self.groups[index];
-            let tuple = self.line(group, row, usize::MAX).0;
-            if self.is_open(tuple) {
-                self.open[tuple / 64] &= !(1 << (tuple % 64));
-                for factor in &group.factors {
-                    self.of[*factor][row[*factor] as usize] -= 1;
-                }
-                self.groups[index].left -= 1;
-                self.left -= 1;
-            }
+            let tuple = self.line(&self.groups[index], row, usize::MAX).0;
+            self.close(index, tuple, row);
         }
     }
 
+    /// A tuple, which a row has, is no longer looked for.
+    fn close(&mut self, group: usize, tuple: usize, row: &Row) {
+        if self.is_open(tuple) {
+            self.open[tuple / 64] &= !(1 << (tuple % 64));
+            for factor in &self.groups[group].factors {
+                self.of[*factor][row[*factor] as usize] -= 1;
+            }
+            self.groups[group].left -= 1;
+            self.left -= 1;
+        }
+    }
+
+    /// Closes the tuples that occur in no allowed row; gives how many these are.
+    pub(super) fn exclude(&mut self, space: &mut Space<'_>, rng: &mut ChaCha8Rng) -> u64 {
+        let (mut closed, mut row) = (0, vec![0; self.sizes.len()]);
+        for index in 0..self.groups.len() {
+            let factors = self.groups[index].factors.clone();
+            let mut groups: Vec<usize> = factors.iter().filter_map(|f| space.group_of[*f]).collect();
+            groups.sort_unstable();
+            groups.dedup();
+            let parts: Vec<(Vec<usize>, Vec<bool>)> = groups
+                .into_iter()
+                .map(|g| {
+                    let of: Vec<usize> =
+                        factors.iter().copied().filter(|f| space.group_of[*f] == Some(g)).collect();
+                    let seen = space.seen(g, &of, rng);
+                    (of, seen)
+                })
+                .collect();
+            if parts.iter().all(|(_, seen)| seen.iter().all(|s| *s)) {
+                continue;
+            }
+            let count: usize = factors.iter().map(|f| self.sizes[*f] as usize).product();
+            for tuple in 0..count {
+                self.places(&factors, tuple).into_iter().for_each(|(f, a)| row[f] = a);
+                let at =
+                    |of: &[usize]| of.iter().fold(0, |at, f| at * self.sizes[*f] as usize + row[*f] as usize);
+                if !parts.iter().all(|(of, seen)| seen[at(of)]) {
+                    self.close(index, self.groups[index].start + tuple, &row);
+                    closed += 1;
+                }
+            }
+        }
+        closed
+    }
+
     /// The alternative with the most open tuples; the first of several.
-    fn neediest(&self) -> Place {
+    pub(super) fn neediest(&self) -> Place {
         let mut best = (0, 0, 0);
         for (factor, counts) in self.of.iter().enumerate() {
             for (alternative, open) in (0u32..).zip(counts) {
@@ -132,11 +172,16 @@ impl<'s> Uncovered<'s> {
         if self.strength == 2 {
             return vec![(factor, alternative)];
         }
+        self.open_tuple((factor, alternative))
+    }
+
+    /// The first open tuple that has this alternative.
+    pub(super) fn open_tuple(&self, (factor, alternative): Place) -> Vec<Place> {
         let with = |g: &&Group| g.left > 0 && g.factors.contains(&factor);
         for group in self.groups.iter().filter(with) {
             let tuples: usize = group.factors.iter().map(|f| self.sizes[*f] as usize).product();
             for tuple in (0..tuples).filter(|t| self.is_open(group.start + t)) {
-                let places = self.places(group, tuple);
+                let places = self.places(&group.factors, tuple);
                 if places.contains(&(factor, alternative)) {
                     return places;
                 }
@@ -145,10 +190,10 @@ impl<'s> Uncovered<'s> {
         vec![(factor, alternative)]
     }
 
-    /// The alternatives of the tuple of this number within its group.
-    fn places(&self, group: &Group, mut tuple: usize) -> Vec<Place> {
+    /// The alternatives of the tuple of this number of these factors.
+    fn places(&self, factors: &[usize], mut tuple: usize) -> Vec<Place> {
         let mut places = Vec::with_capacity(self.strength);
-        for factor in group.factors.iter().rev() {
+        for factor in factors.iter().rev() {
             let size = self.sizes[*factor] as usize;
             places.push((*factor, (tuple % size) as u32));
             tuple /= size;
@@ -159,7 +204,7 @@ impl<'s> Uncovered<'s> {
 
     /// For each alternative of a factor: how many open tuples it makes with alternatives of the factors that are placed,
     /// which are in increasing order.
-    fn gains(&self, factor: usize, placed: &[usize], row: &Row) -> Vec<usize> {
+    pub(super) fn gains(&self, factor: usize, placed: &[usize], row: &Row) -> Vec<usize> {
         let mut gains = vec![0; self.sizes[factor] as usize];
         let others = self.strength - 1;
         if placed.len() < others {
@@ -233,7 +278,7 @@ fn pascal(n: usize, k: usize) -> Vec<Vec<usize>> {
 }
 
 /// How many tuples of alternatives of `strength` different factors there are.
-fn tuples(sizes: &[u32], strength: usize) -> u128 {
+pub(super) fn tuples(sizes: &[u32], strength: usize) -> u128 {
     let mut of = vec![0u128; strength + 1];
     of[0] = 1;
     for size in sizes {

@@ -1,17 +1,21 @@
 //! Sets of beliefs from factors: all of them, enough for every tuple, a random sample, or what learning finds.
 
-use std::collections::BTreeSet;
+use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 
 use hrdsl_ir::{
+    Program,
     bdi::{AgentId, Fact},
-    suite::Explore,
+    suite::{Choice, Explore},
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    Factor, Learner,
+    ChooseError, Factor, Learner,
     cover::{Row, covering, shuffle},
+    judge::Judge,
+    space::Space,
+    within::within,
 };
 
 /// More sets than this are never made.
@@ -73,21 +77,23 @@ pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> E
 }
 
 /// Explores the belief space in batches, each after what the one before it brought is known.
-pub struct Explorer {
+pub struct Explorer<'a> {
     /// The size of the whole belief space; see [`Explored::space`].
     pub space: u128,
     /// See [`Explored::cut`].
     pub cut: bool,
-    source: Source,
+    /// What conditions left out, and how that was found.
+    pub notes: Vec<String>,
+    source: Source<'a>,
 }
 
-enum Source {
+enum Source<'a> {
     /// Known from the start, the last one first.
     Fixed(Vec<BeliefSet>),
-    Learner(Box<Learner>),
+    Learner(Box<Learner<'a>>),
 }
 
-impl Explorer {
+impl<'a> Explorer<'a> {
     /// See [`explore`]; `Learn` makes at most `tests` different sets.
     #[must_use]
     pub fn new(factors: &[Factor], how: Explore, tests: u32, seed: u64) -> Self {
@@ -95,14 +101,96 @@ impl Explorer {
             Explore::Exhaustive | Explore::Wise(_) | Explore::Random => {
                 let Explored { mut sets, space, cut } = explore(factors, how, tests, seed);
                 sets.reverse();
-                Self { space, cut, source: Source::Fixed(sets) }
+                Self { space, cut, notes: Vec::new(), source: Source::Fixed(sets) }
             }
             Explore::Learn => {
                 let space = space(&sizes(factors));
                 let learner = Learner::new(factors, wanted(space, tests), seed);
-                Self { space, cut: false, source: Source::Learner(Box::new(learner)) }
+                let source = Source::Learner(Box::new(learner));
+                Self { space, cut: false, notes: Vec::new(), source }
             }
         }
+    }
+
+    /// Explores what the conditions of the choices allow, in runs of these agents; without conditions the same as
+    /// [`Explorer::new`]. The factors are those of the choices.
+    ///
+    /// # Errors
+    /// A condition that cannot be asked, or conditions that allow nothing.
+    pub fn of(
+        program: &'a Program,
+        agents: &[AgentId],
+        choices: &'a [Choice],
+        factors: &[Factor],
+        how: (Explore, u32, u64),
+    ) -> Result<Self, ChooseError> {
+        let (explore, tests, seed) = how;
+        if choices.iter().all(|c| c.condition.is_none()) {
+            return Ok(Self::new(factors, explore, tests, seed));
+        }
+        let mut judge = Judge::new(program, agents, choices)?;
+        let scopes = judge.scopes(factors);
+        let of_row = factors.to_vec();
+        let fault = Rc::new(Cell::new(None));
+        let told = Rc::clone(&fault);
+        let holds = move |question: usize, row: &Row| {
+            let alternatives = of_row.iter().zip(row).map(|(f, a)| (f.agent, &f.alternatives[*a as usize]));
+            let holds = judge
+                .holds(question, &mut alternatives.flat_map(|(id, a)| a.facts.iter().map(move |f| (id, f))));
+            told.set(judge.fault);
+            holds
+        };
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let space = Space::new(sizes(factors), scopes, Box::new(holds), &mut rng);
+        let mut explorer = Self::within(space, factors, (explore, tests), rng).map_err(|e| match e {
+            ChooseError::NothingAllowed { choices, is_proved, .. } => {
+                ChooseError::NothingAllowed { choices, is_proved, fault: fault.get() }
+            }
+            other => other,
+        })?;
+        if let Some(fault) = fault.get() {
+            let note = format!("where a condition had no value, its belief set was left out: {fault}");
+            explorer.notes.push(note);
+        }
+        Ok(explorer)
+    }
+
+    /// Explores the part of the space that is allowed.
+    pub(super) fn within(
+        mut space: Space<'a>,
+        factors: &[Factor],
+        (how, tests): (Explore, u32),
+        mut rng: ChaCha8Rng,
+    ) -> Result<Self, ChooseError> {
+        let whole = self::space(&space.sizes);
+        let allowed = space.allowed();
+        if allowed == Some(0) || space.empty().is_some() {
+            let choices = match space.empty() {
+                Some(group) => group.factors.iter().map(|f| factors[*f].name.clone()).collect(),
+                None => Vec::new(),
+            };
+            let is_proved = allowed == Some(0);
+            return Err(ChooseError::NothingAllowed { choices, is_proved, fault: None });
+        }
+        let mut notes = vec![match allowed {
+            Some(allowed) => format!(
+                "the conditions allow {allowed} of {whole} belief sets; {} are left out",
+                whole.saturating_sub(allowed)
+            ),
+            None => "the belief space is too large to go through: what the conditions allow was searched for at random"
+                .to_owned(),
+        }];
+        let tests = tests as usize;
+        if how == Explore::Learn {
+            let wanted = allowed.map_or(tests, |n| wanted(n, u32::try_from(tests).unwrap_or(u32::MAX)));
+            let learner = Learner::within(factors, wanted.min(MAX_SETS), space, rng);
+            return Ok(Self { space: whole, cut: false, notes, source: Source::Learner(Box::new(learner)) });
+        }
+        let found = within(&mut space, how, tests, &mut rng);
+        let mut sets: Vec<BeliefSet> = found.rows.iter().map(|row| belief_set(factors, row)).collect();
+        sets.reverse();
+        notes.extend(found.notes);
+        Ok(Self { space: whole, cut: found.cut, notes, source: Source::Fixed(sets) })
     }
 
     /// The next sets, at most [`BATCH`]; none at the end.

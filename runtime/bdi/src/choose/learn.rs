@@ -9,6 +9,8 @@ use super::{
     BATCH, BeliefSet, Factor,
     cover::Row,
     explore::{belief_set, sizes},
+    space::{Next, Space},
+    within::after,
 };
 
 /// How far a value moves to what was seen.
@@ -35,7 +37,7 @@ const ATTEMPTS: usize = 50;
 /// A decision is made at random with the probability ε, which is 1 in the first batch, 0.9 times as much in each that
 /// follows, and at least 0.1; otherwise it is one of the alternatives with the greatest value. Sets come in batches of
 /// [`BATCH`], and values change between batches only, so that runs may be made in parallel. No set comes twice.
-pub struct Learner {
+pub struct Learner<'a> {
     factors: Vec<Factor>,
     sizes: Vec<u32>,
     /// By factor, the alternative before it (0 for the first) and the alternative; absent: 0.
@@ -46,9 +48,11 @@ pub struct Learner {
     epsilon: f64,
     wanted: usize,
     rng: ChaCha8Rng,
+    /// What conditions allow; without it everything is.
+    space: Option<Space<'a>>,
 }
 
-impl Learner {
+impl<'a> Learner<'a> {
     /// Makes `wanted` different sets; there must be as many.
     pub(super) fn new(factors: &[Factor], wanted: usize, seed: u64) -> Self {
         Self {
@@ -60,13 +64,19 @@ impl Learner {
             epsilon: EPSILON.0,
             wanted,
             rng: ChaCha8Rng::seed_from_u64(seed),
+            space: None,
         }
+    }
+
+    /// Makes at most `wanted` different sets that the space allows.
+    pub(super) fn within(factors: &[Factor], wanted: usize, space: Space<'a>, rng: ChaCha8Rng) -> Self {
+        Self { rng, space: Some(space), ..Self::new(factors, wanted, 0) }
     }
 
     /// The next sets, at most [`BATCH`]; none when there are as many as were wanted.
     pub fn next_batch(&mut self) -> Vec<BeliefSet> {
         let left = self.wanted.saturating_sub(self.seen.len());
-        self.rows = (0..left.min(BATCH)).map(|_| self.new_row()).collect();
+        self.rows = (0..left.min(BATCH)).map_while(|_| self.new_row()).collect();
         self.rows.iter().map(|row| belief_set(&self.factors, row)).collect()
     }
 
@@ -82,7 +92,7 @@ impl Learner {
         for factor in (0..row.len()).rev() {
             let target = match factor + 1 {
                 last if last == row.len() => reward,
-                next => GAMMA * self.best(next, row[factor]).0,
+                next => GAMMA * self.best(next, row[factor], (0..self.sizes[next]).collect()).0,
             };
             let key = (factor as u32, before(row, factor), row[factor]);
             let value = self.values.entry(key).or_default();
@@ -90,10 +100,10 @@ impl Learner {
         }
     }
 
-    /// The greatest value of a decision, and the alternatives that have it.
-    fn best(&self, factor: usize, before: u32) -> (f64, Vec<u32>) {
+    /// The greatest value of a decision among some alternatives, and those that have it.
+    fn best(&self, factor: usize, before: u32, among: Vec<u32>) -> (f64, Vec<u32>) {
         let mut best = (f64::NEG_INFINITY, Vec::new());
-        for alternative in 0..self.sizes[factor] {
+        for alternative in among {
             let value = self.values.get(&(factor as u32, before, alternative)).copied().unwrap_or(0.0);
             if value > best.0 {
                 best = (value, Vec::new());
@@ -106,33 +116,56 @@ impl Learner {
     }
 
     /// A row that was not there yet: drawn; if that takes too long the first after the last one drawn.
-    fn new_row(&mut self) -> Row {
-        let mut row = self.draw();
-        for _ in 0..ATTEMPTS {
-            if !self.seen.contains(&row) {
-                break;
+    fn new_row(&mut self) -> Option<Row> {
+        let mut last = None;
+        for _ in 0..=ATTEMPTS {
+            let Some(row) = self.draw() else { continue };
+            if self.seen.insert(row.clone()) {
+                return Some(row);
             }
-            row = self.draw();
+            last = Some(row);
         }
-        while self.seen.contains(&row) {
-            advance(&mut row, &self.sizes);
-        }
+        let row = self.after(last.unwrap_or_else(|| vec![0; self.sizes.len()]))?;
         self.seen.insert(row.clone());
-        row
+        Some(row)
     }
 
-    fn draw(&mut self) -> Row {
+    /// The first row that was not there from this one on, and from the start again after the end.
+    fn after(&mut self, mut row: Row) -> Option<Row> {
+        let Some(space) = &mut self.space else {
+            while self.seen.contains(&row) {
+                advance(&mut row, &self.sizes);
+            }
+            return Some(row);
+        };
+        for from in [row, vec![0; self.sizes.len()]] {
+            let mut next = space.next(&from);
+            while let Next::Row(row) = next {
+                if !self.seen.contains(&row) {
+                    return Some(row);
+                }
+                next = after(space, &row);
+            }
+        }
+        // A row that is found otherwise may be left where the search takes too long.
+        (0..ATTEMPTS).find_map(|_| space.draw(&mut self.rng).filter(|row| !self.seen.contains(row)))
+    }
+
+    /// `None` if the alternatives that were taken leave none that is allowed.
+    fn draw(&mut self) -> Option<Row> {
         let mut row = Row::with_capacity(self.sizes.len());
         for factor in 0..self.sizes.len() {
             let at_random = self.rng.random_range(0.0..1.0) < self.epsilon;
-            let among = if at_random {
-                (0..self.sizes[factor]).collect()
-            } else {
-                self.best(factor, before(&row, factor)).1
+            let permitted = match &mut self.space {
+                Some(space) => space.permitted(&row),
+                None => (0..self.sizes[factor]).collect(),
             };
-            row.push(among[self.rng.random_range(0..among.len() as u32) as usize]);
+            let among =
+                if at_random { permitted } else { self.best(factor, before(&row, factor), permitted).1 };
+            let drawn = self.rng.random_range(0..among.len().max(1) as u32) as usize;
+            row.push(*among.get(drawn)?);
         }
-        row
+        Some(row)
     }
 }
 
@@ -210,8 +243,8 @@ mod tests {
         assert_eq!(learner.values[&(0, 0, 1)], 0.5 * 0.9 * 4.0);
         learner.episode(&vec![1, 0], 0.0);
         assert_eq!(learner.values[&(1, 1, 0)], 2.0);
-        assert_eq!(learner.best(1, 1), (2.0, vec![0]));
-        assert_eq!(learner.best(1, 0), (0.0, vec![0, 1]));
+        assert_eq!(learner.best(1, 1, vec![0, 1]), (2.0, vec![0]));
+        assert_eq!(learner.best(1, 0, vec![0, 1]), (0.0, vec![0, 1]));
     }
 
     #[test]

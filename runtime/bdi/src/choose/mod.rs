@@ -1,11 +1,15 @@
 //! Belief-space exploration: which beliefs the agents of a test start with.
 //!
 //! [`factors`] turns a suite's choices into dimensions with finitely many alternatives each; [`explore`] picks points of
-//! the space that they span, [`Explorer`] in batches, so that [`Learner`] can learn from what they bring.
+//! the space that they span, [`Explorer`] in batches, so that [`Learner`] can learn from what they bring. Where choices have
+//! conditions, [`Explorer::of`] keeps to what these allow, and [`allows`] says whether they allow a set.
 
 mod cover;
 mod explore;
+mod judge;
 mod learn;
+mod space;
+mod within;
 
 use std::fmt;
 
@@ -15,12 +19,16 @@ use hrdsl_ir::{
     suite::{Choice, ChoiceKind},
 };
 
-use crate::show::call as literal;
+use crate::{Fault, show::call as literal};
 pub use explore::{BATCH, BeliefSet, Explored, Explorer, MAX_SETS, explore};
+pub use judge::allows;
 pub use learn::Learner;
 
 /// Alternatives of all factors together.
 pub const MAX_ALTERNATIVES: usize = 10_000;
+
+/// Choices that a message names, at most.
+const NAMED: usize = 5;
 
 /// One dimension of the belief space.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +61,16 @@ pub enum ChooseError {
     Empty { belief: String, param: String },
     /// More than [`MAX_ALTERNATIVES`].
     TooMany { belief: String },
+    /// A condition that cannot be asked.
+    Malformed { why: String },
+    /// No set of beliefs fulfils the conditions on these choices.
+    NothingAllowed {
+        choices: Vec<String>,
+        /// All sets were tried.
+        is_proved: bool,
+        /// Why a condition had no value.
+        fault: Option<Fault>,
+    },
 }
 
 impl fmt::Display for ChooseError {
@@ -65,6 +83,21 @@ impl fmt::Display for ChooseError {
             ChooseError::Empty { belief, param } => write!(f, "cannot choose {belief}: {param} has no value"),
             ChooseError::TooMany { belief } => {
                 write!(f, "cannot choose {belief}: more than {MAX_ALTERNATIVES} alternatives")
+            }
+            ChooseError::Malformed { why } => f.write_str(why),
+            ChooseError::NothingAllowed { choices, is_proved, fault } => {
+                f.write_str(if *is_proved {
+                    "no belief set fulfils"
+                } else {
+                    "no belief set was found that fulfils"
+                })?;
+                f.write_str(" what `where` says")?;
+                let shown: Vec<&str> = choices.iter().take(NAMED).map(String::as_str).collect();
+                let more = if choices.len() > NAMED { ", …" } else { "" };
+                if !shown.is_empty() {
+                    write!(f, " of {}{more}", shown.join(", "))?;
+                }
+                fault.map_or(Ok(()), |fault| write!(f, ": {fault}"))
             }
         }
     }
@@ -222,7 +255,7 @@ mod tests {
     }
 
     fn choose(belief: u16, how: ChoiceKind) -> Choice {
-        Choice { agent: AgentId(0), belief: BeliefId(belief), how }
+        Choice { agent: AgentId(0), belief: BeliefId(belief), how, condition: None }
     }
 
     fn texts(factor: &Factor) -> Vec<&str> {
@@ -280,7 +313,7 @@ mod tests {
 
     #[test]
     fn agents_are_named_when_there_are_several() {
-        let dog = Choice { agent: AgentId(1), belief: BeliefId(0), how: ChoiceKind::Any };
+        let dog = Choice { agent: AgentId(1), belief: BeliefId(0), how: ChoiceKind::Any, condition: None };
         let found = factors(&program(), &[choose(3, ChoiceKind::Any), dog]).unwrap();
         assert_eq!(texts(&found[0]), ["not Human.hurried", "Human.hurried"]);
         assert_eq!(found[1].name, "Dog.barks");

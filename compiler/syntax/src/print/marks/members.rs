@@ -177,8 +177,8 @@ impl Marker<'_> {
             SuiteMemberKind::Await(events) => self.calls(events),
             SuiteMemberKind::Explore(call) => self.call(call),
             SuiteMemberKind::Length(range) | SuiteMemberKind::Pause(range) => self.range(range),
-            SuiteMemberKind::Choose { .. }
-            | SuiteMemberKind::Minimise
+            SuiteMemberKind::Choose { condition, .. } => self.maybe(condition.as_ref()),
+            SuiteMemberKind::Minimise
             | SuiteMemberKind::ReachEach(_)
             | SuiteMemberKind::ReachBins(_)
             | SuiteMemberKind::ReachLocations

@@ -1,0 +1,429 @@
+//! Sets of beliefs that conditions allow: all of them, enough for every tuple that is allowed, or a random sample.
+
+use std::collections::BTreeSet;
+
+use hrdsl_ir::suite::Explore;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::{
+    MAX_SETS,
+    cover::{CANDIDATES, Place, Row, Uncovered, shuffle, tuples},
+    space::{Next, Space},
+};
+
+/// Tuples that are looked at, at most: each is compared with what is allowed.
+const MAX_TUPLES: u128 = 10_000_000;
+
+/// Rows drawn in a row that were there already, after which no more are drawn.
+const MISSES: usize = 1_000;
+
+/// What was found within a space.
+#[derive(Debug, Default)]
+pub(super) struct Within {
+    pub rows: Vec<Row>,
+    /// A limit cut short what was asked for.
+    pub cut: bool,
+    pub notes: Vec<String>,
+}
+
+/// As [`explore`](super::explore), but `Learn` is as `Random`.
+pub(super) fn within(space: &mut Space<'_>, how: Explore, tests: usize, rng: &mut ChaCha8Rng) -> Within {
+    match how {
+        Explore::Exhaustive => {
+            let (rows, end) = first(space, tests);
+            Within { rows, cut: end != Next::End, notes: Vec::new() }
+        }
+        Explore::Wise(strength) => {
+            let mut found = covering(space, usize::from(strength).max(2), rng);
+            found.cut |= found.rows.len() >= MAX_SETS;
+            fill(&mut found, space, tests, rng);
+            found
+        }
+        Explore::Random | Explore::Learn => {
+            let mut found = Within::default();
+            found.cut = !fill(&mut found, space, tests, rng);
+            found
+        }
+    }
+}
+
+/// The first allowed rows, and what comes after them.
+fn first(space: &mut Space<'_>, limit: usize) -> (Vec<Row>, Next) {
+    let mut rows = Vec::new();
+    let mut next = space.next(&vec![0; space.sizes.len()]);
+    while let Next::Row(row) = &next {
+        if rows.len() >= limit {
+            break;
+        }
+        rows.push(row.clone());
+        next = after(space, row);
+    }
+    (rows, next)
+}
+
+/// The first allowed row after this one.
+pub(super) fn after(space: &mut Space<'_>, row: &Row) -> Next {
+    let mut from = row.clone();
+    match from.last_mut() {
+        Some(last) => *last += 1,
+        None => return Next::End,
+    }
+    space.next(&from)
+}
+
+/// Adds different random rows until there are as many as were asked for, or all; `false` if a bound ended that.
+fn fill(found: &mut Within, space: &mut Space<'_>, tests: usize, rng: &mut ChaCha8Rng) -> bool {
+    let allowed = space.allowed();
+    let most = allowed.map_or(usize::MAX, |n| usize::try_from(n).unwrap_or(usize::MAX));
+    let wanted = tests.min(MAX_SETS).min(most);
+    let rows = &mut found.rows;
+    let mut seen: BTreeSet<Row> = rows.iter().cloned().collect();
+    if rows.len() < wanted && allowed.is_some_and(|n| n <= 4 * wanted as u128) {
+        let (mut rest, _) = first(space, most);
+        rest.retain(|row| !seen.contains(row));
+        shuffle(&mut rest, rng);
+        rest.truncate(wanted.saturating_sub(rows.len()));
+        rows.append(&mut rest);
+    }
+    let mut misses = 0;
+    while rows.len() < wanted && misses < MISSES {
+        match space.draw(rng) {
+            Some(row) if seen.insert(row.clone()) => {
+                rows.push(row);
+                misses = 0;
+            }
+            Some(_) | None => misses += 1,
+        }
+    }
+    rows.len() >= wanted
+}
+
+/// Rows in which every tuple occurs that some allowed row has; otherwise as
+/// [`covering`](super::cover::covering).
+fn covering(space: &mut Space<'_>, mut strength: usize, rng: &mut ChaCha8Rng) -> Within {
+    let sizes = space.sizes.clone();
+    if sizes.len() < 2 || (strength > 2 && strength >= sizes.len()) {
+        let (rows, end) = first(space, MAX_SETS);
+        return Within { rows, cut: end != Next::End, notes: Vec::new() };
+    }
+    let asked = strength;
+    while strength > 2 && tuples(&sizes, strength) > MAX_TUPLES {
+        strength -= 1;
+    }
+    let mut uncovered = Uncovered::new(&sizes, strength);
+    let excluded = uncovered.exclude(space, rng);
+    let mut found = Within { cut: strength < asked, ..Within::default() };
+    if excluded > 0 {
+        found.notes.push(excluded_note(excluded, strength, space.is_exact()));
+    }
+    while uncovered.left > 0 && found.rows.len() < MAX_SETS {
+        let start = uncovered.open_tuple(uncovered.neediest());
+        let begun = Begun::new(space, &start);
+        let mut best: Option<(usize, Row)> = None;
+        for _ in 0..CANDIDATES {
+            let (gain, row) = begun.candidate(&uncovered, rng);
+            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                best = Some((gain, row));
+            }
+        }
+        // INVARIANT: each candidate has the open tuple that it began with, so this ends.
+        let Some((_, row)) = best else { break };
+        uncovered.cover(&row);
+        found.rows.push(row);
+    }
+    found
+}
+
+fn excluded_note(excluded: u64, strength: usize, is_exact: bool) -> String {
+    let what = if strength == 2 { "pairs".to_owned() } else { format!("combinations of {strength}") };
+    if is_exact {
+        format!("{excluded} {what} of alternatives occur in no belief set that the conditions allow")
+    } else {
+        format!(
+            "{excluded} {what} of alternatives were found in no belief set that the conditions allow; it was searched for at random"
+        )
+    }
+}
+
+/// A tuple that candidates begin with, and by group the allowed rows that have it; `None`: all of them.
+struct Begun<'s, 'a> {
+    space: &'s Space<'a>,
+    start: &'s [Place],
+    matching: Vec<Option<Vec<u32>>>,
+}
+
+impl<'s, 'a> Begun<'s, 'a> {
+    fn new(space: &'s Space<'a>, start: &'s [Place]) -> Self {
+        let mut begun = Self { space, start, matching: vec![None; space.groups.len()] };
+        let mut matching = begun.matching.clone();
+        start.iter().for_each(|place| begun.narrow(&mut matching, *place));
+        begun.matching = matching;
+        begun
+    }
+
+    /// Leaves the rows that have this alternative.
+    fn narrow(&self, matching: &mut [Option<Vec<u32>>], (factor, alternative): Place) {
+        let Some(at) = self.space.group_of[factor] else { return };
+        let group = &self.space.groups[at];
+        let Some(place) = group.place(factor) else { return };
+        let has = |row: &u32| u32::from(group.row(*row as usize)[place]) == alternative;
+        match &mut matching[at] {
+            Some(rows) => rows.retain(has),
+            all => *all = Some((0..group.len() as u32).filter(has).collect()),
+        }
+    }
+
+    /// By alternative: whether a row that is left has it.
+    fn permitted(&self, matching: &[Option<Vec<u32>>], factor: usize) -> Vec<bool> {
+        let size = self.space.sizes[factor] as usize;
+        let Some(at) = self.space.group_of[factor] else { return vec![true; size] };
+        let (group, mut permitted, mut left) = (&self.space.groups[at], vec![false; size], size);
+        let Some(place) = group.place(factor) else { return permitted };
+        let mut mark = |row: usize| {
+            left -= usize::from(!std::mem::replace(&mut permitted[usize::from(group.row(row)[place])], true));
+            left == 0
+        };
+        match &matching[at] {
+            Some(rows) => rows.iter().any(|r| mark(*r as usize)),
+            None => (0..group.len()).any(mark),
+        };
+        permitted
+    }
+
+    /// As [`candidate`](super::cover), of what is permitted.
+    fn candidate(&self, uncovered: &Uncovered<'_>, rng: &mut ChaCha8Rng) -> (usize, Row) {
+        let mut row: Row = vec![0; self.space.sizes.len()];
+        let mut placed: Vec<usize> = self.start.iter().map(|(factor, _)| *factor).collect();
+        self.start.iter().for_each(|(factor, alternative)| row[*factor] = *alternative);
+        let mut order: Vec<usize> = (0..row.len()).filter(|f| !placed.contains(f)).collect();
+        shuffle(&mut order, rng);
+        let mut matching = self.matching.clone();
+        let mut gain = 0;
+        for factor in order {
+            let gains = uncovered.gains(factor, &placed, &row);
+            let permitted = self.permitted(&matching, factor);
+            let of = |a: &u32| permitted[*a as usize];
+            let among = || (0..gains.len() as u32).filter(of);
+            let most = among().map(|a| gains[a as usize]).max().unwrap_or(0);
+            let ties: Vec<u32> = among().filter(|a| gains[*a as usize] == most).collect();
+            // INVARIANT: an allowed row has what is placed, so that something is permitted.
+            let drawn = rng.random_range(0..ties.len().max(1) as u32) as usize;
+            row[factor] = ties.get(drawn).copied().unwrap_or(0);
+            self.narrow(&mut matching, (factor, row[factor]));
+            placed.insert(placed.partition_point(|f| *f < factor), factor);
+            gain += most;
+        }
+        (gain, row)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use rand::SeedableRng;
+
+    use super::*;
+    use crate::choose::{Alternative, BATCH, ChooseError, Explorer, Factor, explore::row_at};
+    use hrdsl_ir::bdi::{AgentId, BeliefId, Fact};
+
+    /// A condition: the factors in its scope, and how often it holds, of 8; which rows these are comes from a hash.
+    type Clause = (BTreeSet<usize>, u8);
+
+    fn holds(clauses: &[(Vec<usize>, u8)], clause: usize, row: &[u32]) -> bool {
+        let (scope, often) = &clauses[clause];
+        let start = 0xcbf2_9ce4_8422_2325 ^ clause as u64;
+        let hash =
+            scope.iter().fold(start, |h, f| (h ^ u64::from(row[*f] + 1)).wrapping_mul(0x0100_0000_01b3));
+        (hash >> 20) % 8 < u64::from(*often)
+    }
+
+    fn clauses(sizes: &[u32], drawn: &[Clause]) -> Vec<(Vec<usize>, u8)> {
+        let fits = |scope: &BTreeSet<usize>| scope.iter().copied().filter(|f| *f < sizes.len()).collect();
+        drawn.iter().map(|(scope, often)| (fits(scope), *often)).collect()
+    }
+
+    fn space<'a>(
+        sizes: &[u32],
+        clauses: &'a [(Vec<usize>, u8)],
+        max: u128,
+        rng: &mut ChaCha8Rng,
+    ) -> Space<'a> {
+        let scopes = clauses.iter().map(|(scope, _)| scope.clone()).collect();
+        let holds = move |clause: usize, row: &Row| holds(clauses, clause, row);
+        Space::limited(sizes.to_vec(), scopes, Box::new(holds), max, rng)
+    }
+
+    /// The allowed rows, by trying all.
+    fn allowed(sizes: &[u32], clauses: &[(Vec<usize>, u8)]) -> Vec<Row> {
+        let count: u32 = sizes.iter().product();
+        let all = (0..count).map(|i| row_at(sizes, i.into()));
+        all.filter(|row| (0..clauses.len()).all(|c| holds(clauses, c, row))).collect()
+    }
+
+    fn sub_tuples(rows: &[Row], factors: usize, strength: usize) -> BTreeSet<Vec<(usize, u32)>> {
+        let mut found = BTreeSet::new();
+        for mask in (0u32..1 << factors).filter(|m| m.count_ones() as usize == strength.min(factors)) {
+            let chosen: Vec<usize> = (0..factors).filter(|f| mask >> f & 1 == 1).collect();
+            found.extend(rows.iter().map(|r| chosen.iter().map(|f| (*f, r[*f])).collect::<Vec<_>>()));
+        }
+        found
+    }
+
+    fn factors(sizes: &[u32]) -> Vec<Factor> {
+        let fact = |f: u16, a: u32| Fact {
+            belief: BeliefId(f),
+            args: vec![hrdsl_ir::Value::Int(a.into())],
+            annotations: vec![],
+        };
+        let alternative = |f, a| Alternative { facts: vec![fact(f, a)], text: format!("b{f}({a})") };
+        let factor = |(f, n): (u16, &u32)| Factor {
+            agent: AgentId(0),
+            name: format!("b{f}"),
+            alternatives: (0..*n).map(|a| alternative(f, a)).collect(),
+        };
+        (0u16..).zip(sizes).map(factor).collect()
+    }
+
+    /// The rows that an explorer makes, batch by batch.
+    fn explored(
+        sizes: &[u32],
+        space: Space<'_>,
+        how: Explore,
+        tests: u32,
+        seed: u64,
+    ) -> Result<Vec<Row>, ChooseError> {
+        let rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut explorer = Explorer::within(space, &factors(sizes), (how, tests), rng)?;
+        let mut rows = Vec::new();
+        loop {
+            let batch = explorer.next_batch();
+            if batch.is_empty() {
+                return Ok(rows);
+            }
+            assert!(batch.len() <= BATCH);
+            explorer.learn(&vec![1; batch.len()]);
+            let of = |fact: &Fact| fact.args[0].as_f64().map_or(0, |n| n as u32);
+            rows.extend(batch.iter().map(|set| set.facts.iter().map(|(_, fact)| of(fact)).collect::<Row>()));
+        }
+    }
+
+    const WAYS: [Explore; 5] =
+        [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(96))]
+        #[test]
+        fn what_is_allowed_is_explored_and_nothing_else(
+            sizes in prop::collection::vec(1u32..5, 0..6),
+            drawn in prop::collection::vec((prop::collection::btree_set(0usize..6, 0..4), 1u8..8), 0..5),
+            tests in 1u32..60,
+            seed: u64,
+        ) {
+            let clauses = clauses(&sizes, &drawn);
+            let allowed = allowed(&sizes, &clauses);
+            for how in WAYS {
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let space = space(&sizes, &clauses, u128::MAX, &mut rng);
+                prop_assert_eq!(space.allowed(), Some(allowed.len() as u128));
+                let found = explored(&sizes, space, how, tests, seed);
+                let Ok(rows) = found else {
+                    prop_assert!(allowed.is_empty());
+                    continue;
+                };
+                prop_assert!(!allowed.is_empty());
+                let distinct: BTreeSet<&Row> = rows.iter().collect();
+                prop_assert_eq!(distinct.len(), rows.len());
+                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", how);
+                let least = allowed.len().min(tests as usize);
+                match how {
+                    Explore::Exhaustive => prop_assert_eq!(&rows[..], &allowed[..least]),
+                    Explore::Wise(strength) => {
+                        let (n, t) = (sizes.len(), usize::from(strength));
+                        prop_assert_eq!(sub_tuples(&rows, n, t), sub_tuples(&allowed, n, t));
+                        prop_assert!(rows.len() >= least);
+                    }
+                    Explore::Random | Explore::Learn => prop_assert_eq!(rows.len(), least),
+                }
+            }
+        }
+
+        #[test]
+        fn in_a_space_too_large_to_go_through_nothing_else_is_explored_either(
+            sizes in prop::collection::vec(1u32..5, 1..6),
+            drawn in prop::collection::vec((prop::collection::btree_set(0usize..6, 1..4), 3u8..8), 1..4),
+            seed: u64,
+        ) {
+            let clauses = clauses(&sizes, &drawn);
+            let allowed = allowed(&sizes, &clauses);
+            for how in WAYS {
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let Ok(rows) = explored(&sizes, space(&sizes, &clauses, 0, &mut rng), how, 20, seed) else {
+                    continue;
+                };
+                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", how);
+                let distinct: BTreeSet<&Row> = rows.iter().collect();
+                prop_assert_eq!(distinct.len(), rows.len());
+                // So small a space is found whole at random.
+                if let Explore::Wise(t) = how {
+                    let (n, t) = (sizes.len(), usize::from(t));
+                    prop_assert_eq!(sub_tuples(&rows, n, t), sub_tuples(&allowed, n, t));
+                }
+            }
+        }
+    }
+
+    /// 40 beliefs of which at most three are held.
+    fn few_of_many(rng: &mut ChaCha8Rng) -> Space<'static> {
+        let few = |_, row: &Row| row.iter().sum::<u32>() <= 3;
+        Space::new(vec![2; 40], vec![(0..40).collect()], Box::new(few), rng)
+    }
+
+    #[test]
+    fn few_of_many_beliefs_are_found_in_a_vast_space() {
+        // Each three that are held need a row of their own: the strength of 3 would take long.
+        for how in WAYS.into_iter().filter(|how| *how != Explore::Wise(3)) {
+            let mut rng = ChaCha8Rng::seed_from_u64(5);
+            let space = few_of_many(&mut rng);
+            assert_eq!((space.allowed(), space.is_exact()), (None, false));
+            let rows = explored(&[2; 40], space, how, 50, 5).unwrap();
+            assert!(rows.iter().all(|row| row.iter().sum::<u32>() <= 3), "{how:?}");
+            assert!(rows.len() >= 50, "{how:?}: {}", rows.len());
+            if how == Explore::Wise(2) {
+                let held = |r: &Row, f: usize, g: usize| r[f] == 1 && r[g] == 1;
+                let pairs = (0..40).flat_map(|f| (0..f).map(move |g| (f, g)));
+                for (f, g) in pairs {
+                    assert!(rows.iter().any(|r| held(r, f, g)), "{f} {g}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_row_fulfils_is_said() {
+        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let never = |_, row: &Row| row[1] == 2;
+        let space = Space::new(vec![2, 2], vec![vec![1]], Box::new(never), &mut rng);
+        let error = explored(&[2, 2], space, Explore::Wise(2), 9, 0).unwrap_err();
+        assert_eq!(error.to_string(), "no belief set fulfils what `where` says of b1");
+        let space = Space::new(vec![2], vec![vec![]], Box::new(|_, _| false), &mut rng);
+        let error = explored(&[2], space, Explore::Learn, 9, 0).unwrap_err();
+        assert_eq!(error.to_string(), "no belief set fulfils what `where` says");
+    }
+
+    #[test]
+    fn what_is_left_out_is_counted() {
+        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let differ = |_, row: &Row| row[0] != row[1];
+        let space = Space::new(vec![3, 3, 2], vec![vec![0, 1]], Box::new(differ), &mut rng);
+        let explorer = Explorer::within(space, &factors(&[3, 3, 2]), (Explore::Wise(2), 9), rng).unwrap();
+        assert_eq!(
+            explorer.notes,
+            [
+                "the conditions allow 12 of 18 belief sets; 6 are left out",
+                "3 pairs of alternatives occur in no belief set that the conditions allow"
+            ]
+        );
+        assert!(!explorer.cut && explorer.space == 18);
+    }
+}
