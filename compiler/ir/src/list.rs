@@ -319,12 +319,15 @@ fn concat(args: &[Value]) -> Result<Option<Value>, EvalError> {
     Ok(Some(Value::List(all)))
 }
 
-/// Whether two values match: bit for bit; a whole number matches the float that equals it, as `==` has it; lists
-/// element by element.
+/// Whether two values match: bit for bit; a whole number matches the float that is exactly this number, other than `==`,
+/// which rounds it; lists element by element.
 #[must_use]
 pub fn same(a: Value, b: Value) -> bool {
     match (a, b) {
-        (Value::Int(n), Value::Float(x)) | (Value::Float(x), Value::Int(n)) => n as f64 == x,
+        (Value::Int(n), Value::Float(x)) | (Value::Float(x), Value::Int(n)) => {
+            // Back again: large whole numbers are rounded.
+            n as f64 == x && x as i128 == i128::from(n)
+        }
         (Value::Symbol(a), Value::Symbol(b)) => a == b,
         (Value::Text(a), Value::Text(b)) => a == b,
         (Value::List(a), Value::List(b)) => {
@@ -361,6 +364,10 @@ mod tests {
         assert_ne!(ints(&[1, 2, 3]), ints(&[1, 2]));
         assert_ne!(Value::List(List::of(&[Value::Float(1.0)])), ints(&[1]));
         assert!(same(Value::List(List::of(&[Value::Float(1.0)])), ints(&[1])));
+        assert!(same(Value::Int(0), Value::Float(-0.0)) && !same(Value::Float(0.0), Value::Float(-0.0)));
+        let large = Value::Float(9_007_199_254_740_992.0);
+        assert!(same(Value::Int(1 << 53), large) && !same(Value::Int((1 << 53) + 1), large));
+        assert!(!same(Value::Int(i64::MAX), Value::Float(i64::MAX as f64)));
         let nested = Value::List(List::of(&[ints(&[1]), ints(&[])]));
         assert_eq!(nested.to_string(), "[[1], []]");
         assert_eq!(nested, Value::List(List::of(&[ints(&[1]), ints(&[])])));

@@ -44,6 +44,20 @@ fn hash(value: Value) -> u64 {
     }
 }
 
+/// The annotations without those that are written again.
+fn distinct(all: Annotations) -> Annotations {
+    if all.len() < 2 {
+        return all;
+    }
+    let mut each = Annotations::new();
+    for (what, value) in all {
+        if !each.iter().any(|(w, v)| *w == what && same(*v, value)) {
+            each.push((what, value));
+        }
+    }
+    each
+}
+
 /// What taking a source away did.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Withdrawn {
@@ -130,6 +144,7 @@ impl Rows {
     /// Adds the fact as the youngest, or its annotations to the fact that is held; gives the annotations that are new.
     pub fn insert(&mut self, fact: &[Value], annotations: Annotations) -> Annotations {
         let Some(row) = self.position(fact) else {
+            let annotations = distinct(annotations);
             if self.annotations.len() > 2 * self.live + INDEXED {
                 self.compact();
             }
