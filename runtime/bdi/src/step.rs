@@ -341,7 +341,7 @@ impl<'p> Machine<'p> {
             StepKind::Print { args } => {
                 let args: Vec<Value> = values(args, slots, |v| v)?;
                 let text: String = args.iter().map(|v| plain(*v)).collect();
-                self.entry_of(place, || Logged::Printed(text));
+                self.entry(0, || Logged::Printed(text));
                 Ok(Flow::Next)
             }
             StepKind::Control { what, goal } => self.control(place, *what, goal.as_ref()),
