@@ -51,6 +51,7 @@ fn every_link_leads_somewhere() {
         ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].iter().map(|f| root.join(f)).collect();
     files.extend(pages(&root.join("spec")));
     files.extend(pages(&root.join("spec/codes")));
+    files.extend(pages(&root.join("spec/agentspeak")));
     let (mut faults, mut followed) = (Vec::new(), 0);
     for path in &files {
         let page = fs::read_to_string(path).unwrap();

@@ -92,11 +92,6 @@ fn run(block: &Block) -> Result<String, String> {
     if !said.is_empty() {
         return Err(said.join("\n"));
     }
-    if std::env::var_os("WARN").is_some() {
-        for d in &compilation.diagnostics {
-            println!("WARN {} {} {}: {}", block.line, compilation.files.place(d.span()), d.code, d.message);
-        }
-    }
     let program = compilation.program.ok_or("no program")?;
     let agents = (0..program.agents.len() as u16).collect();
     let cast: Cast = (agents, BeliefSet::default());
