@@ -373,7 +373,8 @@ impl<'a> Checker<'a> {
         let logical = matches!(op, BinaryOp::And | BinaryOp::Or);
         // What is multiplied with a quantity need not be one.
         let scaled = matches!(op, BinaryOp::Mul | BinaryOp::Div);
-        let tells = |ty: Kind| !logical && !(scaled && matches!(ty, Kind::Float(dim) if dim != Dim::NUMBER));
+        let quantity = |ty: Kind| matches!(ty, Kind::Float(dim) if dim != Dim::NUMBER);
+        let tells = |ty: Kind| !logical && (!scaled || !quantity(ty));
         if l.ty == Kind::Unknown && r.ty != Kind::Unknown && tells(r.ty) {
             self.learn(&l, r.ty, env);
         } else if r.ty == Kind::Unknown && tells(l.ty) {
