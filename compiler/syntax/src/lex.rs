@@ -276,7 +276,7 @@ impl Join<'_> {
         let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
         let part = self.out.last().is_some_and(|before| match before.kind {
             Kind::RBrace => false,
-            Kind::While | Kind::For => before.end == dot.start,
+            Kind::While | Kind::For | Kind::Where => before.end == dot.start,
             kind => kind.ends_operand(),
         });
         named && !part

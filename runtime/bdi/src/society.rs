@@ -254,6 +254,8 @@ impl<'p> Society<'p> {
     }
 
     fn halt(&mut self, status: Status) {
+        // After all that the round has brought.
+        self.round += 1;
         self.halted = Some(status);
         self.active.truncate(1);
         let what = if status == Status::Livelock { Logged::Livelock } else { Logged::Endless };

@@ -174,8 +174,15 @@ class Here:
     def called_goal(self, of):
         return applied(self.agent["goals"][of["goal"]]["name"], self.values(of["args"]))
 
+    def time(self, e):
+        """With its unit, if it has a value."""
+        try:
+            return seconds_text(written(evaluate(e, self.theta)))
+        except Fault:
+            return self.expression(e)
+
     def within(self, of, before=" within "):
-        return before + seconds_text(self.value(of["within"])) if of["within"] else ""
+        return before + self.time(of["within"]) if of["within"] else ""
 
     def pattern(self, pattern):
         name, args = self.program["events"][pattern["event"]]["name"], pattern["args"]
@@ -222,7 +229,7 @@ class Here:
         return "await " + " | ".join(map(self.pattern, of["events"])) + self.within(of)
 
     def step_wait(self, of):
-        return "wait " + seconds_text(self.value(of["seconds"]))
+        return "wait " + self.time(of["seconds"])
 
     def step_if(self, of):
         return "if"

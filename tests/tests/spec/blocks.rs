@@ -10,7 +10,7 @@ use crate::page::{Block, read, split};
 /// What is wrong with a block, if anything. Blocks of the language itself are judged elsewhere.
 pub fn fault(block: &Block) -> Option<String> {
     match block.info.as_str() {
-        "text" | "ebnf" => None,
+        "text" | "ebnf" | "log" => None,
         "json" => json(&block.text),
         "json,dialog" => dialog(&block.text),
         "python" => python(&block.text),

@@ -2,7 +2,8 @@
 //! the reference in Python must both print that log.
 //!
 //! A block `hri,run` is a scenario; all its agents play, in their order, without chosen beliefs. The block `log` after it is
-//! what is printed. With `HRDSL_RENEW=1` the logs are written anew; read them before they are believed.
+//! what is printed; of a long log the middle is left out, but it is compared. With `HRDSL_RENEW=1` the logs are written anew;
+//! read them before they are believed.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
@@ -16,6 +17,9 @@ use crate::{
 
 /// As many programs as there must be.
 const ENOUGH: usize = 150;
+
+/// Lines of a log that are shown whole.
+const WHOLE: usize = 60;
 
 struct Checked {
     faults: Vec<String>,
@@ -82,8 +86,11 @@ fn head(block: &Block) -> String {
 /// The log, if the reference has the same.
 fn run(block: &Block) -> Result<String, String> {
     let compilation = compile(Input { name: "program.hri", text: &block.text }, &[]);
-    if let Some(said) = compilation.diagnostics.iter().find(|d| d.is_error()) {
-        return Err(format!("{}: {}", said.code, said.message));
+    let errors = compilation.diagnostics.iter().filter(|d| d.is_error());
+    let said: Vec<_> =
+        errors.map(|d| format!("{} {}: {}", compilation.files.place(d.span()), d.code, d.message)).collect();
+    if !said.is_empty() {
+        return Err(said.join("\n"));
     }
     let program = compilation.program.ok_or("no program")?;
     let agents = (0..program.agents.len() as u16).collect();
@@ -91,9 +98,21 @@ fn run(block: &Block) -> Result<String, String> {
     let ours = printed(&program, &block.text, &cast, CYCLE_LIMIT);
     if block.text.contains(".random(") || block.text.contains(".shuffle(") {
         // The reference has no chance.
-        return Ok(ours);
+        return Ok(shortened(&ours));
     }
     let theirs = by_the_pages(&program, &block.text, &[cast], CYCLE_LIMIT);
     let theirs = theirs.first().map_or("", String::as_str);
-    difference(&ours, theirs).map_or(Ok(ours.clone()), |d| Err(format!("the reference differs\n{d}")))
+    difference(&ours, theirs)
+        .map_or_else(|| Ok(shortened(&ours)), |d| Err(format!("the reference differs\n{d}")))
+}
+
+/// A log without the middle, if it is long: of a livelock.
+fn shortened(log: &str) -> String {
+    let lines: Vec<&str> = log.lines().collect();
+    if lines.len() <= WHOLE {
+        return log.to_owned();
+    }
+    let (first, last) = (&lines[..10], &lines[lines.len() - 4..]);
+    let left_out = format!("… {} lines", lines.len() - first.len() - last.len());
+    [first, &[left_out.as_str()], last].concat().iter().flat_map(|line| [line, "\n"]).collect()
 }

@@ -3,6 +3,7 @@
 //! | fence | the block is |
 //! |---|---|
 //! | `hri` | a scenario of its own |
+//! | `hri,run` | the same, of which the log follows: see `conformance.rs` |
 //! | `hri,then` | a part of the page's scenario: all of them together compile without a warning |
 //! | `hri,item` | declarations, which are put after the standard scenario of `spec/README.md` |
 //! | `hri,standard` | that scenario |
@@ -44,6 +45,7 @@ fn rule(info: &str) -> Result<Rule, String> {
     };
     for word in head.split(',').skip(1) {
         match word.split_once('=') {
+            None if word == "run" => rule.form = Form::Whole,
             None if word == "then" => rule.form = Form::Then,
             None if word == "item" => rule.form = Form::Item,
             None if word == "standard" => rule.form = Form::Standard,

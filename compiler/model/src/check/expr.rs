@@ -371,9 +371,13 @@ impl<'a> Checker<'a> {
     /// An operator on single values.
     pub(super) fn operate(&mut self, op: BinaryOp, l: Expr, r: Expr, span: Span, env: &mut Env) -> Expr {
         let logical = matches!(op, BinaryOp::And | BinaryOp::Or);
-        if l.ty == Kind::Unknown && r.ty != Kind::Unknown && !logical {
+        // What is multiplied with a quantity need not be one.
+        let scaled = matches!(op, BinaryOp::Mul | BinaryOp::Div);
+        let quantity = |ty: Kind| matches!(ty, Kind::Float(dim) if dim != Dim::NUMBER);
+        let tells = |ty: Kind| !logical && (!scaled || !quantity(ty));
+        if l.ty == Kind::Unknown && r.ty != Kind::Unknown && tells(r.ty) {
             self.learn(&l, r.ty, env);
-        } else if r.ty == Kind::Unknown && !logical {
+        } else if r.ty == Kind::Unknown && tells(l.ty) {
             self.learn(&r, l.ty, env);
         }
         if !logical && (l.kind == ExprKind::Error || r.kind == ExprKind::Error) {
