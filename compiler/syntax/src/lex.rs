@@ -270,7 +270,8 @@ impl Join<'_> {
     }
 
     /// A dot right before a name, and after nothing that has parts: `.count`. After a name or index a dot is always that
-    /// of a part, also on a new line; only `while .count(…)` and `for .member(…)` have a blank before their action.
+    /// of a part, also on a new line; only `while .count(…)`, `for .member(…)` and
+    /// `where .count(…)` have a blank before their action.
     fn starts_internal(&self, i: usize) -> bool {
         let dot = self.raw[i];
         let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
