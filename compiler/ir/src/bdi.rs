@@ -1,5 +1,7 @@
 //! Belief-desire-intention agents, after AgentSpeak(L).
 
+use std::sync::LazyLock;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{ActorId, EventId, EventPattern, Expr, Param, Span, Symbol, Value, list::ListFunction};
@@ -321,13 +323,15 @@ pub enum Subject {
 /// The source of what an agent adds itself.
 #[must_use]
 pub fn source_self() -> Symbol {
-    Symbol::intern("self")
+    static SELF: LazyLock<Symbol> = LazyLock::new(|| Symbol::intern("self"));
+    *SELF
 }
 
 /// The source of what it perceived.
 #[must_use]
 pub fn source_percept() -> Symbol {
-    Symbol::intern("percept")
+    static PERCEPT: LazyLock<Symbol> = LazyLock::new(|| Symbol::intern("percept"));
+    *PERCEPT
 }
 
 /// Calls `f` with each step, those within blocks too, in the order of the text.

@@ -46,6 +46,8 @@ pub(crate) enum Op<'p> {
 #[derive(Clone, Debug)]
 pub(crate) struct Line<'p> {
     pub op: Op<'p>,
+    /// The line after it, jumps followed.
+    pub after: u16,
     /// The place of the step in the body, with the steps of its blocks counted through.
     pub site: u16,
     pub origin: Span,
@@ -55,7 +57,14 @@ pub(crate) struct Line<'p> {
 pub(crate) fn compile(body: &[Step]) -> Option<Vec<Line<'_>>> {
     let mut code = Code { lines: Vec::new(), site: 0 };
     code.steps(body);
-    (code.lines.len() < usize::from(u16::MAX)).then_some(code.lines)
+    let mut lines = code.lines;
+    if lines.len() >= usize::from(u16::MAX) {
+        return None;
+    }
+    for at in 0..lines.len() as u16 {
+        lines[usize::from(at)].after = settle(&lines, at + 1);
+    }
+    Some(lines)
 }
 
 struct Code<'p> {
@@ -69,7 +78,7 @@ impl<'p> Code<'p> {
     }
 
     fn line(&mut self, op: Op<'p>, site: u16, origin: Span) -> usize {
-        self.lines.push(Line { op, site, origin });
+        self.lines.push(Line { op, after: 0, site, origin });
         self.lines.len() - 1
     }
 

@@ -343,8 +343,12 @@ impl<'p> Machine<'p> {
             self.measure(|m| m.completed[usize::from(frame.plan)] += 1);
         }
         self.put(place, plan, event, early.map(|f| [f.plan, f.under[0]]));
-        if self.mind.pool.see(place).frames.len() > MAX_HEIGHT {
+        let intention = self.mind.pool.see(place);
+        if intention.frames.len() > MAX_HEIGHT {
             self.fail(place, Cause::TooDeep);
+        } else if !intention.suspended && !self.mind.library.code(plan).is_empty() {
+            // A body does not begin with the end of anything.
+            self.make_ready(place);
         } else {
             self.resume(place);
         }
@@ -362,7 +366,7 @@ impl<'p> Machine<'p> {
         let number = intention.number;
         if let Some(top) = intention.frames.last_mut() {
             top.under = under.unwrap_or(top.under);
-            top.told = event.annotations().and_then(|a| a.first()).and_then(|(_, v)| v.as_symbol());
+            top.told = event.told;
         }
         if let Some(measured) = &mut self.measured {
             let under = intention.frames.last().map_or([crate::intention::NO_PLAN; 2], |f| f.under);

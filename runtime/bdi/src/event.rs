@@ -1,7 +1,7 @@
 //! What goes in and out of an agent: the events that it reasons about, the actions that it does, the messages it sends.
 
 use hrdsl_ir::{
-    EventId, Value,
+    EventId, Symbol, Value,
     bdi::{ContentId, Performative, TriggerOn},
 };
 use smallvec::SmallVec;
@@ -47,6 +47,8 @@ pub(crate) struct Event {
     pub by: Option<(u16, u16)>,
     /// The intention that waits for the event's plan; `None`: the plan becomes an intention of its own.
     pub of: Option<u32>,
+    /// Of a goal: the other agent that asked for it.
+    pub told: Option<Symbol>,
     pub args: Args,
     pub more: Option<Box<More>>,
 }
@@ -60,7 +62,7 @@ pub(crate) struct More {
 
 impl Event {
     pub fn new(on: TriggerOn, args: Args) -> Self {
-        Self { on, by: None, of: None, args, more: None }
+        Self { on, by: None, of: None, told: None, args, more: None }
     }
 
     #[must_use]
@@ -78,8 +80,7 @@ impl Event {
         self
     }
 
-    /// Of a belief that was added those that are new, of one that left those it had; of a goal who asked for it, if that
-    /// was another agent.
+    /// Of a belief that was added those that are new, of one that left those it had.
     pub fn annotations(&self) -> Option<&Annotations> {
         self.more.as_ref().map(|m| &m.annotations).filter(|a| !a.is_empty())
     }

@@ -10,8 +10,10 @@ use hrdsl_ir::{
     list::same,
 };
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::{
-    Cause, Logged,
+    Cause, Detail, Logged,
     belief::{from as told_by, typed},
     code::Op,
     cycle::Machine,
@@ -80,13 +82,13 @@ impl<'p> Machine<'p> {
             Some(Subject::Belief(_)) => !is_of_goal(performative),
             None => false,
         };
-        let receivers: Vec<u16> = match to {
+        let receivers: SmallVec<[u16; 4]> = match to {
             Some(to) => {
                 let to = self.receiver(here.place, to)?;
                 if !suits(self.subject(content, to)) {
                     return Err(Cause::NoSuchContent(self.name_of(to)));
                 }
-                vec![to]
+                smallvec![to]
             }
             None => {
                 let all = 0..self.mind.me.peers.agents.len() as u16;
@@ -99,12 +101,18 @@ impl<'p> Machine<'p> {
         }
         let closed = matches!(performative, Performative::Tell | Performative::Achieve);
         let args = self.content(here.place, args, closed)?;
-        let mut mail = Vec::new();
+        let before = self.outbox.len();
         for to in receivers {
-            let args = if closed { self.fitting(content, to, &args)? } else { args.clone() };
-            mail.push(Mail { to, speech: Speech::Say { performative, content, args } });
+            let args = if closed { self.fitting(content, to, &args) } else { Ok(args.clone()) };
+            match args {
+                Ok(args) => self.say(to, Speech::Say { performative, content, args }),
+                Err(cause) => {
+                    // Nothing is sent if it does not suit everybody.
+                    self.outbox.truncate(before);
+                    return Err(cause);
+                }
+            }
         }
-        self.outbox.append(&mut mail);
         self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
         Ok(Flow::Next)
     }
@@ -115,10 +123,10 @@ impl<'p> Machine<'p> {
         crate::unify::well_bound(terms, slots)?;
         let mut args = Args::new();
         for term in terms {
-            if let (Term::Expr(expr), true) = (term, closed) {
-                eval(expr, slots)?;
-            }
-            let value = known(term, slots);
+            let value = match term {
+                Term::Expr(expr) if closed => Some(eval(expr, slots)?),
+                _ => known(term, slots),
+            };
             if closed && value.is_none() {
                 let variable = if let Term::Var(v) = term { *v } else { u16::MAX };
                 return Err(Cause::NoValue(EvalError::Unbound(variable)));
@@ -171,8 +179,9 @@ impl<'p> Machine<'p> {
     pub fn hear(&mut self, from: u16, speech: Speech) {
         match speech {
             Speech::Say { performative, content, args } => {
-                let heard = args.clone();
-                self.entry(0, || Logged::Heard { from, performative, content, args: heard });
+                if self.log.detail >= Detail::Steps {
+                    self.enter(0, Logged::Heard { from, performative, content, args: args.clone() });
+                }
                 self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
                 self.obey(from, performative, content, args);
             }
@@ -210,7 +219,8 @@ impl<'p> Machine<'p> {
             }
             Performative::Achieve => {
                 let Some(goal) = self.goal(content) else { return };
-                self.post(Event::new(TriggerOn::GoalAdded(goal), args).annotated(told_by(name)));
+                let told = name.as_symbol();
+                self.post(Event { told, ..Event::new(TriggerOn::GoalAdded(goal), args) });
             }
             Performative::Unachieve => {
                 if let Some(goal) = self.goal(content) {

@@ -1,13 +1,9 @@
 //! The end of plans, good or bad: finished plans leave their intention, failures look for a failure plan.
 
-use hrdsl_ir::{
-    Value,
-    bdi::{Literal, StepKind, TriggerOn},
-};
+use hrdsl_ir::bdi::{Literal, StepKind, TriggerOn};
 
 use crate::{
     Cause, Failure, Logged,
-    belief::from as told_by,
     code::{Op, settle},
     cycle::Machine,
     event::{Args, Event, Reply, Speech},
@@ -224,9 +220,7 @@ impl<'p> Machine<'p> {
             let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = Args::from_slice(self.mind.pool.see(place).args(top));
-                let annotations = top.told.map(|who| told_by(Value::Symbol(who)));
-                let event = Event::new(on, args).annotated(annotations.unwrap_or_default());
-                let event = Event { of: Some(place), ..event };
+                let event = Event { of: Some(place), told: top.told, ..Event::new(on, args) };
                 self.select(&event, Some(place)).map(|plan| (plan, event))
             });
             self.leave(place);

@@ -213,6 +213,7 @@ fn event(out: &mut Vec<u64>, e: &Event, rank: &dyn Fn(u32) -> u64) {
     slots(out, &e.args);
     e.annotations().iter().for_each(|a| annotations(out, a));
     out.push(e.of.map_or(0, rank));
+    out.push(e.told.map_or(0, |who| who.number()));
 }
 
 fn incoming(out: &mut Vec<u64>, i: &Incoming) {

@@ -8,7 +8,7 @@ use hrdsl_ir::{
 
 use crate::{
     Detail, Logged, Verdict,
-    belief::{Annotations, own},
+    belief::{Annotations, from, own},
     cycle::Machine,
     event::Event,
     query::{Fault, Solver},
@@ -119,7 +119,7 @@ impl<'p> Machine<'p> {
         let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
         let held: Annotations = match event.annotations() {
             Some(held) => held.clone(),
-            None if is_goal => own(),
+            None if is_goal => event.told.map_or_else(own, |who| from(Value::Symbol(who))),
             None => Annotations::new(),
         };
         let terms = &plan.trigger.annotations;

@@ -108,6 +108,11 @@ impl<'p> Society<'p> {
         self.machines.iter_mut().for_each(|m| m.cycle_limit = cycles);
     }
 
+    #[must_use]
+    pub fn cycle_limit(&self) -> u64 {
+        self.limit
+    }
+
     /// An event reaches an agent, which will take it in when it is next run.
     pub fn perceive(&mut self, agent: usize, event: EventId, args: &[Value]) {
         if let Some(machine) = self.machines.get_mut(agent) {
@@ -198,8 +203,7 @@ impl<'p> Society<'p> {
             if self.halted.is_some() {
                 return;
             }
-            self.deliver();
-            if self.machines.iter().any(|m| !m.actions.is_empty()) {
+            if self.deliver() {
                 return;
             }
             spoken += 1;
@@ -234,10 +238,13 @@ impl<'p> Society<'p> {
         }
     }
 
-    /// Messages go to their receivers, in the order of senders and as they were sent; who hears is active next.
-    fn deliver(&mut self) {
+    /// Messages go to their receivers, in the order of senders and as they were sent; who hears is active next. Whether
+    /// somebody acts, too.
+    fn deliver(&mut self) -> bool {
         let senders = std::mem::take(&mut self.active);
+        let mut acts = false;
         for sender in &senders {
+            acts = acts || !self.machines[usize::from(*sender)].actions.is_empty();
             let mut mail = std::mem::take(&mut self.machines[usize::from(*sender)].outbox);
             for letter in mail.drain(..) {
                 if let Some(receiver) = self.machines.get_mut(usize::from(letter.to)) {
@@ -251,6 +258,7 @@ impl<'p> Society<'p> {
             self.machines[usize::from(*sender)].outbox = mail;
         }
         self.active.sort_unstable();
+        acts
     }
 
     fn halt(&mut self, status: Status) {

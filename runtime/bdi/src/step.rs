@@ -41,15 +41,6 @@ fn values<C: Default + Extend<T>, T>(
     Ok(all)
 }
 
-/// The same, for the arguments of a goal.
-fn given(exprs: &[Expr], slots: &[Slot]) -> Result<Args, Cause> {
-    let mut all = Args::new();
-    for expr in exprs {
-        all.push(Some(eval(expr, slots)?));
-    }
-    Ok(all)
-}
-
 /// Where a step is: its intention, its plan, and its place in the body.
 #[derive(Clone, Copy)]
 pub(crate) struct Here {
@@ -76,20 +67,18 @@ impl<'p> Machine<'p> {
             let code = self.mind.library.code(top.plan);
             let Some(line) = code.get(usize::from(top.next)) else { return Ok(Flow::Next) };
             let here = Here { place, plan: top.plan, line: top.next, site: line.site };
-            let after = settle(code, top.next + 1);
-            if let Some(top) = self.mind.pool.at(place).frames.last_mut() {
-                top.at = here.line;
-            }
+            let after = line.after;
             // A copy of the little that the line has, so that the machine is free to change.
             match &line.op {
                 Op::Plain(step) => {
                     let step = *step;
-                    self.jump(place, after);
+                    self.move_on(here, after);
                     return self.plain(here, step);
                 }
                 Op::Branch { condition, otherwise } => {
-                    let to = settle(code, *otherwise);
-                    return self.branch(here, condition, after, to);
+                    let (condition, to) = (*condition, settle(code, *otherwise));
+                    self.move_on(here, after);
+                    return self.branch(here, condition, to);
                 }
                 Op::Jump(to) => {
                     let to = settle(code, *to);
@@ -101,24 +90,33 @@ impl<'p> Machine<'p> {
                     self.jump(place, after);
                 }
                 Op::While { condition, end } => {
-                    let end = settle(code, *end);
-                    return self.again(here, condition, after, end);
+                    let (condition, end) = (*condition, settle(code, *end));
+                    self.move_on(here, after);
+                    return self.again(here, condition, end);
                 }
                 Op::For { condition, variables } => {
                     let (condition, variables) = (*condition, variables.clone());
-                    self.jump(place, after);
+                    self.move_on(here, after);
                     return self.each_answer(here, condition, &variables);
                 }
                 // The next answer of a `for` is found by `resume`, and so is the end of a branch.
                 Op::Next { .. } | Op::Join => return Ok(Flow::Next),
                 Op::Fork { branches, all, end } => {
                     let (branches, all, end) = (branches.clone(), *all, settle(code, *end));
-                    self.jump(place, end);
+                    self.move_on(here, end);
                     self.done(here, Outcome::Branches(branches.len()));
                     self.fork(here, &branches, all);
                     return Ok(Flow::Suspended);
                 }
             }
+        }
+    }
+
+    /// The step at this line begins; this line is the next.
+    #[inline]
+    fn move_on(&mut self, here: Here, next: u16) {
+        if let Some(top) = self.mind.pool.at(here.place).frames.last_mut() {
+            (top.at, top.next) = (here.line, next);
         }
     }
 
@@ -151,14 +149,7 @@ impl<'p> Machine<'p> {
         Ok(holds)
     }
 
-    fn branch(
-        &mut self,
-        here: Here,
-        condition: &'p Context,
-        then: u16,
-        otherwise: u16,
-    ) -> Result<Flow, Cause> {
-        self.jump(here.place, then);
+    fn branch(&mut self, here: Here, condition: &'p Context, otherwise: u16) -> Result<Flow, Cause> {
         if !self.decide(here, condition)? {
             self.jump(here.place, otherwise);
         }
@@ -188,8 +179,7 @@ impl<'p> Machine<'p> {
         open.iter().for_each(|v| vars[usize::from(*v)] = None);
     }
 
-    fn again(&mut self, here: Here, condition: &'p Context, body: u16, end: u16) -> Result<Flow, Cause> {
-        self.jump(here.place, body);
+    fn again(&mut self, here: Here, condition: &'p Context, end: u16) -> Result<Flow, Cause> {
         self.reopen(here.place);
         if !self.decide(here, condition)? {
             self.mind.pool.at(here.place).loops.pop();
@@ -293,16 +283,16 @@ impl<'p> Machine<'p> {
                 Ok(Flow::Suspended)
             }
             StepKind::Achieve { goal, args, within } => {
-                let args = self.given_to(*goal, given(args, slots)?)?;
+                let event = self.goal_event(here, *goal, args, Some(place))?;
                 if let Some(within) = within {
                     self.set_deadline(place, within)?;
                 }
-                self.post_goal(here, TriggerOn::GoalAdded(*goal), args, Some(place));
+                self.post(event);
                 Ok(Flow::Suspended)
             }
             StepKind::Spawn { goal, args } => {
-                let args = self.given_to(*goal, given(args, slots)?)?;
-                self.post_goal(here, TriggerOn::GoalAdded(*goal), args, None);
+                let event = self.goal_event(here, *goal, args, None)?;
+                self.post(event);
                 Ok(Flow::Next)
             }
             StepKind::Query(literal) => self.query(here, literal),
@@ -352,18 +342,22 @@ impl<'p> Machine<'p> {
         }
     }
 
-    fn post_goal(&mut self, here: Here, on: TriggerOn, args: Args, of: Option<u32>) {
-        let by = Some((here.plan, here.site));
-        self.post(Event { of, by, ..Event::new(on, args) });
-    }
-
-    /// The arguments, as the goal's declaration has them, if it is declared.
-    fn given_to(&self, goal: GoalId, args: Args) -> Result<Args, Cause> {
+    /// A goal with these arguments, as its declaration has them, if it is declared.
+    #[inline]
+    fn goal_event(&self, here: Here, goal: GoalId, args: &[Expr], of: Option<u32>) -> Result<Event, Cause> {
+        let slots = self.mind.pool.see(here.place).vars();
+        let mut event = Event::new(TriggerOn::GoalAdded(goal), Args::new());
+        (event.of, event.by) = (of, Some((here.plan, here.site)));
+        for expr in args {
+            event.args.push(Some(eval(expr, slots)?));
+        }
         let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
-        let Some(params) = declared.and_then(|g| g.params.as_ref()) else { return Ok(args) };
-        let ground = args.iter().copied().flatten().collect();
-        let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
-        Ok(typed.into_iter().map(Some).collect())
+        if let Some(params) = declared.and_then(|g| g.params.as_ref()) {
+            let ground = event.args.iter().copied().flatten().collect();
+            let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
+            event.args = typed.into_iter().map(Some).collect();
+        }
+        Ok(event)
     }
 
     fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), Cause> {
@@ -415,7 +409,8 @@ impl<'p> Machine<'p> {
         // A term that computes with a variable which this literal binds is compared with the answer.
         let slots = self.mind.pool.see(place).vars();
         let asked: Args = literal.args.iter().map(|term| known(term, slots)).collect();
-        self.post_goal(here, on, asked, Some(place));
+        let by = Some((here.plan, here.site));
+        self.post(Event { of: Some(place), by, ..Event::new(on, asked) });
         Ok(Flow::Suspended)
     }
 

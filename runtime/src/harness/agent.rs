@@ -99,9 +99,10 @@ impl<'p> Company<'p> {
             Status::Livelock => {
                 "livelock: at one instant its state repeats, so time can never pass".to_owned()
             }
-            Status::Endless => {
-                "cycle bound: too many cycles at one instant, without coming to rest".to_owned()
-            }
+            Status::Endless => format!(
+                "cycle bound: more than {} cycles at one instant, without coming to rest",
+                self.society.cycle_limit()
+            ),
             Status::Malformed => {
                 self.society.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
             }
