@@ -355,6 +355,7 @@ impl<'p> Machine<'p> {
     }
 
     /// The frame of a plan whose variables the solver holds.
+    #[inline]
     pub fn put(&mut self, place: u32, plan: u16, event: &Event, under: Option<[u16; 2]>) {
         let selected = self.mind.library.plan(plan);
         let first = crate::code::settle(self.mind.library.code(plan), 0);
@@ -379,6 +380,7 @@ impl<'p> Machine<'p> {
     }
 
     /// The intention's turn comes again.
+    #[inline]
     pub fn make_ready(&mut self, place: u32) {
         let intention = self.mind.pool.at(place);
         intention.state = State::Ready;
@@ -390,6 +392,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Posts an event, perhaps for an intention that waits for its plan.
+    #[inline]
     pub fn post(&mut self, event: Event) {
         let mut urgent = false;
         if let Some(place) = event.of {

@@ -101,6 +101,7 @@ pub(crate) struct Intention<'p> {
 
 impl Intention<'_> {
     /// Puts a plan on top.
+    #[inline]
     pub fn push(&mut self, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
         let start = self.slots.len() as u32;
         let vars_at = start + args.len() as u32;
@@ -121,6 +122,7 @@ impl Intention<'_> {
     }
 
     /// Takes the top plan off, with its slots, loops and what they hold.
+    #[inline]
     pub fn pop(&mut self) -> Option<Frame> {
         let frame = self.frames.pop()?;
         self.slots.truncate(frame.args as usize);

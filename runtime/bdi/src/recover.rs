@@ -71,12 +71,17 @@ impl<'p> Machine<'p> {
     }
 
     /// Takes the top plan off, and what is bound to it.
+    #[inline]
     pub fn leave(&mut self, place: u32) -> Option<Frame> {
         let intention = self.mind.pool.at(place);
         let frame = intention.pop()?;
-        intention.atomic -= u32::from(self.mind.library.plan(frame.plan).atomic && !frame.branch);
-        let height = intention.frames.len();
-        self.drop_deadlines(place, height);
+        if intention.atomic > 0 && !frame.branch {
+            intention.atomic -= u32::from(self.mind.library.plan(frame.plan).atomic);
+        }
+        if !intention.deadlines.is_empty() {
+            let height = intention.frames.len();
+            self.drop_deadlines(place, height);
+        }
         Some(frame)
     }
 

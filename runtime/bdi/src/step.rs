@@ -18,6 +18,7 @@ use crate::{
     event::{Args, Event, Ground},
     intention::{Deadline, Loop, State, Timer},
     log::sources,
+    mind::Mind,
     unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
 };
 
@@ -282,17 +283,18 @@ impl<'p> Machine<'p> {
                 self.act(place, *event, args)?;
                 Ok(Flow::Suspended)
             }
-            StepKind::Achieve { goal, args, within } => {
+            StepKind::Achieve { goal, args, within: None } => {
+                self.post_goal(here, *goal, args, Some(place))?;
+                Ok(Flow::Suspended)
+            }
+            StepKind::Achieve { goal, args, within: Some(within) } => {
                 let event = self.goal_event(here, *goal, args, Some(place))?;
-                if let Some(within) = within {
-                    self.set_deadline(place, within)?;
-                }
+                self.set_deadline(place, within)?;
                 self.post(event);
                 Ok(Flow::Suspended)
             }
             StepKind::Spawn { goal, args } => {
-                let event = self.goal_event(here, *goal, args, None)?;
-                self.post(event);
+                self.post_goal(here, *goal, args, None)?;
                 Ok(Flow::Next)
             }
             StepKind::Query(literal) => self.query(here, literal),
@@ -342,8 +344,41 @@ impl<'p> Machine<'p> {
         }
     }
 
+    /// Posts a goal with these arguments.
+    fn post_goal(&mut self, here: Here, goal: GoalId, args: &[Expr], of: Option<u32>) -> Result<(), Cause> {
+        let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
+        if declared.is_some_and(|g| g.params.is_some()) || self.mind.pool.see(here.place).atomic > 0 {
+            let event = self.goal_event(here, goal, args, of)?;
+            self.post(event);
+            return Ok(());
+        }
+        // The commonest step of all: the event is made where it waits, since moving it costs as much as the rest.
+        let Mind { pool, events, .. } = &mut self.mind;
+        let event = Event {
+            of,
+            by: Some((here.plan, here.site)),
+            ..Event::new(TriggerOn::GoalAdded(goal), Args::new())
+        };
+        events.push_back(event);
+        let slots = pool.see(here.place).vars();
+        for expr in args {
+            let value = eval(expr, slots);
+            match (events.back_mut(), value) {
+                (Some(event), Ok(value)) => event.args.push(Some(value)),
+                (_, Err(error)) => {
+                    events.pop_back();
+                    return Err(error.into());
+                }
+                (None, Ok(_)) => {}
+            }
+        }
+        if let Some(place) = of {
+            pool.at(place).state = State::Posted;
+        }
+        Ok(())
+    }
+
     /// A goal with these arguments, as its declaration has them, if it is declared.
-    #[inline]
     fn goal_event(&self, here: Here, goal: GoalId, args: &[Expr], of: Option<u32>) -> Result<Event, Cause> {
         let slots = self.mind.pool.see(here.place).vars();
         let mut event = Event::new(TriggerOn::GoalAdded(goal), Args::new());
