@@ -38,6 +38,8 @@ pub struct Society<'p> {
     parallel: bool,
     /// Agents with work, in their order.
     active: Vec<u16>,
+    /// Kept empty between rounds, for its memory.
+    senders: Vec<u16>,
 }
 
 impl<'p> Society<'p> {
@@ -72,6 +74,7 @@ impl<'p> Society<'p> {
             halted: None,
             parallel: false,
             active: Vec::new(),
+            senders: Vec::new(),
         }
     }
 
@@ -241,7 +244,8 @@ impl<'p> Society<'p> {
     /// Messages go to their receivers, in the order of senders and as they were sent; who hears is active next. Whether
     /// somebody acts, too.
     fn deliver(&mut self) -> bool {
-        let senders = std::mem::take(&mut self.active);
+        let mut senders = std::mem::take(&mut self.senders);
+        std::mem::swap(&mut senders, &mut self.active);
         let mut acts = false;
         for sender in &senders {
             acts = acts || !self.machines[usize::from(*sender)].actions.is_empty();
@@ -258,6 +262,8 @@ impl<'p> Society<'p> {
             self.machines[usize::from(*sender)].outbox = mail;
         }
         self.active.sort_unstable();
+        senders.clear();
+        self.senders = senders;
         acts
     }
 
