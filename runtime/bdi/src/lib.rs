@@ -16,17 +16,19 @@
 //! # The engine, by the way of an event
 //!
 //! `society` (rounds, messages delivered) → `cycle` (one agent: inbox, events, ready intentions) → `select` (a plan for an
-//! event) → `query` (answers of a formula in `belief`s and rules, with `unify`) → `step` (a line of `code`; `control`,
-//! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks; `log`, `show` and
+//! event) → `query` (answers of a formula in `belief`s and rules, with `unify`) → `step` (a line of `code`; `block`, `control`,
+//! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks; `log`, `describe`, `show` and
 //! `measure` tell.
 
 mod belief;
+mod block;
 mod check;
 pub mod choose;
 mod code;
 mod control;
 pub mod coverage;
 mod cycle;
+mod describe;
 mod dice;
 mod event;
 mod intention;

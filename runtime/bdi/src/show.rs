@@ -1,4 +1,4 @@
-//! Entries of the log as text: what was done, as it is written in the language, with values for variables.
+//! Formulas and steps as text: as they are written in the language, with values for variables.
 
 use std::fmt::Display;
 
@@ -6,22 +6,14 @@ use hrdsl_ir::{
     ArgPattern, EventPattern, Expr, Nanos, Program, Value,
     bdi::{
         Agent, Annotation, Assertion, BeliefId, ContentId, Context, Control, GoalId, Internal, Literal,
-        Performative, StepKind, Term, TriggerOn,
+        Performative, StepKind, Term,
     },
-    expr::{BinaryOp, EvalError, Function, UnaryOp},
+    expr::{BinaryOp, Function, UnaryOp},
     list::ListFunction,
     value::seconds,
 };
 
-use crate::{
-    Cause, Failure, Fault, LogEntry, Logged, Outcome, Verdict,
-    belief::Annotations,
-    code::Op,
-    cycle::Machine,
-    event::Args,
-    mind::Mind,
-    unify::{Slot, Trail, eval, known, unify_all},
-};
+use crate::unify::{Slot, eval, known};
 
 /// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
 pub(crate) fn call<T: Display>(name: &str, args: impl IntoIterator<Item = T>) -> String {
@@ -35,7 +27,8 @@ pub fn time(time: Nanos) -> String {
     format!("{} s", seconds(time))
 }
 
-fn slot(slot: &Slot) -> String {
+/// `_` for what has no value.
+pub(crate) fn slot(slot: &Slot) -> String {
     slot.map_or_else(|| "_".to_owned(), |v| v.to_string())
 }
 
@@ -61,236 +54,11 @@ enum Within {
 }
 
 /// Names of one agent's program, and the values of one plan's variables.
-struct Show<'a> {
-    program: &'a Program,
-    agent: &'a Agent,
-    names: &'a [String],
-    slots: &'a [Slot],
-}
-
-impl<'p> Machine<'p> {
-    /// The names of its program; `None` if it cannot be run.
-    pub(crate) fn names(&self) -> Option<Names<'_, 'p>> {
-        Some(Names { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
-    }
-
-    /// An entry of this agent's log, without time and agent.
-    pub fn describe(&self, entry: &LogEntry) -> String {
-        let Some(names) = self.names() else { return String::new() };
-        let what = names.entry(entry);
-        let alone = matches!(&entry.what, Logged::Selected { fresh: true, .. });
-        if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
-    }
-}
-
-/// Names of a running agent's program.
-pub(crate) struct Names<'a, 'p> {
-    mind: &'a Mind<'p>,
-    program: &'p Program,
-    agent: &'p Agent,
-}
-
-impl Names<'_, '_> {
-    fn entry(&self, entry: &LogEntry) -> String {
-        match &entry.what {
-            Logged::Selected { on, args, plan, vars, fresh } => {
-                let begun = if *fresh { format!(" as #{}", entry.intention) } else { String::new() };
-                format!("{} → {}{}{begun}", self.on(*on, args), self.plan(*plan), self.bound(*plan, vars))
-            }
-            Logged::Tried { on, args, plan, verdict } => {
-                format!("{}: {}", self.on(*on, args), self.verdict(*plan, args, *verdict))
-            }
-            Logged::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
-            Logged::Fault { plan, fault, .. } => {
-                format!("fault in the context of {}: {}", self.plan(*plan), self.fault(*plan, *fault))
-            }
-            Logged::FaultyAnswer { fault, .. } => format!("fault in an answer: {fault}"),
-            Logged::Step { plan, line, vars, outcome } => self.step(*plan, *line, vars, *outcome),
-            Logged::Failed(failure) => format!("failed {}", self.failure(failure)),
-            Logged::Finished => "finished".to_owned(),
-            Logged::Dropped => "dropped".to_owned(),
-            Logged::Added { belief, args, annotations } => {
-                format!("+{}{}", call(self.belief(*belief), args), self.annotations(*belief, annotations))
-            }
-            Logged::Left { belief, args } => format!("-{}", call(self.belief(*belief), args)),
-            Logged::Taken { belief, args, source } => {
-                format!("-{}[source({source})]", call(self.belief(*belief), args))
-            }
-            Logged::StillHeld { belief, args, meant, from } => {
-                let from: Vec<String> = from.iter().map(ToString::to_string).collect();
-                let fact = call(self.belief(*belief), args);
-                let (meant, from) = (slot(meant), from.join(", "));
-                format!("warning: -{fact} takes away {meant} only, it is held from {from}")
-            }
-            Logged::Refused { belief, args } => {
-                format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
-            }
-            Logged::Perceived { event, args } => {
-                let name = self.program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
-                format!("perceives {}", call(name, args))
-            }
-            Logged::Heard { from, performative: p, content, args } => {
-                let what = call(self.content(*content), args.iter().map(slot));
-                format!("hears {} {what} from {}", performative(*p), self.peer(*from))
-            }
-            Logged::Asked { from, content, args, all } => {
-                let what = call(self.content(*content), args.iter().map(slot));
-                let how = if *all { "ask_all" } else { "ask" };
-                format!("hears {how} {what} from {}", self.peer(*from))
-            }
-            Logged::Answered { from, content, all, answers } => {
-                let one = |a: &Args| call(self.content(*content), a.iter().map(slot));
-                let each: Option<Vec<String>> = answers.as_ref().map(|a| a.iter().map(one).collect());
-                let what = match each {
-                    None => "nothing".to_owned(),
-                    Some(each) if *all => format!("[{}]", each.join(", ")),
-                    Some(each) => each.join(", "),
-                };
-                format!("hears answer {what} from {}", self.peer(*from))
-            }
-            Logged::Printed(text) => format!("prints {text}"),
-            Logged::Livelock => "livelock".to_owned(),
-            Logged::Endless => "cycle bound".to_owned(),
-        }
-    }
-
-    fn plan(&self, index: u16) -> &str {
-        self.agent.plans.get(usize::from(index)).map_or("?", |p| &p.label)
-    }
-
-    fn belief(&self, id: BeliefId) -> &str {
-        self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
-    }
-
-    fn goal(&self, id: GoalId) -> &str {
-        self.agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name)
-    }
-
-    fn content(&self, id: ContentId) -> &str {
-        self.program.contents.get(usize::from(id.0)).map_or("?", |c| &c.name)
-    }
-
-    fn peer(&self, place: u16) -> &'static str {
-        self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
-    }
-
-    pub(crate) fn on(&self, on: TriggerOn, args: &Args) -> String {
-        let (sign, name) = match on {
-            TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
-            TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
-            TriggerOn::GoalAdded(g) => ("+!", self.goal(g)),
-            TriggerOn::GoalFailed(g) => ("-!", self.goal(g)),
-            TriggerOn::TestAdded(b) => ("+?", self.belief(b)),
-            TriggerOn::TestFailed(b) => ("-?", self.belief(b)),
-            TriggerOn::Perceived(e) => {
-                ("on ", self.program.events.get(usize::from(e.0)).map_or("?", |e| e.name.as_str()))
-            }
-        };
-        format!("{sign}{}", call(name, args.iter().map(slot)))
-    }
-
-    /// ` (N = 0, M = 2)`: the variables that have a value.
-    fn bound(&self, plan: u16, vars: &[Slot]) -> String {
-        let Some(plan) = self.agent.plans.get(usize::from(plan)) else { return String::new() };
-        let bound = plan.vars.iter().zip(vars).filter_map(|(name, v)| Some(format!("{name} = {}", (*v)?)));
-        let bound: Vec<String> = bound.collect();
-        if bound.is_empty() { String::new() } else { format!(" ({})", bound.join(", ")) }
-    }
-
-    fn annotations(&self, belief: BeliefId, all: &Annotations) -> String {
-        let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
-        let one = |(what, value): &(Annotation, Value)| match what {
-            Annotation::Source => format!("source({value})"),
-            Annotation::Declared(at) => {
-                format!("{}({value})", declared.get(usize::from(*at)).map_or("?", |p| &p.name))
-            }
-        };
-        let all: Vec<String> = all.iter().map(one).collect();
-        format!("[{}]", all.join(", "))
-    }
-
-    /// A fact with its annotations.
-    pub(crate) fn fact(&self, belief: BeliefId, args: &Args, annotations: &Annotations) -> String {
-        call(self.belief(belief), args.iter().map(slot)) + &self.annotations(belief, annotations)
-    }
-
-    /// The step on a line of a plan, with the variables as they are.
-    pub(crate) fn line(&self, plan: u16, line: u16, vars: &[Slot]) -> String {
-        self.step(plan, line, vars, Outcome::Done)
-    }
-
-    fn verdict(&self, plan: u16, args: &Args, verdict: Verdict) -> String {
-        let label = self.plan(plan);
-        match verdict {
-            Verdict::Unlike => format!("{label} is for other arguments"),
-            Verdict::Faulty(fault) => format!("{label} cannot be tried, {}", self.fault(plan, fault)),
-            Verdict::Applicable => format!("{label} is applicable"),
-            Verdict::False { part } => {
-                let plan = &self.agent.plans[usize::from(plan)];
-                let context = match &plan.context {
-                    Context::And(all) => all.get(part).unwrap_or(&plan.context),
-                    other => other,
-                };
-                // What the event says is known; what the parts before found is not, and need not be the same each time.
-                let mut slots = vec![None; plan.vars.len()];
-                let likes =
-                    unify_all(&plan.trigger.args, args.iter().copied(), 0, &mut slots, &mut Trail::default());
-                if !matches!(likes, Ok(true)) {
-                    slots.fill(None);
-                }
-                let show =
-                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &slots };
-                format!("{label} is not applicable, `{}` has no answer", show.context(context))
-            }
-        }
-    }
-
-    fn failure(&self, failure: &Failure) -> String {
-        let on = self.on(failure.on, &failure.args);
-        let goal = match failure.on {
-            TriggerOn::GoalAdded(_)
-            | TriggerOn::GoalFailed(_)
-            | TriggerOn::TestAdded(_)
-            | TriggerOn::TestFailed(_) => &on[1..],
-            TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => on.as_str(),
-        };
-        let cause = match failure.cause {
-            Cause::NoValue(error) => self.fault(failure.plan, Fault::NoValue(error)),
-            other => other.to_string(),
-        };
-        format!("{goal} in {}: {cause}", self.plan(failure.plan))
-    }
-
-    /// A fault with the name of the variable.
-    fn fault(&self, plan: u16, fault: Fault) -> String {
-        match fault {
-            Fault::NoValue(EvalError::Unbound(u16::MAX)) => "`_` has no value".to_owned(),
-            Fault::NoValue(EvalError::Unbound(var)) => {
-                let plan = self.agent.plans.get(usize::from(plan));
-                let name = plan.and_then(|p| p.vars.get(usize::from(var)));
-                format!("`{}` has no value", name.map_or("?", |n| n))
-            }
-            other => other.to_string(),
-        }
-    }
-
-    fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: Outcome) -> String {
-        let code = self.mind.library.code(plan);
-        let names = &self.agent.plans[usize::from(plan)].vars;
-        let show = Show { program: self.program, agent: self.agent, names, slots: vars };
-        match (code.get(usize::from(line)).map(|l| &l.op), outcome) {
-            (Some(Op::Plain(step)), _) => show.step(step),
-            (Some(Op::Branch { .. }), Outcome::Holds(holds)) => format!("if {holds}"),
-            (Some(Op::While { .. }), Outcome::Holds(holds)) => format!("while {holds}"),
-            (Some(Op::Branch { .. }), _) => "if".to_owned(),
-            (Some(Op::While { .. }), _) => "while".to_owned(),
-            (Some(Op::For { .. }), Outcome::Faulty) => "for".to_owned(),
-            (_, Outcome::Answers(1)) => "for: 1 answer".to_owned(),
-            (_, Outcome::Answers(n)) => format!("for: {n} answers"),
-            (_, Outcome::Branches(n)) => format!("fork: {n} branches"),
-            _ => "?".to_owned(),
-        }
-    }
+pub(crate) struct Show<'a> {
+    pub program: &'a Program,
+    pub agent: &'a Agent,
+    pub names: &'a [String],
+    pub slots: &'a [Slot],
 }
 
 /// A formula as it is written in the language.
@@ -323,7 +91,7 @@ impl Show<'_> {
         call(name, args.iter().map(|t| self.term(t)))
     }
 
-    fn step(&self, step: &StepKind) -> String {
+    pub fn step(&self, step: &StepKind) -> String {
         let exprs = |all: &[Expr]| all.iter().map(|e| self.expr(e)).collect::<Vec<_>>();
         let terms = |all: &[Term]| all.iter().map(|t| self.term(t)).collect::<Vec<_>>();
         let time = |e: &Expr| self.seconds(e);
@@ -495,7 +263,7 @@ impl Show<'_> {
         if parenthesised { format!("({text})") } else { text }
     }
 
-    fn context(&self, context: &Context) -> String {
+    pub fn context(&self, context: &Context) -> String {
         self.formula(context, false)
     }
 

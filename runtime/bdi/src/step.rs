@@ -1,25 +1,21 @@
 //! Execution of one step of a plan's body.
 
-use hrdsl_ir::{
-    EventId, EventPattern, Expr, Nanos, Value,
-    bdi::{
-        Annotation, Assertion, BeliefId, Context, GoalId, Literal, StepKind, Term, TriggerOn, source_self,
-    },
-    expr::EvalError,
-    value::nanos,
-};
-use smallvec::SmallVec;
-
 use crate::{
     Action, ActionToken, Cause, Logged, Outcome,
     belief::{Annotations, sourced, typed},
     code::{Op, settle},
     cycle::Machine,
     event::{Args, Event, Ground},
-    intention::{Deadline, Loop, State, Timer},
+    intention::{Deadline, State, Timer},
     log::sources,
     mind::Mind,
     unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
+};
+use hrdsl_ir::{
+    EventId, EventPattern, Expr, Nanos, Value,
+    bdi::{Annotation, Assertion, BeliefId, GoalId, Literal, StepKind, Term, TriggerOn, source_self},
+    expr::EvalError,
+    value::nanos,
 };
 
 /// What becomes of the intention after a step that did not fail.
@@ -128,146 +124,12 @@ impl<'p> Machine<'p> {
     }
 
     /// Logs the step, with the variables as they are before it.
-    fn done(&mut self, here: Here, outcome: Outcome) {
+    pub fn done(&mut self, here: Here, outcome: Outcome) {
         let Here { place, plan, line, .. } = here;
         if self.log.detail >= crate::Detail::Steps {
             let intention = self.mind.pool.see(place);
             let (number, vars) = (intention.number, intention.vars().to_vec());
             self.enter(number, Logged::Step { plan, line, vars, outcome });
-        }
-    }
-
-    // ── Blocks ──
-
-    /// The first answer's bindings become the plan's.
-    fn holds(&mut self, place: u32, condition: &'p Context) -> Result<bool, Cause> {
-        self.solver.with(self.mind.pool.see(place).vars());
-        let holds = self.solver.solve(&self.mind, &mut self.dice, condition)?;
-        if holds {
-            let vars = self.mind.pool.at(place).vars_mut();
-            vars.copy_from_slice(&self.solver.slots[..vars.len()]);
-        }
-        Ok(holds)
-    }
-
-    fn branch(&mut self, here: Here, condition: &'p Context, otherwise: u16) -> Result<Flow, Cause> {
-        if !self.decide(here, condition)? {
-            self.jump(here.place, otherwise);
-        }
-        Ok(Flow::Next)
-    }
-
-    /// The condition of a block; whether it holds is in the log.
-    fn decide(&mut self, here: Here, condition: &'p Context) -> Result<bool, Cause> {
-        let holds = self.holds(here.place, condition);
-        self.done(here, holds.as_ref().map_or(Outcome::Faulty, |h| Outcome::Holds(*h)));
-        holds
-    }
-
-    fn enter_loop(&mut self, place: u32, variables: &[u16], answers: Vec<Slot>) {
-        let intention = self.mind.pool.at(place);
-        let open = variables.iter().copied().filter(|v| intention.vars()[usize::from(*v)].is_none());
-        let open: SmallVec<[u16; 4]> = open.collect();
-        let height = intention.frames.len() as u32;
-        intention.loops.push(Loop { height, open, answers, used: 0 });
-    }
-
-    /// Opens the loop's variables.
-    fn reopen(&mut self, place: u32) {
-        let intention = self.mind.pool.at(place);
-        let Some(open) = intention.loops.last().map(|l| l.open.clone()) else { return };
-        let vars = intention.vars_mut();
-        open.iter().for_each(|v| vars[usize::from(*v)] = None);
-    }
-
-    fn again(&mut self, here: Here, condition: &'p Context, end: u16) -> Result<Flow, Cause> {
-        self.reopen(here.place);
-        if !self.decide(here, condition)? {
-            self.mind.pool.at(here.place).loops.pop();
-            self.jump(here.place, end);
-        }
-        Ok(Flow::Next)
-    }
-
-    fn each_answer(&mut self, here: Here, condition: &'p Context, variables: &[u16]) -> Result<Flow, Cause> {
-        self.solver.with(self.mind.pool.see(here.place).vars());
-        let vars = self.mind.pool.see(here.place).vars();
-        let open: SmallVec<[u16; 4]> =
-            variables.iter().copied().filter(|v| vars[usize::from(*v)].is_none()).collect();
-        let found = self.all_answers(condition, &open);
-        self.done(here, found.as_ref().map_or(Outcome::Faulty, |(count, _)| Outcome::Answers(*count)));
-        let (count, answers) = found?;
-        self.enter_loop(here.place, variables, answers);
-        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut()
-            && l.open.is_empty()
-        {
-            // Nothing is bound: only the number of answers matters.
-            l.answers = vec![None; count];
-        }
-        Ok(Flow::Next)
-    }
-
-    /// How many answers there are, and the values of these variables in each.
-    fn all_answers(&mut self, condition: &'p Context, open: &[u16]) -> Result<(usize, Vec<Slot>), Cause> {
-        let mut answers = Vec::new();
-        let mut count = 0;
-        let mut found = self.solver.solve(&self.mind, &mut self.dice, condition)?;
-        while found {
-            answers.extend(open.iter().map(|v| self.solver.slots[usize::from(*v)]));
-            count += 1;
-            // A condition that is only tested is answered without a search.
-            found = !matches!(condition, Context::True | Context::Test(_))
-                && self.solver.again(&self.mind, &mut self.dice)?;
-        }
-        Ok((count, answers))
-    }
-
-    /// Binds the loop's next answer; after the last the loop is over.
-    pub fn next_answer(&mut self, place: u32) -> bool {
-        self.reopen(place);
-        let intention = self.mind.pool.at(place);
-        let Some(l) = intention.loops.last_mut() else { return false };
-        let width = l.open.len().max(1);
-        if l.used * width >= l.answers.len() {
-            intention.loops.pop();
-            return false;
-        }
-        let from = l.used * width;
-        l.used += 1;
-        let (open, answer) = (l.open.clone(), l.answers[from..from + width].to_vec());
-        let vars = intention.vars_mut();
-        open.iter().zip(answer).for_each(|(v, value)| vars[usize::from(*v)] = value);
-        true
-    }
-
-    fn fork(&mut self, here: Here, branches: &[u16], all: bool) {
-        let parent = self.mind.pool.at(here.place);
-        let Some(frame) = parent.frames.last().copied() else { return };
-        let (args, vars) = (parent.args(frame).to_vec(), parent.vars().to_vec());
-        parent.state = State::Forked { left: branches.len() as u32, all };
-        let atomic = parent.atomic > 0;
-        let mut children: SmallVec<[u32; 2]> = SmallVec::new();
-        for start in branches {
-            let child = self.mind.pool.adopt();
-            children.push(child);
-            let first = settle(self.mind.library.code(frame.plan), *start);
-            let intention = self.mind.pool.at(child);
-            intention.push(frame.plan, first, &args, &vars);
-            (intention.frames[0].branch, intention.frames[0].under) = (true, frame.under);
-            (intention.frames[0].told, intention.atomic) = (frame.told, u32::from(atomic));
-            intention.parent = Some(here.place);
-            self.mind.pool.count(child);
-        }
-        self.mind.pool.at(here.place).children.clone_from(&children);
-        // At the front, too, the first branch is the first.
-        if atomic {
-            children.reverse();
-        }
-        for child in children {
-            // A branch that ended at once may have dropped it.
-            if self.mind.pool.see(child).parent == Some(here.place) {
-                self.resume(child);
-            }
         }
     }
 

@@ -1,0 +1,173 @@
+//! Internal actions that ask: their answers, in the search of a formula.
+
+use hrdsl_ir::{
+    List, Value,
+    bdi::{Context, GoalId, Internal, Term},
+    expr::EvalError,
+    list::{apply, order, same},
+    value::seconds,
+};
+
+use super::{At, Cont, Fault, Solver, Way};
+use crate::{
+    dice::Dice,
+    mind::{Held, Mind},
+    unify::{Slot, eval, undo, unify_all},
+};
+
+impl<'p> Solver<'p> {
+    pub(super) fn internal(
+        &mut self,
+        mind: &Mind<'p>,
+        dice: &mut Dice,
+        internal: &'p Internal,
+        at: At,
+    ) -> Result<Option<u32>, Fault> {
+        let base = at.base as usize;
+        let value = |e, slots: &[Slot]| eval(e, &slots[base..]);
+        let (out, result) = match internal {
+            Internal::FindAll { template, formula, .. } => {
+                return Ok(Some(self.collect(internal, formula, Some(template), at)));
+            }
+            Internal::Count { formula, .. } => return Ok(Some(self.collect(internal, formula, None, at))),
+            Internal::Member { element, list } => {
+                let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
+                return self.member(element, list, at);
+            }
+            Internal::Apply { function, args, out } => {
+                let args: Vec<Value> =
+                    args.iter().map(|a| value(a, &self.slots)).collect::<Result<_, _>>()?;
+                (out, apply(*function, &args)?)
+            }
+            Internal::Holds { function, args } => {
+                let args: Vec<Value> =
+                    args.iter().map(|a| value(a, &self.slots)).collect::<Result<_, _>>()?;
+                let holds = apply(*function, &args)? == Some(Value::Bool(true));
+                return Ok(holds.then_some(at.next));
+            }
+            Internal::Intend { goal, args } => return self.held(mind, Held::Intended, *goal, args, at),
+            Internal::Desire { goal, args } => return self.held(mind, Held::Desired, *goal, args, at),
+            Internal::Suspended { goal, args } => return self.held(mind, Held::Suspended, *goal, args, at),
+            Internal::Random { from: None, out } => (out, Some(Value::Float(dice.fraction()))),
+            Internal::Random { from: Some(list), out } => {
+                let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
+                (out, (!list.is_empty()).then(|| list.iter().nth(dice.below(list.len()))).flatten())
+            }
+            Internal::Shuffle { list, out } => {
+                let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
+                let mut all: Vec<Value> = list.iter().collect();
+                dice.shuffle(&mut all);
+                (out, Some(Value::List(List::of(&all))))
+            }
+            Internal::Time { out } => (out, Some(Value::Float(seconds(mind.now)))),
+            Internal::MyName { out } => (out, Some(Value::Symbol(mind.me.name))),
+            Internal::AllNames { out } => (out, Some(Value::List(mind.me.peers.list))),
+        };
+        let Some(result) = result else { return Ok(None) };
+        Ok(self.matches(out, result, at)?.then_some(at.next))
+    }
+
+    fn held(
+        &mut self,
+        mind: &Mind<'p>,
+        how: Held,
+        goal: GoalId,
+        args: &'p [Term],
+        at: At,
+    ) -> Result<Option<u32>, Fault> {
+        let from = self.had.len() as u32;
+        mind.each_had(how, goal, &mut |had| self.had.extend_from_slice(had));
+        let arity = args.len() as u32;
+        if arity == 0 {
+            return Ok(mind.has_any(how, goal).then_some(at.next));
+        }
+        let to = self.had.len() as u32;
+        self.goals(args, from, to, at)
+    }
+
+    pub(super) fn goals(
+        &mut self,
+        args: &'p [Term],
+        mut from: u32,
+        to: u32,
+        at: At,
+    ) -> Result<Option<u32>, Fault> {
+        while from < to {
+            let end = from + args.len() as u32;
+            let mark = self.trail.len();
+            let had = self.had[from as usize..end as usize].to_vec();
+            let base = at.base as usize;
+            if unify_all(args, had.into_iter(), base, &mut self.slots, &mut self.trail)? {
+                self.choose(Way::Goals { args, from: end, to }, at);
+                if let Some(choice) = self.choices.last_mut() {
+                    choice.trail = mark as u32;
+                }
+                return Ok(Some(at.next));
+            }
+            from = end;
+        }
+        Ok(None)
+    }
+
+    fn collect(
+        &mut self,
+        what: &'p Internal,
+        formula: &'p Context,
+        template: Option<&'p hrdsl_ir::Expr>,
+        at: At,
+    ) -> u32 {
+        self.choose(Way::Collection { start: self.collected.len(), what }, at);
+        let end = self.push(Cont::Collected(template), at);
+        self.push(Cont::Goals(std::slice::from_ref(formula)), At { next: end, ..at })
+    }
+
+    pub(super) fn member(&mut self, element: &'p Term, mut list: List, at: At) -> Result<Option<u32>, Fault> {
+        while let Some((head, rest)) = list.split() {
+            let mark = self.trail.len();
+            if self.matches(element, head, at)? {
+                if !rest.is_empty() {
+                    self.choose(Way::Member { element, rest }, at);
+                    if let Some(choice) = self.choices.last_mut() {
+                        choice.trail = mark as u32;
+                    }
+                }
+                return Ok(Some(at.next));
+            }
+            undo(&mut self.slots, &mut self.trail, mark);
+            list = rest;
+        }
+        Ok(None)
+    }
+
+    pub(super) fn gathered(
+        &mut self,
+        start: usize,
+        what: &'p Internal,
+        at: At,
+    ) -> Result<Option<u32>, Fault> {
+        let mut all: Vec<Value> = self.collected.drain(start..).collect();
+        let (out, value) = match what {
+            Internal::FindAll { set, out, .. } => {
+                if *set {
+                    all.sort_by(|a, b| order(*a, *b));
+                    all.dedup_by(|a, b| same(*a, *b));
+                }
+                (out, Value::List(List::of(&all)))
+            }
+            Internal::Count { out, .. } => (out, Value::Int(all.len() as i64)),
+            // INVARIANT: only these two collect.
+            Internal::Member { .. }
+            | Internal::Apply { .. }
+            | Internal::Holds { .. }
+            | Internal::Intend { .. }
+            | Internal::Desire { .. }
+            | Internal::Suspended { .. }
+            | Internal::Random { .. }
+            | Internal::Shuffle { .. }
+            | Internal::Time { .. }
+            | Internal::MyName { .. }
+            | Internal::AllNames { .. } => return Ok(None),
+        };
+        Ok(self.matches(out, value, at)?.then_some(at.next))
+    }
+}
