@@ -85,6 +85,22 @@ fn a_livelock_is_an_error_and_its_log_is_folded() {
     assert_eq!(end["agents"][0]["beliefs"][1], "dizzy[source(self)]");
 }
 
+/// The sets are those that the suite tries, also if its choices have conditions.
+#[test]
+fn a_set_is_one_that_the_conditions_allow() {
+    let picky = include_str!("reasoning/scenario.hri").replace(
+        "choose one hungry of Guest\n  choose any",
+        "choose one hungry of Guest where hungry(C) && C > 1\n  choose any",
+    );
+    let here = folder(&[("scenario.hri", &picky)]);
+    let out = hrdsl_in(here.path(), "inspect scenario.hri meals --set 1 --end");
+    assert!(stdout(&out).contains("beliefs: hungry(2)\n"), "{}", stdout(&out));
+    let listed = hrdsl_in(here.path(), "inspect scenario.hri");
+    expect_code(&listed, 2);
+    let text = stdout(&listed) + &stderr(&listed);
+    assert!(text.contains("meals: 4 of 6 belief sets"), "{text}");
+}
+
 #[test]
 fn the_bound_of_cycles_is_an_error_too() {
     let spin = include_str!("reasoning/scenario.hri").replace(

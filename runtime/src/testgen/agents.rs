@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_bdi::{
-    choose::{BeliefSet, Explorer, explore, factors},
+    choose::{BeliefSet, Explorer, factors},
     coverage::Team,
     measure::Measured,
 };
@@ -29,13 +29,10 @@ const WARNINGS: usize = 20;
 /// # Errors
 /// A choice that has no alternatives, or a model that cannot be run.
 pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<Harvest, String> {
-    let Method::Agents { players, choose, explore, stop_after, goals, minimise: _ } = &suite.method else {
-        return Err(format!("suite `{}` is not by agents", suite.name));
+    let Method::Agents { players, stop_after, goals, .. } = &suite.method else {
+        return Err(not_by_agents(suite));
     };
-    let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
-    let ids: Vec<AgentId> = agents(program, players).into_iter().map(|(id, _)| id).collect();
-    let mut explorer = Explorer::of(program, &ids, choose, &factors, (*explore, count, seed))
-        .map_err(|e| format!("suite `{}`: {e}", suite.name))?;
+    let mut explorer = explorer(program, suite, count, seed)?;
     let awaits = extract::Awaits::of(program, players);
     let goals = Goals::of(program, players, goals);
     let model = Model { program, suite, players, awaits, goals: &goals, seed };
@@ -49,6 +46,26 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         explorer.learn(&rewards);
     }
     Ok(sum.harvest(&model, &explorer))
+}
+
+fn not_by_agents(suite: &Suite) -> String {
+    format!("suite `{}` is not by agents", suite.name)
+}
+
+/// What a suite by agents tries, within the conditions of its choices: whoever speaks of a set by its number means these.
+fn explorer<'p>(
+    program: &'p Program,
+    suite: &'p Suite,
+    count: u32,
+    seed: u64,
+) -> Result<Explorer<'p>, String> {
+    let Method::Agents { players, choose, explore, .. } = &suite.method else {
+        return Err(not_by_agents(suite));
+    };
+    let fault = |e| format!("suite `{}`: {e}", suite.name);
+    let factors = factors(program, choose).map_err(fault)?;
+    let ids: Vec<AgentId> = agents(program, players).into_iter().map(|(id, _)| id).collect();
+    Explorer::of(program, &ids, choose, &factors, (*explore, count, seed)).map_err(fault)
 }
 
 /// Runs the agents with each set, all at once, and adds up what that brought, in the order of the sets.
@@ -79,11 +96,10 @@ pub fn belief_set(
     seed: u64,
     number: u64,
 ) -> Result<BeliefSet, String> {
-    let Method::Agents { players, choose, explore, stop_after, goals, minimise: _ } = &suite.method else {
-        return Err(format!("suite `{}` is not by agents", suite.name));
+    let Method::Agents { players, explore, stop_after, goals, .. } = &suite.method else {
+        return Err(not_by_agents(suite));
     };
-    let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
-    let mut explorer = Explorer::new(&factors, *explore, count.unwrap_or(suite.tests), seed);
+    let mut explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
     let awaits = extract::Awaits::of(program, players);
     let goals = Goals::of(program, players, goals);
     let model = Model { program, suite, players, awaits, goals: &goals, seed };
@@ -117,12 +133,8 @@ pub fn how_many_sets(
     count: Option<u32>,
     seed: u64,
 ) -> Result<(usize, u128), String> {
-    let Method::Agents { choose, explore: how, .. } = &suite.method else {
-        return Err(format!("suite `{}` is not by agents", suite.name));
-    };
-    let factors = factors(program, choose).map_err(|e| format!("suite `{}`: {e}", suite.name))?;
-    let explored = explore(&factors, *how, count.unwrap_or(suite.tests), seed);
-    Ok((explored.sets.len(), explored.space))
+    let explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
+    Ok((explorer.left(), explorer.space))
 }
 
 /// What is the same for all runs.

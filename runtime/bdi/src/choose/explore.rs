@@ -193,6 +193,15 @@ impl<'a> Explorer<'a> {
         Ok(Self { space: whole, cut: found.cut, notes, source: Source::Fixed(sets) })
     }
 
+    /// How many sets are left, at most.
+    #[must_use]
+    pub fn left(&self) -> usize {
+        match &self.source {
+            Source::Fixed(sets) => sets.len(),
+            Source::Learner(learner) => learner.left(),
+        }
+    }
+
     /// The next sets, at most [`BATCH`]; none at the end.
     pub fn next_batch(&mut self) -> Vec<BeliefSet> {
         match &mut self.source {

@@ -73,10 +73,15 @@ impl<'a> Learner<'a> {
         Self { rng, space: Some(space), ..Self::new(factors, wanted, 0) }
     }
 
+    /// How many sets are left, at most.
+    #[must_use]
+    pub fn left(&self) -> usize {
+        self.wanted.saturating_sub(self.seen.len())
+    }
+
     /// The next sets, at most [`BATCH`]; none when there are as many as were wanted.
     pub fn next_batch(&mut self) -> Vec<BeliefSet> {
-        let left = self.wanted.saturating_sub(self.seen.len());
-        self.rows = (0..left.min(BATCH)).map_while(|_| self.new_row()).collect();
+        self.rows = (0..self.left().min(BATCH)).map_while(|_| self.new_row()).collect();
         self.rows.iter().map(|row| belief_set(&self.factors, row)).collect()
     }
 
