@@ -262,6 +262,17 @@ impl BeliefBase {
     }
 }
 
+/// The annotations of a fact that this way picks for as many terms: the last term's changes fastest. There are
+/// `held ^ terms` ways.
+pub(crate) fn picked(mut way: usize, held: usize, terms: usize) -> SmallVec<[usize; 4]> {
+    let mut picked = SmallVec::from_elem(0, terms);
+    for place in picked.iter_mut().rev() {
+        *place = way % held;
+        way /= held;
+    }
+    picked
+}
+
 /// `[source(self)]`
 pub(crate) fn own() -> Annotations {
     from(Value::Symbol(source_self()))

@@ -15,7 +15,7 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{Annotations, Cursor},
+    belief::{Annotations, Cursor, picked},
     dice::Dice,
     mind::Mind,
     unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
@@ -364,14 +364,10 @@ impl<'p> Solver<'p> {
         &mut self,
         literal: &Literal,
         of: &Annotations,
-        mut way: usize,
+        way: usize,
         at: At,
     ) -> Result<bool, EvalError> {
-        let mut picked = vec![0; literal.annotations.len()];
-        for place in picked.iter_mut().rev() {
-            *place = way % of.len();
-            way /= of.len();
-        }
+        let picked = picked(way, of.len(), literal.annotations.len());
         for ((what, term), place) in literal.annotations.iter().zip(picked) {
             let (held, value) = of[place];
             if held != *what || !self.matches(term, value, at)? {

@@ -8,7 +8,7 @@ use hrdsl_ir::{
 
 use crate::{
     Detail, Logged, Verdict,
-    belief::{Annotations, from, own},
+    belief::{Annotations, from, own, picked},
     cycle::Machine,
     event::Event,
     query::{Fault, Solver},
@@ -125,13 +125,9 @@ impl<'p> Machine<'p> {
         let terms = &plan.trigger.annotations;
         let before: Vec<Slot> = self.solver.slots.clone();
         let mut verdict = Verdict::Unlike;
-        'ways: for mut way in 0..held.len().saturating_pow(terms.len() as u32) {
+        'ways: for way in 0..held.len().saturating_pow(terms.len() as u32) {
             self.solver.with(&before);
-            let mut picked = vec![0; terms.len()];
-            for place in picked.iter_mut().rev() {
-                *place = way % held.len();
-                way /= held.len();
-            }
+            let picked = picked(way, held.len(), terms.len());
             for ((what, term), at) in terms.iter().zip(picked) {
                 let (kind, value) = held[at];
                 let Solver { slots, trail, .. } = &mut self.solver;
