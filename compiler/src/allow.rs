@@ -142,6 +142,9 @@ fn members<'a>(item: &'a Item, all: &mut Vec<Allowance<'a>>) {
         | ItemKind::Event(_)
         | ItemKind::Stimulus(_)
         | ItemKind::Var(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Query(_)
         | ItemKind::Network { .. }
         | ItemKind::Require(_)
         | ItemKind::Assume(_)

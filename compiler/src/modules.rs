@@ -99,6 +99,9 @@ fn only_in_scenario(kind: &ItemKind) -> Option<&'static str> {
         | ItemKind::Agent(_)
         | ItemKind::Var(_)
         | ItemKind::Automaton(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Query(_)
         | ItemKind::Network { .. }
         | ItemKind::Require(_)
         | ItemKind::Assume(_)

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{List, Value, list};
+use crate::{List, Value, list, ta::FunctionId};
 
 /// An expression over constants and the variables of its context.
 ///
@@ -22,6 +22,58 @@ pub enum Expr {
     Call(Function, Vec<Expr>),
     /// `[a, b | rest]`; without a rest, of just these elements.
     List(Vec<Expr>, Option<Box<Expr>>),
+    /// An element of an array of variables. Automata only.
+    Element(Box<Place>),
+    /// A function of automata, applied: see [`ta::Function`](crate::ta::Function).
+    Apply(FunctionId, Vec<Expr>),
+}
+
+/// A variable, perhaps one that indices choose among several: `slot + Σ at · stride`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Place {
+    /// The variable, or the first of the array.
+    pub slot: u16,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub indices: Vec<Index>,
+}
+
+impl Place {
+    #[must_use]
+    pub fn slot(slot: u16) -> Self {
+        Self { slot, indices: Vec::new() }
+    }
+}
+
+/// One index of a place: less than `count` and not negative, or there is no such element, which is an error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Index {
+    pub at: Expr,
+    pub count: u16,
+    pub stride: u16,
+}
+
+/// What an expression's variables and functions mean.
+pub trait Scope {
+    /// The value of a variable, if it has one.
+    fn var(&self, slot: u16) -> Option<Value>;
+
+    /// The value of a function.
+    ///
+    /// # Errors
+    /// Of its body; `Type` if there are no functions here.
+    fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        let _ = (function, args);
+        Err(EvalError::Type)
+    }
+}
+
+/// Variables alone.
+struct Vars<'a>(&'a dyn Fn(u16) -> Option<Value>);
+
+impl Scope for Vars<'_> {
+    fn var(&self, slot: u16) -> Option<Value> {
+        (self.0)(slot)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -67,6 +119,15 @@ pub enum EvalError {
     Unbound(u16),
     DivisionByZero,
     Overflow,
+    /// An index that is no element of its array, which has `count`.
+    Index {
+        at: i64,
+        count: u16,
+    },
+    /// A function that does not end within [`STEPS`](crate::ta) statements.
+    Endless,
+    /// A value outside the range of a local variable or parameter of a function.
+    Range(i64),
     /// An operand of the wrong type: a fault of whoever made the expression, since the checker rules it out.
     Type,
 }
@@ -77,6 +138,9 @@ impl fmt::Display for EvalError {
             EvalError::Unbound(v) => write!(f, "variable {v} has no value"),
             EvalError::DivisionByZero => f.write_str("division by zero"),
             EvalError::Overflow => f.write_str("integer overflow"),
+            EvalError::Index { at, count } => write!(f, "index {at} is none of 0..{}", i32::from(*count) - 1),
+            EvalError::Endless => f.write_str("a function does not end"),
+            EvalError::Range(n) => write!(f, "{n} is outside the range of a variable of a function"),
             EvalError::Type => f.write_str("operand of the wrong type"),
         }
     }
@@ -114,41 +178,58 @@ impl Expr {
     /// # Errors
     /// See [`EvalError`].
     pub fn eval(&self, var: &dyn Fn(u16) -> Option<Value>) -> Result<Value, EvalError> {
+        self.eval_in(&Vars(var))
+    }
+
+    /// As [`eval`](Self::eval), where there may be functions, too.
+    ///
+    /// # Errors
+    /// See [`EvalError`].
+    pub fn eval_in(&self, scope: &dyn Scope) -> Result<Value, EvalError> {
         match self {
             Expr::Const(v) => Ok(*v),
-            Expr::Var(i) => var(*i).ok_or(EvalError::Unbound(*i)),
-            Expr::Unary(op, a) => unary(*op, a.eval(var)?),
+            Expr::Var(i) => scope.var(*i).ok_or(EvalError::Unbound(*i)),
+            Expr::Unary(op, a) => unary(*op, a.eval_in(scope)?),
             Expr::Binary(BinaryOp::And, a, b) => {
-                if boolean(a.eval(var)?)? {
-                    b.eval(var)
+                if boolean(a.eval_in(scope)?)? {
+                    b.eval_in(scope)
                 } else {
                     Ok(Value::Bool(false))
                 }
             }
             Expr::Binary(BinaryOp::Or, a, b) => {
-                if boolean(a.eval(var)?)? {
+                if boolean(a.eval_in(scope)?)? {
                     Ok(Value::Bool(true))
                 } else {
-                    b.eval(var)
+                    b.eval_in(scope)
                 }
             }
-            Expr::Binary(op, a, b) => binary(*op, a.eval(var)?, b.eval(var)?),
+            Expr::Binary(op, a, b) => binary(*op, a.eval_in(scope)?, b.eval_in(scope)?),
             Expr::If(c, a, b) => {
-                if boolean(c.eval(var)?)? {
-                    a.eval(var)
+                if boolean(c.eval_in(scope)?)? {
+                    a.eval_in(scope)
                 } else {
-                    b.eval(var)
+                    b.eval_in(scope)
                 }
             }
             Expr::Call(f, args) => {
-                let args: Vec<Value> = args.iter().map(|a| a.eval(var)).collect::<Result<_, _>>()?;
+                let args: Vec<Value> = args.iter().map(|a| a.eval_in(scope)).collect::<Result<_, _>>()?;
                 call(*f, &args)
             }
             Expr::List(elements, rest) => {
-                let elements: Vec<Value> = elements.iter().map(|e| e.eval(var)).collect::<Result<_, _>>()?;
-                let rest = rest.as_ref().map_or(Ok(Value::List(List::EMPTY)), |r| r.eval(var))?;
+                let elements: Vec<Value> =
+                    elements.iter().map(|e| e.eval_in(scope)).collect::<Result<_, _>>()?;
+                let rest = rest.as_ref().map_or(Ok(Value::List(List::EMPTY)), |r| r.eval_in(scope))?;
                 let rest = rest.as_list().ok_or(EvalError::Type)?;
                 Ok(Value::List(elements.iter().rev().fold(rest, |rest, e| List::cons(*e, rest))))
+            }
+            Expr::Element(place) => {
+                let slot = place.resolve(scope)?;
+                scope.var(slot).ok_or(EvalError::Unbound(slot))
+            }
+            Expr::Apply(function, args) => {
+                let args: Vec<Value> = args.iter().map(|a| a.eval_in(scope)).collect::<Result<_, _>>()?;
+                scope.apply(*function, &args)
             }
         }
     }
@@ -173,7 +254,37 @@ impl Expr {
                 elements.iter().for_each(|e| e.each_var(f));
                 rest.iter().for_each(|r| r.each_var(f));
             }
+            Expr::Element(place) => place.each_var(f),
+            Expr::Apply(_, args) => args.iter().for_each(|a| a.each_var(f)),
         }
+    }
+}
+
+impl Place {
+    /// The slot that the indices choose.
+    ///
+    /// # Errors
+    /// Of the indices' expressions; `Index` if there is no such element.
+    pub fn resolve(&self, scope: &dyn Scope) -> Result<u16, EvalError> {
+        let mut slot = self.slot;
+        for index in &self.indices {
+            let at = index.at.eval_in(scope)?.as_int().ok_or(EvalError::Type)?;
+            match u16::try_from(at) {
+                Ok(n) if n < index.count => slot += n * index.stride,
+                Ok(_) | Err(_) => return Err(EvalError::Index { at, count: index.count }),
+            }
+        }
+        Ok(slot)
+    }
+
+    /// Calls `f` with each variable that it may stand for, and those that its indices read.
+    pub fn each_var(&self, f: &mut dyn FnMut(u16)) {
+        let mut slots = vec![self.slot];
+        for index in &self.indices {
+            index.at.each_var(f);
+            slots = slots.iter().flat_map(|s| (0..index.count).map(move |n| s + n * index.stride)).collect();
+        }
+        slots.into_iter().for_each(f);
     }
 }
 

@@ -39,8 +39,17 @@ pub struct Program {
     pub contents: Vec<bdi::Content>,
     /// Variables that all automata share.
     pub shared: Vec<ta::Var>,
+    /// Clocks that all automata share.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub channels: Vec<ta::Channel>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub functions: Vec<ta::Function>,
     pub automata: Vec<ta::Automaton>,
     pub networks: Vec<ta::Network>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub queries: Vec<ta::Query>,
     /// Sensors and every numeric or boolean term over the world that a requirement reads.
     pub signals: Vec<world::Signal>,
     pub monitors: Vec<monitor::Monitor>,

@@ -37,7 +37,14 @@ pub enum Method {
         minimise: bool,
     },
     /// Model-check the network for each goal and take the witnesses' stimuli.
-    Search { network: u16, goals: Vec<SearchGoal> },
+    Search {
+        network: u16,
+        goals: Vec<SearchGoal>,
+        #[serde(default)]
+        witness: WitnessKind,
+        #[serde(default)]
+        delays: Delays,
+    },
     /// Draw stimuli, waits and pauses at random.
     Random {
         stimuli: Vec<EventId>,
@@ -127,4 +134,38 @@ pub enum SearchGoal {
     Locations,
     /// `reach each edge`
     Edges,
+    /// `reach each pair`: two edges of one automaton, one after the other
+    Pairs,
+    /// `reach each use`: an edge that assigns a variable, and one that reads it with no assignment between
+    Uses,
+    /// `reach violation of R`; an index into [`Program::monitors`](crate::Program::monitors)
+    Violation { monitor: u16 },
+    /// `reach trigger of R`
+    Trigger { monitor: u16 },
+    /// `reach query q`: an index into [`Program::queries`](crate::Program::queries), of one that asks `E<>`
+    Query { query: u16 },
+}
+
+/// Which witness of a goal is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WitnessKind {
+    /// The first that is found.
+    Any,
+    /// One with as few transitions as any.
+    #[default]
+    Shortest,
+    /// One that ends as early as any.
+    Fastest,
+}
+
+/// When the transitions of a witness happen, among the times at which they can.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Delays {
+    #[default]
+    Earliest,
+    Latest,
+    /// Drawn from the seed.
+    Sampled,
 }

@@ -1,8 +1,8 @@
-//! Timed automata, after Alur and Dill, with UPPAAL's committed and urgent locations and broadcast synchronisation.
+//! Timed automata, after Alur and Dill, with UPPAAL's locations, channels, variables and functions.
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, ArgPattern, Enumeration, EventId, Expr, Nanos, Span, Value};
+use crate::{ActorId, ArgPattern, Enumeration, EventId, Expr, Nanos, Span, Value, expr::Place};
 
 /// Index into [`Program::automata`](crate::Program::automata).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -12,9 +12,17 @@ pub struct AutomatonId(pub u16);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct LocationId(pub u16);
 
-/// Index into [`Automaton::clocks`].
+/// A clock as an automaton numbers it: the program's shared clocks first, then its own ([`Automaton::clocks`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ClockId(pub u16);
+
+/// Index into [`Program::channels`](crate::Program::channels).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct ChannelId(pub u16);
+
+/// Index into [`Program::functions`](crate::Program::functions).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct FunctionId(pub u16);
 
 /// A network: the parallel product of automata.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,8 +86,8 @@ impl Var {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Automaton {
     pub name: String,
-    /// The actor it plays: it can only send this actor's events.
-    pub actor: ActorId,
+    /// The actor it plays: it can only send this actor's events. `None`: it sends and takes no events, only channels.
+    pub actor: Option<ActorId>,
     pub clocks: Vec<String>,
     pub vars: Vec<Var>,
     pub locations: Vec<Location>,
@@ -92,8 +100,11 @@ pub struct Automaton {
 pub struct Location {
     pub name: String,
     pub kind: LocationKind,
-    /// A conjunction; upper bounds on clocks.
+    /// A conjunction of bounds on clocks.
     pub invariant: Vec<ClockConstraint>,
+    /// The part of the invariant over variables.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds: Option<Expr>,
     pub origin: Span,
 }
 
@@ -108,12 +119,37 @@ pub enum LocationKind {
 }
 
 /// `clock - minus op bound`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClockConstraint {
     pub clock: ClockId,
     pub minus: Option<ClockId>,
     pub op: ClockOp,
-    pub bound: Nanos,
+    pub bound: Time,
+}
+
+/// A time that variables may have a part in: `nanos + Σ factor · value`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    pub nanos: Nanos,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<TimeTerm>,
+}
+
+impl Time {
+    pub const ZERO: Time = Time { nanos: 0, terms: Vec::new() };
+
+    #[must_use]
+    pub fn constant(nanos: Nanos) -> Self {
+        Self { nanos, terms: Vec::new() }
+    }
+}
+
+/// `factor · value`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimeTerm {
+    pub factor: Nanos,
+    /// An integer.
+    pub value: Expr,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -141,7 +177,8 @@ pub struct Edge {
     pub origin: Span,
 }
 
-/// Events are broadcast: the sender never waits, each automaton with an enabled receiving edge takes part.
+/// How an edge takes part in a transition. Events are broadcast: the sender never waits, each automaton with an enabled
+/// receiving edge takes part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sync {
@@ -154,6 +191,20 @@ pub enum Sync {
     Receive {
         event: EventId,
         args: Vec<ReceiveArg>,
+    },
+    /// `c!` of a hand-shake or broadcast channel.
+    Offer {
+        channel: ChannelId,
+        args: Vec<Expr>,
+    },
+    /// `c?` of a hand-shake or broadcast channel.
+    Accept {
+        channel: ChannelId,
+        args: Vec<ReceiveArg>,
+    },
+    /// Its automaton's part in a joint channel.
+    Join {
+        channel: ChannelId,
     },
 }
 
@@ -170,12 +221,159 @@ pub enum ReceiveArg {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Update {
-    /// `slot` counts as `Expr::Var` does: shared variables, then own ones. Leaving the range is a model error.
+    /// Slots count as `Expr::Var` does: shared variables, then own ones. Leaving the range is a model error.
+    Assign { place: Place, value: Expr },
+    /// The clock becomes `from + to`; without `from`, just `to`. A negative value is a model error.
+    Reset { clock: ClockId, from: Option<ClockId>, to: Time },
+    /// Calls an update function.
+    Call { function: FunctionId, args: Vec<Expr> },
+}
+
+impl Update {
+    /// Sets a clock to zero.
+    #[must_use]
+    pub fn zero(clock: ClockId) -> Self {
+        Update::Reset { clock, from: None, to: Time::ZERO }
+    }
+}
+
+/// A medium between automata. Each combination of arguments is a channel of its own, as an element of UPPAAL's arrays is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    pub name: String,
+    pub kind: ChannelKind,
+    /// Time does not pass while a transition over it is possible. Its edges have no clock guards, except those that accept
+    /// a broadcast.
+    pub urgent: bool,
+    /// Of finite types; the `init` has no meaning. None, if the channel is joint.
+    pub params: Vec<Var>,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelKind {
+    /// One edge that offers and one of another automaton that accepts, together.
+    HandShake,
+    /// One edge that offers, and of each other automaton that can one that accepts.
+    Broadcast,
+    /// An edge of each of these automata at once, their updates in this order; if all are optional, at least one's.
+    Joint(Vec<Party>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Party {
+    pub automaton: AutomatonId,
+    /// It takes part if it can (TChecker's weak synchronisation); otherwise nobody can without it.
+    pub optional: bool,
+}
+
+/// A function of automata.
+///
+/// In its body `Expr::Var(i)` is, in order: the program's shared variables, the owner's own variables if it has an owner,
+/// the parameters, the locals. Locals start with their `init`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Function {
+    pub name: String,
+    /// The automaton whose variables it knows.
+    pub owner: Option<AutomatonId>,
+    pub params: Vec<Var>,
+    pub locals: Vec<Var>,
+    /// The type of its value, as that of a variable; its `init` has no meaning. `None`: it is for its effect.
+    pub result: Option<Var>,
+    /// It assigns nothing but its parameters and locals, nor does what it calls.
+    pub pure: bool,
+    pub body: Vec<Statement>,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statement {
     Assign {
-        slot: u16,
+        place: Place,
         value: Expr,
     },
-    Reset {
-        clock: ClockId,
+    Call {
+        function: FunctionId,
+        args: Vec<Expr>,
     },
+    If {
+        condition: Expr,
+        then: Vec<Statement>,
+        otherwise: Vec<Statement>,
+    },
+    While {
+        condition: Expr,
+        body: Vec<Statement>,
+    },
+    /// For each number from `lo` to `hi`, both evaluated once; `slot` is a local.
+    For {
+        slot: u16,
+        lo: Expr,
+        hi: Expr,
+        body: Vec<Statement>,
+    },
+    Return(Option<Expr>),
+}
+
+// ── Queries ──
+
+/// A question about a network, after UPPAAL's query language.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Query {
+    pub name: String,
+    pub title: String,
+    /// The formal part as written in the source.
+    pub text: String,
+    /// Index into [`Program::networks`](crate::Program::networks).
+    pub network: u16,
+    pub ask: Ask,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ask {
+    /// `E<> f`: some run reaches it.
+    Possibly(Formula),
+    /// `A[] f`: no run leaves it.
+    Invariantly(Formula),
+    /// `E[] f`: some maximal run stays in it.
+    PotentiallyAlways(Formula),
+    /// `A<> f`: every maximal run reaches it.
+    Eventually(Formula),
+    /// `f --> g`: `A[] (f imply A<> g)`
+    LeadsTo(Formula, Formula),
+    /// The least upper bound of each measure where the formula holds.
+    Sup { of: Vec<Measure>, when: Formula },
+    /// The greatest lower bound.
+    Inf { of: Vec<Measure>, when: Formula },
+}
+
+/// A formula over a network's states. Automata are given by their index in the network; clocks are numbered with the
+/// shared ones first, then each automaton's own, in the network's order; so are variables in expressions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Formula {
+    At {
+        automaton: u16,
+        location: LocationId,
+    },
+    /// A boolean expression.
+    Data(Expr),
+    Clock(ClockConstraint),
+    /// No transition is possible, now or after any delay.
+    Deadlock,
+    Not(Box<Formula>),
+    And(Vec<Formula>),
+    Or(Vec<Formula>),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    Clock(ClockId),
+    /// An integer.
+    Data(Expr),
 }

@@ -3,7 +3,10 @@
 use hrdsl_ir::{
     EventId,
     bdi::{AgentId, BeliefId},
-    suite::{Choice, ChoiceKind, Condition, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite},
+    suite::{
+        Choice, ChoiceKind, Condition, Delays, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite,
+        WitnessKind,
+    },
     ta::AutomatonId,
     value::nanos,
 };
@@ -37,9 +40,12 @@ fn method(m: &model::Method) -> Method {
             goals: goals.iter().map(|g| model_goal(*g)).collect(),
             minimise: *minimise,
         },
-        model::Method::Search { network, goals } => {
-            Method::Search { network: network.0, goals: goals.iter().map(|g| goal(*g)).collect() }
-        }
+        model::Method::Search { network, goals } => Method::Search {
+            network: network.0,
+            goals: goals.iter().map(|g| goal(*g)).collect(),
+            witness: WitnessKind::default(),
+            delays: Delays::default(),
+        },
         model::Method::Random { stimuli, awaits, length, pause } => Method::Random {
             stimuli: stimuli.iter().map(|e| EventId(e.0)).collect(),
             awaits: patterns(awaits),

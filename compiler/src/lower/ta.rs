@@ -2,9 +2,10 @@
 
 use hrdsl_ir::{
     ActorId, ArgPattern, EventId, Expr, Span, Type,
+    expr::Place,
     ta::{
         Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
-        Network, ReceiveArg, Sync, Update, Var,
+        Network, ReceiveArg, Sync, Time, Update, Var,
     },
     value::nanos,
 };
@@ -49,7 +50,7 @@ fn bounded(name: &str, ty: model::Type) -> Var {
 pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Automaton {
     let mut lowered = Automaton {
         name: a.name.clone(),
-        actor: ActorId(a.actor.0),
+        actor: Some(ActorId(a.actor.0)),
         clocks: a.clocks.clone(),
         vars: a.vars.iter().map(var).collect(),
         locations: a.locations.iter().map(location).collect(),
@@ -79,7 +80,7 @@ fn location(l: &model::Location) -> Location {
         ast::LocationKind::Urgent => LocationKind::Urgent,
         ast::LocationKind::Committed => LocationKind::Committed,
     };
-    Location { name: l.name.clone(), kind, invariant: bounds(&l.invariant), origin: l.span }
+    Location { name: l.name.clone(), kind, invariant: bounds(&l.invariant), holds: None, origin: l.span }
 }
 
 fn bounds(cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
@@ -93,7 +94,7 @@ fn bounds(cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
             model::ClockOp::Ge => ClockOp::Ge,
             model::ClockOp::Gt => ClockOp::Gt,
         },
-        bound: nanos(c.bound),
+        bound: Time::constant(nanos(c.bound)),
     };
     cs.iter().map(bound).collect()
 }
@@ -222,12 +223,12 @@ impl Slots {
         };
         let update = |u: &model::Update| match u {
             model::Update::Shared(i, v) => {
-                Update::Assign { slot: self.slot(Leaf::Shared(*i)), value: self.expr(v) }
+                Update::Assign { place: Place::slot(self.slot(Leaf::Shared(*i))), value: self.expr(v) }
             }
             model::Update::Own(i, v) => {
-                Update::Assign { slot: self.slot(Leaf::Own(*i)), value: self.expr(v) }
+                Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
             }
-            model::Update::Reset(clock) => Update::Reset { clock: ClockId(clock.0) },
+            model::Update::Reset(clock) => Update::zero(ClockId(clock.0)),
         };
         Edge {
             from: LocationId(e.from.0),
@@ -334,9 +335,10 @@ impl Slots {
             .iter()
             .zip(&chain.args)
             .filter_map(|(arg, after)| match after {
-                After::Kept(own) => {
-                    Some(Update::Assign { slot: self.slot(Leaf::Own(*own)), value: arg.clone() })
-                }
+                After::Kept(own) => Some(Update::Assign {
+                    place: Place::slot(self.slot(Leaf::Own(*own))),
+                    value: arg.clone(),
+                }),
                 After::Const(_) | After::Unused => None,
             })
             .collect();
@@ -348,7 +350,7 @@ impl Slots {
         let back = |own: u16| {
             let var = &lowered.vars[usize::from(own)];
             let value = Expr::Const(var.value(var.init).unwrap_or(hrdsl_ir::Value::Int(var.init)));
-            Update::Assign { slot: self.slot(Leaf::Own(own)), value }
+            Update::Assign { place: Place::slot(self.slot(Leaf::Own(own))), value }
         };
         let kept = |a: &After| if let After::Kept(own) = a { Some(*own) } else { None };
         chain.args.iter().filter_map(kept).map(back).collect()
@@ -362,6 +364,7 @@ fn intermediate(lowered: &mut Automaton, stem: &str, origin: Span) -> LocationId
         name: format!("{stem}{}", taken + 1),
         kind: LocationKind::Committed,
         invariant: Vec::new(),
+        holds: None,
         origin,
     });
     LocationId(count(lowered.locations.len() - 1))

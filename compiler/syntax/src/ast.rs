@@ -75,6 +75,12 @@ pub enum ItemKind {
     /// `var away: bool = false`: shared by all automata
     Var(Var),
     Automaton(Automaton),
+    /// `channel take(fork: 0..4), free : urgent`
+    Channel(Channel),
+    /// `fn front() -> 0..5 { return queue[0] }`
+    Function(Function),
+    /// `query live of table = Person.asked --> Person.shown`
+    Query(Query),
     /// `network table = Person | Robot`
     Network {
         name: Name,
@@ -526,7 +532,8 @@ pub struct Var {
 pub struct Automaton {
     pub name: Name,
     pub params: Option<Vec<Param>>,
-    pub plays: Name,
+    /// `None`: it knows no events, only channels.
+    pub plays: Option<Name>,
     pub members: Vec<AutomatonMember>,
 }
 
@@ -551,6 +558,8 @@ pub enum AutomatonMemberKind {
         invariant: Option<Expr>,
     },
     Edge(Edge),
+    /// A function that knows the automaton's variables.
+    Function(Function),
     Allow(Allow),
     Error,
 }
@@ -584,7 +593,7 @@ pub struct EdgeAction {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeActionKind {
-    /// An event or stimulus of the automaton's actor; at most one for an edge.
+    /// An event or stimulus of the automaton's actor, or a channel; at most one for an edge. Or an update function.
     Send(Call),
     /// `left = left - 1`, `x = 0` (a clock), `left -= 1`, `seen[i].ok = true`
     Assign { target: Name, access: Vec<Access>, op: Option<BinaryOp>, value: Expr },
@@ -598,6 +607,109 @@ pub enum Access {
     Index(Expr),
     /// `.x`
     Field(Name),
+}
+
+/// `channel take(fork: 0..4), free : urgent broadcast`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Channel {
+    pub names: Vec<EventName>,
+    pub urgent: bool,
+    pub kind: ChannelKind,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelKind {
+    HandShake,
+    /// `: broadcast`
+    Broadcast,
+    /// `: joint P | Q | R?`
+    Joint(Vec<Party>),
+}
+
+/// An automaton that has a part in a joint channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Party {
+    pub automaton: Name,
+    /// `?`: takes part if it can
+    pub optional: bool,
+}
+
+/// `fn front() -> 0..5 { return queue[0] }`; without a result, an update function
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Function {
+    pub name: Name,
+    pub params: Vec<Param>,
+    pub result: Option<TypeExpr>,
+    pub body: Vec<Statement>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statement {
+    pub kind: StatementKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StatementKind {
+    /// `var i: 0..5 = 0`
+    Var(Var),
+    /// `queue[len] = e`
+    Assign {
+        target: Name,
+        access: Vec<Access>,
+        op: Option<BinaryOp>,
+        value: Expr,
+    },
+    /// An update function.
+    Call(Call),
+    If {
+        condition: Expr,
+        then: Vec<Statement>,
+        otherwise: Vec<Statement>,
+    },
+    While {
+        condition: Expr,
+        body: Vec<Statement>,
+    },
+    /// `for i in 0..5 { … }`: both ends included
+    For {
+        name: Name,
+        range: Range,
+        body: Vec<Statement>,
+    },
+    Return(Option<Expr>),
+}
+
+/// `query live "title" of table = formula`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Query {
+    pub name: Name,
+    pub title: Option<Text>,
+    pub network: Name,
+    pub ask: Ask,
+    /// Of the formula.
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ask {
+    /// `E<> f`
+    Possibly(Expr),
+    /// `A[] f`
+    Invariantly(Expr),
+    /// `E[] f`
+    PotentiallyAlways(Expr),
+    /// `A<> f`
+    Eventually(Expr),
+    /// `f --> g`
+    LeadsTo(Expr, Expr),
+    /// `sup{f}: x, n`
+    Sup { when: Option<Expr>, of: Vec<Expr> },
+    /// `inf{f}: x, n`
+    Inf { when: Option<Expr>, of: Vec<Expr> },
 }
 
 // ── Requirements ──
@@ -757,6 +869,17 @@ pub enum SuiteMemberKind {
     ReachLocations,
     /// `reach each edge`
     ReachEdges,
+    /// `reach violation of R1, R2`, `reach trigger of R1`
+    ReachOf {
+        what: Name,
+        names: Vec<Name>,
+    },
+    /// `reach query q`
+    ReachQueries(Vec<Name>),
+    /// `witness shortest`
+    Witness(Name),
+    /// `delays earliest`
+    Delays(Name),
     /// `stimuli a, b`
     Stimuli(Vec<Name>),
     /// `await a`: a wait for an event, drawn like a stimulus

@@ -3,9 +3,10 @@
 use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use crate::ast::{
-    Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, CrossMember, Edge,
-    EdgeAction, Expr, ExprKind, Instance, ItemKind, Literal, Name, Param, Path, Range, Sort, Step, StepKind,
-    StimulusStep, SuiteMember, SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
+    Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, Channel,
+    ChannelKind, CrossMember, Edge, EdgeAction, EventName, Expr, ExprKind, Instance, ItemKind, Literal, Name,
+    Param, Party, Path, Range, Sort, Step, StepKind, StimulusStep, SuiteMember, SystemMember, TestMember,
+    Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -51,7 +52,7 @@ macro_rules! small {
     )*};
 }
 
-small!(Name, Path, Text, Call, Literal, Expr, Access);
+small!(Name, Path, Text, Call, Literal, Expr, Access, Party);
 
 /// One of the parts of an edge that may come in any order.
 pub(crate) enum EdgePart {
@@ -278,6 +279,18 @@ impl<'t> Context<'t> {
     pub(crate) fn binary(&self, op: BinaryOp, left: Expr, right: Expr) -> Expr {
         let span = left.span.to(right.span);
         Expr { kind: ExprKind::Binary { op, left: Box::new(left), right: Box::new(right) }, span }
+    }
+
+    /// `not left or right`
+    pub(crate) fn imply(&self, left: Expr, right: Expr) -> Expr {
+        let span = left.span;
+        let left = Expr { kind: ExprKind::Unary { op: UnaryOp::Not, operand: Box::new(left) }, span };
+        self.binary(BinaryOp::Or, left, right)
+    }
+
+    pub(crate) fn channel(&self, names: Vec<EventName>, kind: Option<(bool, ChannelKind)>) -> Channel {
+        let (urgent, kind) = kind.unwrap_or((false, ChannelKind::HandShake));
+        Channel { names, urgent, kind }
     }
 
     pub(crate) fn choice(&self, start: u32, condition: Expr, then: Expr, otherwise: Expr, end: u32) -> Expr {

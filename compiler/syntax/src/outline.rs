@@ -183,7 +183,10 @@ impl Splitter<'_> {
             None => false,
         };
         let belongs = match token.kind {
-            Kind::Var => self.current.is_some_and(|c| c.sort == Sort::Unread || c.head == Kind::Automaton),
+            Kind::Var => self
+                .current
+                .is_some_and(|c| c.sort == Sort::Unread || matches!(c.head, Kind::Automaton | Kind::Fn)),
+            Kind::Fn => self.current.is_some_and(|c| c.sort == Sort::Unread || c.head == Kind::Automaton),
             Kind::Part => self.kind(i + 2) == Some(Kind::Assign),
             Kind::Allow => true,
             _ => false,

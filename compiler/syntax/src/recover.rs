@@ -103,6 +103,8 @@ impl Recovery<'_, '_> {
             (ItemKind::Part(item), _) => item.members = self.members(block),
             (ItemKind::World(item), _) => item.members = self.members(block),
             (ItemKind::System(item), _) => item.members = self.members(block),
+            // The statements of a function are not read one by one: it keeps its name and type.
+            (ItemKind::Function(_), _) => {}
             // Of a list with a fault nothing is kept: its names would be said to be unknown.
             (ItemKind::Enum { .. } | ItemKind::Record { .. }, _) => kind = ItemKind::Error,
             (_, Kind::Stimulus) => drop(self.members::<StimulusStep>(block)),
@@ -384,10 +386,11 @@ members! {
     StimulusStep StimulusStepKind StartStimulusStep [] is_name: Emit | If;
     AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Rule | Goal | Plan | Allow;
     AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
-        Clock | Var | Init | Committed | Urgent | Location | From | Allow;
+        Clock | Var | Fn | Init | Committed | Urgent | Location | From | Allow;
     CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore | Allow;
     SuiteMember SuiteMemberKind StartSuiteMember []:
-        Choose | Explore | Stop | Minimise | Tests | Horizon | Patience | Reach | Stimuli | Await | Length | Pause;
+        Choose | Explore | Stop | Minimise | Witness | Delays | Tests | Horizon | Patience | Reach | Stimuli | Await
+            | Length | Pause;
     TestMember TestMemberKind StartTestMember [] is_name: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
         Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;

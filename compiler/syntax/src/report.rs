@@ -137,8 +137,8 @@ const GROUPS: &[Group] = &[
         if_none: &["IDENT"],
         names: false,
         covers: &[
-            "choose", "explore", "stop", "minimise", "tests", "horizon", "patience", "reach", "stimuli",
-            "await", "length", "pause",
+            "choose", "explore", "stop", "minimise", "witness", "delays", "tests", "horizon", "patience",
+            "reach", "stimuli", "await", "length", "pause",
         ],
         says: &["a line such as `choose` or `tests`"],
     },
@@ -146,7 +146,7 @@ const GROUPS: &[Group] = &[
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
-        covers: &["ORIGIN", "clock", "var", "init", "urgent", "committed", "location", "allow"],
+        covers: &["ORIGIN", "clock", "var", "fn", "init", "urgent", "committed", "location", "allow"],
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
     Group {

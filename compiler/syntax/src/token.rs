@@ -53,6 +53,11 @@ macro_rules! tokens {
             #[token("?")] Question,
             #[token("|")] Pipe,
             #[token("->")] Arrow,
+            #[token("-->")] LongArrow,
+            #[token("E<>")] Possibly,
+            #[token("A[]")] Invariantly,
+            #[token("E[]")] PotentiallyAlways,
+            #[token("A<>")] Eventually,
             #[token("=")] Assign,
             #[token("+=")] PlusAssign,
             #[token("-=")] MinusAssign,
@@ -127,9 +132,12 @@ tokens! {
     Event "event" Head "declaration",
     Stimulus "stimulus" Head "declaration",
     Agent "agent" Head "declaration",
-    Var "var" Head "declaration, automaton",
+    Var "var" Head "declaration, automaton, function",
+    Channel "channel" Head "declaration",
+    Fn "fn" Head "declaration, automaton",
     Automaton "automaton" Head "declaration",
     Network "network" Head "declaration",
+    Query "query" Head "declaration, suite",
     Require "require" Head "declaration",
     Assume "assume" Head "declaration",
     Cover "cover" Head "declaration",
@@ -148,12 +156,14 @@ tokens! {
     Not "not" Hard "expression",
     And "and" Hard "expression, plan",
     Or "or" Hard "expression, list of events, plan",
-    If "if" Hard "expression, stimulus, plan",
-    Else "else" Hard "expression, stimulus, plan",
+    Imply "imply" Hard "expression",
+    If "if" Hard "expression, stimulus, plan, function",
+    Else "else" Hard "expression, stimulus, plan, function",
+    Return "return" Hard "function",
     FromWord "from" Hard "event",
     To "to" Hard "event, signal",
     By "by" Hard "stimulus, suite, world",
-    In "in" Hard "stimulus, world",
+    In "in" Hard "stimulus, world, function",
     Plays "plays" Hard "agent, automaton",
     When "when" Hard "plan, edge, cross, world",
     On "on" Hard "belief, plan, edge, world",
@@ -168,14 +178,17 @@ tokens! {
     Goal "goal" Soft "agent",
     Plan "plan" Soft "agent, suite",
     Rule "rule" Soft "agent",
-    For "for" Soft "plan",
+    For "for" Soft "plan, function",
     Fork "fork" Soft "plan",
     Wait "wait" Soft "plan, test",
     Clock "clock" Soft "automaton",
     Init "init" Soft "automaton",
     Committed "committed" Soft "automaton",
-    Urgent "urgent" Soft "automaton",
+    Urgent "urgent" Soft "automaton, channel",
     Location "location" Soft "automaton, suite",
+    Broadcast "broadcast" Soft "channel",
+    Sup "sup" Soft "query",
+    Inf "inf" Soft "query",
     Invariant "invariant" Soft "automaton",
     Select "select" Soft "edge",
     After "after" Soft "requirement, suite",
@@ -183,7 +196,7 @@ tokens! {
     Forbids "forbids" Soft "requirement",
     Until "until" Soft "requirement",
     Never "never" Soft "requirement",
-    While "while" Soft "requirement, plan",
+    While "while" Soft "requirement, plan, function",
     Globally "globally" Soft "requirement",
     At "at" Soft "assumption, world",
     Most "most" Soft "assumption",
@@ -194,7 +207,7 @@ tokens! {
     Agents "agents" Soft "suite",
     Search "search" Soft "suite",
     Random "random" Soft "suite",
-    Of "of" Soft "suite",
+    Of "of" Soft "suite, query",
     Choose "choose" Soft "suite",
     One "one" Soft "suite",
     AnyWord "any" Soft "suite",
@@ -203,6 +216,8 @@ tokens! {
     Explore "explore" Soft "suite",
     Stop "stop" Soft "suite",
     Minimise "minimise" Soft "suite",
+    Witness "witness" Soft "suite",
+    Delays "delays" Soft "suite",
     Tests "tests" Soft "suite",
     Horizon "horizon" Soft "suite",
     Patience "patience" Soft "suite",
@@ -220,7 +235,7 @@ tokens! {
     Step "step" Soft "world",
     Gravity "gravity" Soft "world",
     Body "body" Soft "world",
-    Joint "joint" Soft "world",
+    Joint "joint" Soft "world, channel",
     Arm "arm" Soft "world",
     Gripper "gripper" Soft "world",
     Current "current" Soft "world",
@@ -256,6 +271,7 @@ impl Kind {
             Self::Stimulus
                 | Self::Agent
                 | Self::Automaton
+                | Self::Fn
                 | Self::Cross
                 | Self::Suite
                 | Self::Part
@@ -330,6 +346,7 @@ impl Kind {
                 | Self::Not
                 | Self::And
                 | Self::Or
+                | Self::Imply
                 | Self::AndAnd
                 | Self::OrOr
                 | Self::Eq
@@ -356,6 +373,7 @@ impl Kind {
                     | Self::LBracket
                     | Self::Pipe
                     | Self::Arrow
+                    | Self::LongArrow
                     | Self::Assign
                     | Self::PlusAssign
                     | Self::MinusAssign

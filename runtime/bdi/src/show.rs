@@ -241,6 +241,8 @@ impl Show<'_> {
                 let rest = rest.as_ref().map_or(String::new(), |r| format!(" | {}", self.expr(r)));
                 format!("[{}{rest}]", items.join(", "))
             }
+            // Automata alone have these.
+            Expr::Element(_) | Expr::Apply(..) => String::new(),
         }
     }
 

@@ -19,9 +19,12 @@ pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
         Expr::Const(value) => Ok(*value),
         Expr::Var(i) => slots.get(usize::from(*i)).copied().flatten().ok_or(EvalError::Unbound(*i)),
         Expr::Binary(op, a, b) => operate(*op, a, b, slots),
-        Expr::Unary(..) | Expr::If(..) | Expr::Call(..) | Expr::List(..) => {
-            expr.eval(&|i| slots.get(usize::from(i)).copied().flatten())
-        }
+        Expr::Unary(..)
+        | Expr::If(..)
+        | Expr::Call(..)
+        | Expr::List(..)
+        | Expr::Element(_)
+        | Expr::Apply(..) => expr.eval(&|i| slots.get(usize::from(i)).copied().flatten()),
     }
 }
 

@@ -8,7 +8,8 @@ use super::{Context, Fault, Message, Player};
 pub struct AutomatonPlayer<'p> {
     program: &'p Program,
     name: &'p str,
-    actors: [ActorId; 1],
+    /// One, or none if it plays nobody.
+    actors: Vec<ActorId>,
     machine: Machine<'p>,
 }
 
@@ -17,7 +18,7 @@ impl<'p> AutomatonPlayer<'p> {
     pub fn new(program: &'p Program, automaton: AutomatonId) -> Self {
         let declared = &program.automata[automaton.0 as usize];
         let machine = Machine::new(program, automaton);
-        Self { program, name: &declared.name, actors: [declared.actor], machine }
+        Self { program, name: &declared.name, actors: declared.actor.into_iter().collect(), machine }
     }
 
     fn go_on(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
@@ -26,7 +27,7 @@ impl<'p> AutomatonPlayer<'p> {
             .run(cx.now, &mut sent)
             .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;
         for (event, args) in sent {
-            debug_assert_eq!(self.program.event(event).from, self.actors[0]);
+            debug_assert!(self.actors.contains(&self.program.event(event).from));
             cx.out.push(Message::Event { event, args });
         }
         Ok(())

@@ -42,10 +42,11 @@ impl Awaits {
                 }
                 PlayerRef::Automaton(id) => {
                     let automaton = &program.automata[id.0 as usize];
+                    let Some(actor) = automaton.actor else { continue };
                     for location in 0..automaton.locations.len() {
                         let edges = automaton.edges.iter().filter(|e| e.from.0 as usize == location);
                         let events: Vec<EventPattern> = edges.filter_map(|e| received(&e.sync)).collect();
-                        groups.push(Group { actor: automaton.actor, events, within: None });
+                        groups.push(Group { actor, events, within: None });
                     }
                 }
             }
@@ -109,7 +110,9 @@ fn received(sync: &Sync) -> Option<EventPattern> {
             });
             Some(EventPattern { event: *event, args: args.collect() })
         }
-        Sync::Internal | Sync::Send { .. } => None,
+        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {
+            None
+        }
     }
 }
 

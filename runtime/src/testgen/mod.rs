@@ -147,7 +147,7 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
         Method::Agents { minimise: said, .. } => {
             ("agents", agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
-        Method::Search { network, goals } => {
+        Method::Search { network, goals, .. } => {
             ("search", search::harvest(program, suite, *network, goals)?, false)
         }
         Method::Random { .. } => ("random", random::harvest(program, suite, most, seed)?, false),
@@ -289,7 +289,12 @@ mod tests {
     fn goals_that_only_tests_left_out_reach_are_uncovered() {
         let suite = Suite {
             name: "s".into(),
-            method: Method::Search { network: 0, goals: vec![] },
+            method: Method::Search {
+                network: 0,
+                goals: vec![],
+                witness: hrdsl_ir::suite::WitnessKind::default(),
+                delays: hrdsl_ir::suite::Delays::default(),
+            },
             tests: 1,
             horizon: 0,
             patience: 0,

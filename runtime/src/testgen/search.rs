@@ -116,6 +116,11 @@ fn expand(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<Named>
         SearchGoal::Bins { cross } => {
             program.coverage.crosses.get(*cross as usize).map_or_else(Vec::new, |c| bins(program, c))
         }
+        SearchGoal::Pairs
+        | SearchGoal::Uses
+        | SearchGoal::Violation { .. }
+        | SearchGoal::Trigger { .. }
+        | SearchGoal::Query { .. } => Vec::new(),
         SearchGoal::Locations => each_automaton(program, network, |index, automaton| {
             let ids = (0u16..).map(LocationId).zip(&automaton.locations);
             let declared = ids.filter(|(_, l)| !is_generated(&l.name));

@@ -70,14 +70,16 @@ fn clocks_exist(a: &Automaton, c: &ClockConstraint) -> bool {
 
 fn updates_exist(program: &Program, a: &Automaton, updates: &[Update]) -> bool {
     updates.iter().all(|u| match u {
-        Update::Assign { slot, .. } => usize::from(*slot) < program.shared.len() + a.vars.len(),
-        Update::Reset { clock } => usize::from(clock.0) < a.clocks.len(),
+        Update::Assign { place, .. } => usize::from(place.slot) < program.shared.len() + a.vars.len(),
+        Update::Reset { clock, .. } => usize::from(clock.0) < a.clocks.len(),
+        Update::Call { .. } => false,
     })
 }
 
 fn sync_exists(program: &Program, sync: &Sync) -> bool {
     let arity = |event: &hrdsl_ir::EventId| program.events.get(usize::from(event.0)).map(|e| e.params.len());
     match sync {
+        Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => false,
         Sync::Internal => true,
         Sync::Send { event, args } => arity(event) == Some(args.len()),
         Sync::Receive { event, args } => arity(event) == Some(args.len()),

@@ -62,7 +62,7 @@ impl<'p> Machine<'p> {
         let clock = |c: ClockId| self.now - self.reset_at[member][usize::from(c.0)];
         constraints.iter().all(|c| {
             let value = clock(c.clock) - c.minus.map_or(0, clock);
-            let bound = i128::from(c.bound) * self.ticks;
+            let bound = i128::from(c.bound.nanos) * self.ticks;
             match c.op {
                 ClockOp::Lt => value < bound,
                 ClockOp::Le => value <= bound,
@@ -111,8 +111,9 @@ impl<'p> Machine<'p> {
         self.location[m.automaton] = edge.to;
         for u in &edge.updates {
             match u {
-                Update::Reset { clock } => self.reset_at[m.automaton][usize::from(clock.0)] = self.now,
-                Update::Assign { slot, value } => self.assign(m, usize::from(*slot), value)?,
+                Update::Reset { clock, .. } => self.reset_at[m.automaton][usize::from(clock.0)] = self.now,
+                Update::Assign { place, value } => self.assign(m, usize::from(place.slot), value)?,
+                Update::Call { .. } => {}
             }
         }
         Ok(())
@@ -339,9 +340,15 @@ fn sends(machine: &Machine, sender: &Move, s: &WitnessStep) -> Result<(), String
             let same = own.iter().map(|v| v.key()).eq(values.iter().map(|v| v.key()));
             if same { Ok(()) } else { Err("the sender sends other arguments".into()) }
         }
-        (Sync::Internal | Sync::Send { .. } | Sync::Receive { .. }, _) => {
-            Err("the sender's edge sends something else".into())
-        }
+        (
+            Sync::Internal
+            | Sync::Send { .. }
+            | Sync::Receive { .. }
+            | Sync::Offer { .. }
+            | Sync::Accept { .. }
+            | Sync::Join { .. },
+            _,
+        ) => Err("the sender's edge sends something else".into()),
     }
 }
 

@@ -141,8 +141,8 @@ fn analyse(member: &Member, first: usize) -> Vec<Vec<Lu>> {
 
 fn resets(edge: &Edge, clock: usize) -> bool {
     edge.updates.iter().any(|u| match u {
-        Update::Assign { .. } => false,
-        Update::Reset { clock: c } => usize::from(c.0) == clock,
+        Update::Assign { .. } | Update::Call { .. } => false,
+        Update::Reset { clock: c, .. } => usize::from(c.0) == clock,
     })
 }
 

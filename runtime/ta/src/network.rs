@@ -268,7 +268,7 @@ fn unit(automata: &[&Automaton]) -> Nanos {
     };
     let invariants = automata.iter().flat_map(|a| a.locations.iter().flat_map(|l| &l.invariant));
     let guards = automata.iter().flat_map(|a| a.edges.iter().flat_map(|e| &e.clock_guard));
-    let all = invariants.chain(guards).map(|c| c.bound.unsigned_abs()).fold(0, gcd);
+    let all = invariants.chain(guards).map(|c| c.bound.nanos.unsigned_abs()).fold(0, gcd);
     i64::try_from(all).ok().filter(|&n| n > 0).unwrap_or(SECOND)
 }
 
@@ -281,7 +281,7 @@ fn member<'p>(
     let compile = |cs: &[ClockConstraint]| -> Result<Vec<Constraint>, ModelError> {
         let mut out = Vec::new();
         for c in cs {
-            if (c.bound / unit).unsigned_abs() > 1 << 50 {
+            if (c.bound.nanos / unit).unsigned_abs() > 1 << 50 {
                 return Err(ModelError::Constants { automaton: automaton.name.clone() });
             }
             constraint(c, first_clock, unit, &mut out);
@@ -303,10 +303,11 @@ fn member<'p>(
         match edge.sync {
             Sync::Internal | Sync::Send { .. } => place.active.push(index),
             Sync::Receive { .. } => place.receiving.push(index),
+            Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
         }
         let resets = edge.updates.iter().filter_map(|u| match u {
-            Update::Assign { .. } => None,
-            Update::Reset { clock } => Some(clock_at(*clock, first_clock)),
+            Update::Assign { .. } | Update::Call { .. } => None,
+            Update::Reset { clock, .. } => Some(clock_at(*clock, first_clock)),
         });
         edges.push(Arrow { edge, guard: compile(&edge.clock_guard)?, resets: resets.collect() });
     }
@@ -319,7 +320,7 @@ fn clock_at(clock: ClockId, first: usize) -> u16 {
 
 fn constraint(c: &ClockConstraint, first: usize, unit: Nanos, out: &mut Vec<Constraint>) {
     let (i, j) = (clock_at(c.clock, first), c.minus.map_or(0, |m| clock_at(m, first)));
-    let n = c.bound / unit;
+    let n = c.bound.nanos / unit;
     let upper = |bound| Constraint { i, j, bound };
     let lower = |bound| Constraint { i: j, j: i, bound };
     match c.op {

@@ -92,7 +92,11 @@ impl<'p> Player<'p> {
         while let Some(m) = self.next_move()? {
             match &self.machine.edge(&m).sync {
                 Sync::Send { event, args } => out.push((*event, self.machine.arguments(&m, *event, args)?)),
-                Sync::Internal | Sync::Receive { .. } => {}
+                Sync::Internal
+                | Sync::Receive { .. }
+                | Sync::Offer { .. }
+                | Sync::Accept { .. }
+                | Sync::Join { .. } => {}
             }
             self.take(&m)?;
         }
@@ -107,7 +111,7 @@ impl<'p> Player<'p> {
         let times = automaton.edges.iter().enumerate().filter_map(|(e, edge)| {
             let active = match edge.sync {
                 Sync::Internal | Sync::Send { .. } => true,
-                Sync::Receive { .. } => false,
+                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => false,
             };
             if !active || edge.from != self.machine.location[0] {
                 return None;
@@ -145,7 +149,7 @@ impl<'p> Player<'p> {
     fn next_move(&mut self) -> Result<Option<Move>, ModelError> {
         for e in 0..self.machine.members[0].edges.len() {
             match self.machine.members[0].edges[e].sync {
-                Sync::Receive { .. } => {}
+                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
                 Sync::Internal | Sync::Send { .. } => {
                     if let Some(m) = self.enabled(e, &[])? {
                         return Ok(Some(m));
@@ -237,13 +241,13 @@ impl<'p> Player<'p> {
         let resets = |clock| {
             after
                 && self.machine.members[0].edges[edge].updates.iter().any(|u| match u {
-                    Update::Assign { .. } => false,
-                    Update::Reset { clock: c } => *c == clock,
+                    Update::Assign { .. } | Update::Call { .. } => false,
+                    Update::Reset { clock: c, .. } => *c == clock,
                 })
         };
         for c in constraints {
             // As `sign · t` against `bound`: a clock is the time since its reset, or 0 if this edge resets it.
-            let (mut sign, mut bound) = (0, i128::from(c.bound));
+            let (mut sign, mut bound) = (0, i128::from(c.bound.nanos));
             for (clock, factor) in [(Some(c.clock), 1), (c.minus, -1)] {
                 let Some(clock) = clock.filter(|&clock| !resets(clock)) else { continue };
                 sign += factor;

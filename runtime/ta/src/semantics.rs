@@ -123,7 +123,7 @@ impl Model<'_> {
                     Err(error) => out.push(self.faulty(smallvec::smallvec![step], None, error)),
                 },
                 // INVARIANT: `active` has no receiving edges.
-                Sync::Receive { .. } => {}
+                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
             }
         }
     }
@@ -280,8 +280,8 @@ impl Model<'_> {
             let edge = self.members[m.automaton].edges[m.edge].edge;
             state[m.automaton] = i64::from(edge.to.0);
             for u in &edge.updates {
-                let Update::Assign { slot, value } = u else { continue };
-                let at = self.own_slot(m.automaton, usize::from(*slot));
+                let Update::Assign { place, value } = u else { continue };
+                let at = self.own_slot(m.automaton, usize::from(place.slot));
                 let value = self.eval(state, m, value).and_then(|v| stored(self.slots[at], v));
                 let n = value.map_err(|e| self.evaluation(m, e))?;
                 let var = self.slots[at];

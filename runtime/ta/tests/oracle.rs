@@ -92,7 +92,7 @@ impl<'p> Oracle<'p> {
             let between = i64::from(x.1 > y.1) - i64::from(x.1 < y.1);
             let beyond = x.0 > self.most;
             let value = 2 * (x.0 - y.0) + between + i64::from(beyond);
-            let bound = 2 * (c.bound / SECOND);
+            let bound = 2 * (c.bound.nanos / SECOND);
             match c.op {
                 ClockOp::Lt => value < bound,
                 ClockOp::Le => value <= bound,
@@ -226,12 +226,13 @@ impl<'p> Oracle<'p> {
             next.at[*a] = edge.to.0;
             for u in &edge.updates {
                 match u {
-                    Update::Reset { clock } => {
+                    Update::Reset { clock, .. } => {
                         next.clocks[self.first_clock[*a] + clock.0 as usize] = (0, 0);
                     }
-                    Update::Assign { slot, value } => {
-                        next.data[*slot as usize] = self.eval(&next, value, binders).as_int().unwrap();
+                    Update::Assign { place, value } => {
+                        next.data[place.slot as usize] = self.eval(&next, value, binders).as_int().unwrap();
                     }
+                    Update::Call { .. } => unreachable!("the networks have no functions"),
                 }
             }
         }

@@ -76,7 +76,11 @@ impl Checker<'_> {
                     }
                 }
                 Member::Var(var) => self.own_var(index, var, &mut scope),
-                Member::Location { .. } | Member::Edge(_) | Member::Allow(_) | Member::Error => {}
+                Member::Location { .. }
+                | Member::Edge(_)
+                | Member::Function(_)
+                | Member::Allow(_)
+                | Member::Error => {}
             }
         }
         self.locations(index, automaton, &mut scope);

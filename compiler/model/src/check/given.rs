@@ -119,6 +119,9 @@ pub(super) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)> {
         | ItemKind::Event(_)
         | ItemKind::Stimulus(_)
         | ItemKind::Var(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Query(_)
         | ItemKind::Network { .. }
         | ItemKind::Assume(_)
         | ItemKind::Suite(_)

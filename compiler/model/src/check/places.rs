@@ -53,6 +53,9 @@ impl Checker<'_> {
                 }
                 ItemKind::Use(_)
                 | ItemKind::Allow(_)
+                | ItemKind::Channel(_)
+                | ItemKind::Function(_)
+                | ItemKind::Query(_)
                 | ItemKind::Instance(_)
                 | ItemKind::Actor { .. }
                 | ItemKind::Assume(_)
@@ -113,7 +116,7 @@ fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> A
             }
             Member::Location { name, .. } => places.locations.push(name.span),
             Member::Edge(edge) => places.waits.push(edge.on.as_ref().map_or(member.span, |on| on.span)),
-            Member::Allow(_) | Member::Error => {}
+            Member::Function(_) | Member::Allow(_) | Member::Error => {}
         }
     }
     places

@@ -150,7 +150,13 @@ impl Checker<'_> {
             Member::ReachBins(_) | Member::ReachEdges if matches!(method, SyntaxMethod::Agents(_)) => {
                 return true;
             }
-            Member::ReachBins(_) | Member::ReachLocations | Member::ReachEdges => "search",
+            Member::ReachBins(_)
+            | Member::ReachLocations
+            | Member::ReachEdges
+            | Member::ReachOf { .. }
+            | Member::ReachQueries(_)
+            | Member::Witness(_)
+            | Member::Delays(_) => "search",
             Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
             Member::Tests(_) | Member::Patience(_) | Member::Error => return true,
         };
@@ -188,6 +194,7 @@ impl Checker<'_> {
             Member::Tests(e) => {
                 said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
             }
+            Member::ReachOf { .. } | Member::ReachQueries(_) | Member::Witness(_) | Member::Delays(_) => {}
             Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
             Member::Patience(e) => said.patience = self.time(e, "the patience", true),
             Member::ReachBins(name) => match self.crosses.get(&name.text) {

@@ -25,6 +25,9 @@ pub(super) fn in_item(item: &ItemKind) -> bool {
         | ItemKind::Agent(_)
         | ItemKind::Var(_)
         | ItemKind::Automaton(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Query(_)
         | ItemKind::Network { .. }
         | ItemKind::Require(_)
         | ItemKind::Assume(_)

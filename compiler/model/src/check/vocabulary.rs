@@ -221,8 +221,9 @@ impl<'a> Checker<'a> {
         name: &Name,
         span: Span,
     ) {
-        let plays = &automaton.syntax.plays;
-        let actor = self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
+        let plays = automaton.syntax.plays.as_ref();
+        let actor = self.as_instance(automaton.given.clone(), None, |c| plays.and_then(|p| c.actor(p)));
+        let actor = actor.unwrap_or(NOBODY);
         self.s.automata.push(Automaton {
             name: name.text.clone(),
             actor,

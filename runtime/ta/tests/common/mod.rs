@@ -5,10 +5,10 @@ pub mod families;
 
 use hrdsl_ir::{
     Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Span, Type,
-    expr::BinaryOp,
+    expr::{BinaryOp, Place},
     ta::{
         Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
-        Network, ReceiveArg, Sync, Update, Var,
+        Network, ReceiveArg, Sync, Time, Update, Var,
     },
     value::SECOND,
 };
@@ -48,7 +48,7 @@ pub fn event(p: &mut Program, name: &str, params: &[Type]) -> EventId {
 pub fn automaton(name: &str, clocks: &[&str]) -> Automaton {
     Automaton {
         name: name.into(),
-        actor: ActorId(0),
+        actor: Some(ActorId(0)),
         clocks: clocks.iter().map(|c| (*c).into()).collect(),
         vars: Vec::new(),
         locations: Vec::new(),
@@ -73,6 +73,7 @@ pub fn location(
     invariant: &[ClockConstraint],
 ) -> LocationId {
     a.locations.push(Location {
+        holds: None,
         name: name.into(),
         kind,
         invariant: invariant.to_vec(),
@@ -87,7 +88,7 @@ pub fn normal(a: &mut Automaton, name: &str) -> LocationId {
 
 /// `clock op n` seconds
 pub fn clock(clock: u16, op: ClockOp, n: i64) -> ClockConstraint {
-    ClockConstraint { clock: ClockId(clock), minus: None, op, bound: n * SECOND }
+    ClockConstraint { clock: ClockId(clock), minus: None, op, bound: Time::constant(n * SECOND) }
 }
 
 /// An edge under construction.
@@ -135,11 +136,11 @@ impl E {
         self
     }
     pub fn set(mut self, slot: u16, value: Expr) -> Self {
-        self.0.updates.push(Update::Assign { slot, value });
+        self.0.updates.push(Update::Assign { place: Place::slot(slot), value });
         self
     }
     pub fn reset(mut self, clock: u16) -> Self {
-        self.0.updates.push(Update::Reset { clock: ClockId(clock) });
+        self.0.updates.push(Update::zero(ClockId(clock)));
         self
     }
     pub fn select(mut self, v: Var) -> Self {

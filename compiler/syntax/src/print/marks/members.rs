@@ -1,9 +1,9 @@
 //! The members of agents, automata, suites, tests, systems and worlds.
 
 use crate::ast::{
-    Access, AgentMember, AgentMemberKind, Automaton, AutomatonMember, AutomatonMemberKind, Edge,
-    EdgeActionKind, Plan, RuleOn, Step, StepKind, SuiteMemberKind, SystemMemberKind, TestMemberKind, Var,
-    WorldMember, WorldMemberKind,
+    Access, AgentMember, AgentMemberKind, Ask, Automaton, AutomatonMember, AutomatonMemberKind, Edge,
+    EdgeActionKind, Function, Plan, Query, RuleOn, Statement, StatementKind, Step, StepKind, SuiteMemberKind,
+    SystemMemberKind, TestMemberKind, Var, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, Marker};
 use crate::token::Kind;
@@ -142,6 +142,84 @@ impl Marker<'_> {
                 self.maybe(invariant.as_ref());
             }
             AutomatonMemberKind::Edge(edge) => self.edge(edge),
+            AutomatonMemberKind::Function(function) => self.function(function),
+        }
+    }
+
+    pub(super) fn function(&mut self, function: &Function) {
+        self.params(function.name.span.end, &function.params);
+        if let Some(ty) = &function.result {
+            self.ty(ty);
+        }
+        self.block(function.name.span.end, BlockKind::Steps);
+        function.body.iter().for_each(|s| self.statement(s));
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        self.set(statement.span.start, |m| m.start = true);
+        self.statement_kind(statement);
+    }
+
+    fn statement_kind(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::Var(var) => self.var(var),
+            StatementKind::Assign { access, value, .. } => {
+                self.accesses(access);
+                self.expr(value);
+            }
+            StatementKind::Call(call) => self.call(call),
+            StatementKind::Return(value) => self.maybe(value.as_ref()),
+            StatementKind::If { condition, then, otherwise } => {
+                self.expr(condition);
+                self.block(condition.span.end, BlockKind::Steps);
+                then.iter().for_each(|s| self.statement(s));
+                self.else_statements(statement.span.end, otherwise);
+            }
+            StatementKind::While { condition, body } => {
+                self.expr(condition);
+                self.block(condition.span.end, BlockKind::Steps);
+                body.iter().for_each(|s| self.statement(s));
+            }
+            StatementKind::For { range, body, .. } => {
+                self.range(range);
+                self.block(range.span.end, BlockKind::Steps);
+                body.iter().for_each(|s| self.statement(s));
+            }
+        }
+    }
+
+    fn else_statements(&mut self, end: u32, statements: &[Statement]) {
+        if let [statement] = statements
+            && self.after_else(statement.span.start)
+        {
+            return self.statement_kind(statement);
+        }
+        self.else_block(end, BlockKind::Steps);
+        statements.iter().for_each(|s| self.statement(s));
+    }
+
+    fn accesses(&mut self, access: &[Access]) {
+        for part in access {
+            match part {
+                Access::Index(index) => self.expr(index),
+                Access::Field(_) => {}
+            }
+        }
+    }
+
+    pub(super) fn query(&mut self, query: &Query) {
+        match &query.ask {
+            Ask::Possibly(e) | Ask::Invariantly(e) | Ask::PotentiallyAlways(e) | Ask::Eventually(e) => {
+                self.expr(e);
+            }
+            Ask::LeadsTo(e, f) => {
+                self.expr(e);
+                self.expr(f);
+            }
+            Ask::Sup { when, of } | Ask::Inf { when, of } => {
+                self.maybe(when.as_ref());
+                of.iter().for_each(|e| self.expr(e));
+            }
         }
     }
 
@@ -154,12 +232,7 @@ impl Marker<'_> {
             match &action.kind {
                 EdgeActionKind::Send(call) => self.call(call),
                 EdgeActionKind::Assign { access, value, .. } => {
-                    for part in access {
-                        match part {
-                            Access::Index(index) => self.expr(index),
-                            Access::Field(_) => {}
-                        }
-                    }
+                    self.accesses(access);
                     self.expr(value);
                 }
             }
@@ -183,6 +256,10 @@ impl Marker<'_> {
             | SuiteMemberKind::ReachBins(_)
             | SuiteMemberKind::ReachLocations
             | SuiteMemberKind::ReachEdges
+            | SuiteMemberKind::ReachOf { .. }
+            | SuiteMemberKind::ReachQueries(_)
+            | SuiteMemberKind::Witness(_)
+            | SuiteMemberKind::Delays(_)
             | SuiteMemberKind::Stimuli(_)
             | SuiteMemberKind::Error => {}
         }

@@ -130,6 +130,11 @@ impl Marker<'_> {
             }
             ItemKind::Var(var) => self.var(var),
             ItemKind::Automaton(automaton) => self.automaton(start, automaton),
+            ItemKind::Channel(channel) => {
+                channel.names.iter().for_each(|name| self.params(name.name.span.end, &name.params));
+            }
+            ItemKind::Function(function) => self.function(function),
+            ItemKind::Query(query) => self.query(query),
             ItemKind::Require(require) => self.require(require),
             ItemKind::Assume(assume) => {
                 self.expr(&assume.at_most);
