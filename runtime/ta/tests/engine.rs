@@ -178,7 +178,12 @@ fn strict_bounds_in_a_tiny_unit_need_finer_ticks() {
     // Two strict bounds within one nanosecond: 0 < t1 < t2 < 1 ns.
     let mut p = program();
     let mut a = automaton("A", &["x", "y"]);
-    let nano = |clock, op, bound| ClockConstraint { clock: ClockId(clock), minus: None, op, bound };
+    let nano = |clock, op, bound| ClockConstraint {
+        clock: ClockId(clock),
+        minus: None,
+        op,
+        bound: hrdsl_ir::ta::Time::constant(bound),
+    };
     let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "c")];
     let mut first = edge(l[0], l[1]).reset(0);
     first.0.clock_guard.push(nano(0, ClockOp::Gt, 0));
@@ -326,7 +331,7 @@ fn faults_with_symbols_are_said() {
 }
 
 fn edge_update(slot: u16, value: Expr) -> Vec<hrdsl_ir::ta::Update> {
-    vec![hrdsl_ir::ta::Update::Assign { slot, value }]
+    vec![hrdsl_ir::ta::Update::Assign { place: hrdsl_ir::expr::Place::slot(slot), value }]
 }
 
 #[test]
