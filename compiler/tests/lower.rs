@@ -365,7 +365,8 @@ fn automata_count_slots_from_shared_to_binders() {
     assert_eq!((p.shared[0].is_bool, p.shared[0].init, p.shared[1].init), (true, 1, -1));
     let a = &p.automata[0];
     assert_eq!((a.initial.0, a.locations[1].kind), (1, LocationKind::Urgent));
-    let bound = |c: &hrdsl_ir::ta::ClockConstraint| (c.clock.0, c.minus.map(|m| m.0), c.op, c.bound / SECOND);
+    let bound =
+        |c: &hrdsl_ir::ta::ClockConstraint| (c.clock.0, c.minus.map(|m| m.0), c.op, c.bound.nanos / SECOND);
     let invariant: Vec<_> = a.locations[0].invariant.iter().map(bound).collect();
     assert_eq!(invariant, [(0, None, ClockOp::Le, 3), (1, None, ClockOp::Lt, 4)]);
     let e = &a.edges[0];
@@ -380,15 +381,24 @@ fn automata_count_slots_from_shared_to_binders() {
         Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, ReceiveArg::Match(TRUE)] }
     );
     let sum = op(BinaryOp::Add, Expr::Var(4), Expr::Var(3));
-    assert_eq!(e.updates[0], Update::Assign { slot: 2, value: sum });
-    assert_eq!(e.updates[1], Update::Assign { slot: 0, value: Expr::bool(false) });
-    assert!(matches!(e.updates[2], Update::Reset { clock } if clock.0 == 0));
+    assert_eq!(e.updates[0], Update::Assign { place: hrdsl_ir::expr::Place::slot(2), value: sum });
+    assert_eq!(
+        e.updates[1],
+        Update::Assign { place: hrdsl_ir::expr::Place::slot(0), value: Expr::bool(false) }
+    );
+    assert!(matches!(e.updates[2], Update::Reset { clock, .. } if clock.0 == 0));
     // A variable in `on` is compared.
     let e = &a.edges[1];
     let any = ReceiveArg::Match(ArgPattern::Any);
     assert_eq!(e.sync, Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, any] });
     assert_eq!(e.guard, Some(op(BinaryOp::Eq, Expr::Var(3), Expr::Var(2))));
-    assert_eq!(e.updates, [Update::Assign { slot: 2, value: op(BinaryOp::Sub, Expr::Var(2), Expr::int(1)) }]);
+    assert_eq!(
+        e.updates,
+        [Update::Assign {
+            place: hrdsl_ir::expr::Place::slot(2),
+            value: op(BinaryOp::Sub, Expr::Var(2), Expr::int(1))
+        }]
+    );
     let send = Sync::Send { event: EventId(0), args: vec![Expr::int(2), Expr::bool(false)] };
     assert_eq!(p.automata[1].edges[0].sync, send);
     assert_eq!(p.networks[0].automata.len(), 2);
