@@ -321,7 +321,7 @@ fn random_edge(d: &mut Dice, a: &mut Automaton, e: hrdsl_ir::EventId, clocks: u1
             clock: ClockId(0),
             minus: Some(ClockId(1)),
             op: d.op(),
-            bound,
+            bound: hrdsl_ir::ta::Time::constant(bound),
         });
     }
     if d.one_in(3) {
