@@ -39,7 +39,11 @@ fn its_program_means_what_it_says() {
     let asks = person.locations.iter().position(|l| l.name == "idle.asked~1").unwrap();
     let sent = |e: &&hrdsl_ir::ta::Edge| match &e.sync {
         hrdsl_ir::ta::Sync::Send { event, .. } => p.event(*event).name.clone(),
-        hrdsl_ir::ta::Sync::Internal | hrdsl_ir::ta::Sync::Receive { .. } => String::new(),
+        hrdsl_ir::ta::Sync::Offer { .. }
+        | hrdsl_ir::ta::Sync::Accept { .. }
+        | hrdsl_ir::ta::Sync::Join { .. }
+        | hrdsl_ir::ta::Sync::Internal
+        | hrdsl_ir::ta::Sync::Receive { .. } => String::new(),
     };
     let into = person.edges.iter().find(|e| usize::from(e.to.0) == asks).unwrap();
     let out = person.edges.iter().find(|e| usize::from(e.from.0) == asks).unwrap();

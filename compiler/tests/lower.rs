@@ -437,7 +437,10 @@ fn what_a_stimulus_emits_follows_through_committed_locations() {
     assert!(a.vars[1].is_bool && a.vars[1].name.contains('~'));
     assert_eq!([edge(8), edge(9)], [(1, "two", 6, 0, 2), (6, "e", 7, 0, 0)]);
     assert_eq!([edge(10), edge(11)], [(7, "f", 0, 0, 1), (7, "-", 0, 0, 1)]);
-    assert_eq!(a.edges[8].updates[0], Update::Assign { slot: 1, value: Expr::Var(2) });
+    assert_eq!(
+        a.edges[8].updates[0],
+        Update::Assign { place: hrdsl_ir::expr::Place::slot(1), value: Expr::Var(2) }
+    );
     assert_eq!(a.edges[10].guard, Some(Expr::Var(1)));
     assert_eq!(a.edges[11].guard, Some(not(Expr::Var(1))));
     assert_eq!(a.edges[10].updates, [Update::Assign { slot: 1, value: Expr::bool(false) }]);
