@@ -443,7 +443,10 @@ fn what_a_stimulus_emits_follows_through_committed_locations() {
     );
     assert_eq!(a.edges[10].guard, Some(Expr::Var(1)));
     assert_eq!(a.edges[11].guard, Some(not(Expr::Var(1))));
-    assert_eq!(a.edges[10].updates, [Update::Assign { slot: 1, value: Expr::bool(false) }]);
+    assert_eq!(
+        a.edges[10].updates,
+        [Update::Assign { place: hrdsl_ir::expr::Place::slot(1), value: Expr::bool(false) }]
+    );
     let sent = Sync::Send { event: EventId(1), args: vec![Expr::Var(1), Expr::int(2)] };
     assert_eq!(a.edges[10].sync, sent);
 }
@@ -649,7 +652,7 @@ fn coverage_suites_and_tests() {
         (p.suites[0].tests, p.suites[0].horizon, p.suites[0].patience),
         (100, 300 * SECOND, 60 * SECOND)
     );
-    let Method::Search { network: 0, goals } = &p.suites[1].method else { panic!() };
+    let Method::Search { network: 0, goals, .. } = &p.suites[1].method else { panic!() };
     assert_eq!(goals[..], [SearchGoal::Bins { cross: 0 }, SearchGoal::Locations, SearchGoal::Edges]);
     assert_eq!(p.suites[1].tests, 7);
     assert_eq!(
