@@ -422,7 +422,11 @@ fn what_a_stimulus_emits_follows_through_committed_locations() {
         let e = &a.edges[i];
         let event = match &e.sync {
             Sync::Send { event, .. } => p.event(*event).name.as_str(),
-            Sync::Internal | Sync::Receive { .. } => "-",
+            Sync::Offer { .. }
+            | Sync::Accept { .. }
+            | Sync::Join { .. }
+            | Sync::Internal
+            | Sync::Receive { .. } => "-",
         };
         (e.from.0, event, e.to.0, e.clock_guard.len(), e.updates.len())
     };
