@@ -798,14 +798,28 @@ pub struct Edge {
 #[serde(rename_all = "snake_case")]
 pub enum Sync {
     Internal,
-    Send { event: EventId, args: Vec<Expr> },
-    Receive { event: EventId, args: Vec<ReceiveArg> },
+    Send {
+        event: EventId,
+        args: Vec<Expr>,
+    },
+    Receive {
+        event: EventId,
+        args: Vec<ReceiveArg>,
+    },
     /// `do c(…)`
-    Offer { channel: ChannelId, args: Vec<Expr> },
+    Offer {
+        channel: ChannelId,
+        args: Vec<Expr>,
+    },
     /// `on c(…)`
-    Accept { channel: ChannelId, args: Vec<ReceiveArg> },
+    Accept {
+        channel: ChannelId,
+        args: Vec<ReceiveArg>,
+    },
     /// `on c` of a joint channel
-    Join { channel: ChannelId },
+    Join {
+        channel: ChannelId,
+    },
 }
 
 impl Sync {
@@ -836,7 +850,11 @@ pub enum Update {
     Shared(u16, Expr),
     Own(u16, Expr),
     /// The clock becomes `from + to`; without `from`, just `to`.
-    Reset { clock: ClockId, from: Option<ClockId>, to: Time },
+    Reset {
+        clock: ClockId,
+        from: Option<ClockId>,
+        to: Time,
+    },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

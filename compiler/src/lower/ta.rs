@@ -238,7 +238,8 @@ impl Slots {
     }
 
     fn time(&self, t: &model::Time) -> Time {
-        let term = |(factor, value): &(i64, model::Expr)| TimeTerm { factor: *factor, value: self.expr(value) };
+        let term =
+            |(factor, value): &(i64, model::Expr)| TimeTerm { factor: *factor, value: self.expr(value) };
         Time { nanos: t.nanos, terms: t.terms.iter().map(term).collect() }
     }
 
@@ -273,11 +274,9 @@ impl Slots {
             model::Update::Own(i, v) => {
                 Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
             }
-            model::Update::Reset { clock, from, to } => Update::Reset {
-                clock: ClockId(clock.0),
-                from: from.map(|f| ClockId(f.0)),
-                to: self.time(to),
-            },
+            model::Update::Reset { clock, from, to } => {
+                Update::Reset { clock: ClockId(clock.0), from: from.map(|f| ClockId(f.0)), to: self.time(to) }
+            }
         };
         Edge {
             from: LocationId(e.from.0),

@@ -7,8 +7,8 @@ use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sor
 
 use super::{Checker, Declared, Env, table::Table};
 use crate::{
-    ActorId, AutomatonId, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync,
-    noun::Noun, report::automata, types::Layout,
+    ActorId, AutomatonId, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync, noun::Noun,
+    report::automata, types::Layout,
 };
 
 /// The names of one automaton.

@@ -3,7 +3,12 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ItemKind, Name};
 
-use super::{Checker, Env, automaton::Scope, layout::Fields, table::Table};
+use super::{
+    Checker, Env,
+    automaton::Scope,
+    layout::{Fields, type_span},
+    table::Table,
+};
 use crate::{
     Channel, ChannelId, ChannelKind, EventId, Expr, Party, Player, Sync,
     noun::Noun,
@@ -29,10 +34,7 @@ impl Checker<'_> {
     fn declare_channel(&mut self, channel: &ast::Channel, whole: Span) {
         for one in &channel.names {
             let name = &one.name;
-            let fields = self.plain_fields(&one.params);
-            for (param, (_, layout)) in one.params.iter().zip(fields.iter()) {
-                self.finite_layout(layout, "a parameter of a channel", param.name.span);
-            }
+            let fields = self.channel_params(&one.params);
             let kind = match &channel.kind {
                 ast::ChannelKind::HandShake => ChannelKind::HandShake,
                 ast::ChannelKind::Broadcast => ChannelKind::Broadcast,
@@ -57,6 +59,17 @@ impl Checker<'_> {
             let (text, urgent, place) = (name.text.clone(), channel.urgent, name.span);
             self.s.channels.push(Channel { name: text, kind, urgent, params, place, span });
         }
+    }
+
+    /// Parameters of finite types.
+    fn channel_params(&mut self, params: &[ast::Param]) -> Fields {
+        let fields = self.fields(params);
+        for (param, (_, layout)) in params.iter().zip(fields.iter()) {
+            if self.plain(layout, &param.name.text, type_span(&param.ty)) {
+                self.finite_layout(layout, "a parameter of a channel", param.name.span);
+            }
+        }
+        fields
     }
 
     fn parties(&mut self, channel: &Name, parties: &[ast::Party]) -> Vec<Party> {
@@ -125,9 +138,7 @@ impl Checker<'_> {
         let vague = self.by_itself || self.vague_channels.contains(&call.name.text);
         let of = &self.s.channels[usize::from(channel.0)];
         let party = match &of.kind {
-            ChannelKind::Joint(parties) => {
-                parties.iter().any(|p| usize::from(p.automaton.0) == scope.index)
-            }
+            ChannelKind::Joint(parties) => parties.iter().any(|p| usize::from(p.automaton.0) == scope.index),
             ChannelKind::HandShake | ChannelKind::Broadcast => true,
         };
         if !party && !vague {

@@ -67,7 +67,11 @@ impl Checker<'_> {
         }
         let total = counts.iter().fold(1, |n: usize, c| n.saturating_mul(usize::from(*c)));
         if counts.len() != sizes.len() || total > MAX_PARTS {
-            self.report(types::must_be("the size of an array", &format!("at most {MAX_PARTS}"), var.name.span));
+            self.report(types::must_be(
+                "the size of an array",
+                &format!("at most {MAX_PARTS}"),
+                var.name.span,
+            ));
             return true;
         }
         let mut names = vec![var.name.text.clone()];

@@ -58,10 +58,10 @@ use crate::{
 };
 use env::Env;
 use given::{Given, Givens, Template};
-pub(crate) use linear::BadTime;
 pub use internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
 use item::Item;
 use layout::{Fields, RecordEntry};
+pub(crate) use linear::BadTime;
 use table::{MAX_NAMES, Map, Refused, Table};
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.

@@ -72,7 +72,9 @@ fn one_side(scenario: &Scenario, channel: &Channel, sides: &Sides) -> Option<Dia
     let name = &channel.name;
     let (message, help) = match (sides.offer.as_slice(), sides.accept.as_slice()) {
         ([], _) => (format!("nobody offers the channel `{name}`"), format!("let an edge do so: `do {name}`")),
-        (_, []) => (format!("nobody accepts the channel `{name}`"), format!("let an edge do so: `on {name}`")),
+        (_, []) => {
+            (format!("nobody accepts the channel `{name}`"), format!("let an edge do so: `on {name}`"))
+        }
         ([one], [other]) if one == other => {
             let automaton = scenario.automata.get(usize::from(one.0)).map_or("?", |a| a.name.as_str());
             let message = format!("only `{automaton}` offers and accepts the channel `{name}`");

@@ -30,7 +30,10 @@ fn is_free(edge: &Edge) -> bool {
     edge.sync == Sync::Internal
         && edge.guard.is_none()
         && edge.clock_guard.is_empty()
-        && edge.updates.iter().all(|u| matches!(u, Update::Reset { from: None, to, .. } if *to == Time::default()))
+        && edge
+            .updates
+            .iter()
+            .all(|u| matches!(u, Update::Reset { from: None, to, .. } if *to == Time::default()))
 }
 
 fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize]) -> Diagnostic {

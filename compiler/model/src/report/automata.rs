@@ -46,7 +46,8 @@ pub(crate) fn clock_sum(span: Span) -> Diagnostic {
 
 /// HR0502: a time that variables have another part in than that of a factor.
 pub(crate) fn not_linear(span: Span) -> Diagnostic {
-    let message = "a clock is compared with sums of constant times and of whole numbers that multiply such times";
+    let message =
+        "a clock is compared with sums of constant times and of whole numbers that multiply such times";
     Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
         .here("this is no such sum")
         .help("write sums and differences of `3 s` and `n * 1 s`, or an `if` between them")
@@ -142,7 +143,8 @@ pub(crate) fn not_a_party(automaton: &str, channel: &str, span: Span, declared: 
 /// HR0512
 pub(crate) fn joint_offered(channel: &str, span: Span) -> Diagnostic {
     let message = format!("nobody offers the joint channel `{channel}`: all its parties are alike");
-    Diagnostic::error(Code::BAD_JOINT, span, message).help(format!("write `on {channel}` on the edge of each"))
+    Diagnostic::error(Code::BAD_JOINT, span, message)
+        .help(format!("write `on {channel}` on the edge of each"))
 }
 
 /// HR0512
