@@ -133,11 +133,11 @@ impl<'p> Show<'p> {
     }
 
     pub fn guard(&self, edge: &Edge) -> Vec<String> {
-        edge.clock_guard
-            .iter()
-            .map(|c| self.bound(c))
-            .chain(edge.guard.iter().map(|g| self.expr(g)))
-            .collect()
+        let mut parts: Vec<String> = edge.clock_guard.iter().map(|c| self.bound(c)).collect();
+        // Beside others it is a part of a conjunction.
+        let around = if parts.is_empty() { 0 } else { 2 };
+        parts.extend(edge.guard.iter().map(|g| self.within(g, around)));
+        parts
     }
 
     /// `take(1)!`, `take(_)?`, `done`; nothing for an internal edge.

@@ -1,7 +1,10 @@
 //! The import of TChecker's format: what becomes of every construct, and what is wrong with wrong files.
 
+#![allow(clippy::disallowed_methods, reason = "tests read files")]
+
 use std::{fs, path::Path};
 
+use hrdsl_compiler::{Input, compile};
 use hrdsl_import::{
     Imported, Source, SyntaxError,
     tchecker::{Options, import},
@@ -14,6 +17,13 @@ fn of(text: &str) -> Result<Imported, Vec<SyntaxError>> {
 fn fixture(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tchecker");
     fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// The errors of the scenario.
+fn errors(text: &str) -> Vec<String> {
+    let compilation = compile(Input { name: "model.hri", text }, &[]);
+    let wrong = compilation.diagnostics.iter().filter(|d| d.is_error());
+    wrong.map(|d| format!("{}: {} {}", compilation.files.place(d.span()), d.code, d.message)).collect()
 }
 
 fn shown(imported: &Imported) -> String {
@@ -29,6 +39,13 @@ fn a_model_becomes_a_scenario() {
 #[test]
 fn every_construct_is_kept_or_told() {
     insta::assert_snapshot!(shown(&of(&fixture("everything.txt")).unwrap()));
+}
+
+#[test]
+fn what_is_imported_compiles() {
+    for name in ["fischer.txt", "everything.txt"] {
+        assert_eq!(errors(&of(&fixture(name)).unwrap().text), Vec::<String>::new(), "{name}");
+    }
 }
 
 #[test]

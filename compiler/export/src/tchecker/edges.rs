@@ -81,9 +81,9 @@ impl Writer<'_> {
         let mut all: Vec<Vec<Value>> = vec![Vec::new()];
         for (domain, arg) in domains.iter().zip(&args) {
             let constant = match arg {
-                Argument::Sent(Expr::Const(v)) => Some(*v),
+                Argument::Sent(e) => self.constant(a, e, binders),
                 Argument::Taken(ReceiveArg::Match(ArgPattern::Is(v))) => Some(*v),
-                Argument::Sent(_) | Argument::Taken(_) => None,
+                Argument::Taken(ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind) => None,
             };
             all = match constant {
                 Some(v) => crossed(all, &[v]),
@@ -96,14 +96,24 @@ impl Writer<'_> {
             for (value, arg) in values.iter().zip(&args) {
                 match arg {
                     Argument::Taken(ReceiveArg::Bind) => bound.push(*value),
-                    Argument::Sent(e) if !matches!(e, Expr::Const(_)) => equal.push((*e, *value)),
+                    Argument::Sent(e) if self.constant(a, e, binders).is_none() => equal.push((*e, *value)),
                     Argument::Taken(ReceiveArg::Match(_)) | Argument::Sent(_) => {}
                 }
+            }
+            let known = edge.guard.as_ref().and_then(|g| self.constant(a, g, &bound));
+            if known == Some(Value::Bool(false)) {
+                continue;
             }
             let flat = self.flat(&name, &values)?;
             out.push(self.instance(a, edge, &bound, &equal, flat)?);
         }
         Ok(())
+    }
+
+    /// The value of an expression that reads nothing but what the edge binds.
+    fn constant(&self, a: usize, e: &Expr, bound: &[Value]) -> Option<Value> {
+        let known = self.program.shared.len() + self.automata[a].vars.len();
+        e.eval(&|slot| bound.get(usize::from(slot).checked_sub(known)?).copied()).ok()
     }
 
     /// The medium of an edge: its name, the values of each parameter, what the edge says of them.
@@ -162,7 +172,9 @@ impl Writer<'_> {
         let exprs = Exprs::new(self.program, &self.names, a, self.unit, bound);
         let mut guard: Vec<String> =
             edge.clock_guard.iter().map(|c| exprs.bound(c)).collect::<Result<_, _>>()?;
-        if let Some(e) = &edge.guard {
+        if let Some(e) = &edge.guard
+            && self.constant(a, e, bound).is_none()
+        {
             guard.extend(exprs.conjunction(e)?);
         }
         for (e, value) in equal {

@@ -101,8 +101,8 @@ impl<'a> Exprs<'a> {
             .indices
             .iter()
             .map(|i| {
-                let at = self.int(&i.at, depth)?;
-                Ok(if i.stride == 1 { format!("({at})") } else { format!("({at})*{}", i.stride) })
+                let at = self.term(&i.at, depth)?;
+                Ok(if i.stride == 1 { at } else { format!("{at}*{}", i.stride) })
             })
             .collect();
         index += &parts?.join("+");
