@@ -218,11 +218,12 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let callable = env.function(&name.text)?.clone();
         let values = self.function_args(&callable, name, args, span, env);
-        self.called(&callable, span, env);
         let Some(result) = callable.result else {
+            self.functions.used.insert(callable.span);
             self.report(functions::has_no_value(&name.text, span));
             return Some(Expr::error(span));
         };
+        self.called(&callable, span, env);
         Some(match (result, values) {
             (Some(ty), Some(args)) => {
                 Expr { kind: ExprKind::Apply(callable.id, args, ty), ty: ty.kind(), span }
@@ -246,6 +247,10 @@ impl Checker<'_> {
         if env.function(text).is_none() {
             let known = self.given(text).is_some() || self.kind_of(text).is_some() || self.unread_items;
             let meant = (!known).then(|| crate::nearest::nearest(text, env.function_names())).flatten();
+            if self.unread_members && self.kind_of(text).is_none() {
+                // It may be a function that could not be read.
+                return true;
+            }
             let event = crate::nearest::nearest(text, self.events.names());
             let Some(near) = meant.filter(|_| event.is_none()) else { return false };
             let issue = names::unknown(Noun::Function, text, call.name.span, [near]);
