@@ -13,7 +13,10 @@ use hrdsl_ir::{
     list::ListFunction,
     monitor::{Effect, On},
     suite::{ChoiceKind, Explore, Method, ModelGoal, SearchGoal},
-    ta::{ClockOp, LocationKind, ReceiveArg, Sync, Update},
+    ta::{
+        AutomatonId, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationKind, Party,
+        ReceiveArg, Sync, Time, TimeTerm, Update,
+    },
     test::TestStep,
     value::SECOND,
     world::{
@@ -809,4 +812,134 @@ fn symbols_fold_as_the_run_time_evaluates() {
             assert_eq!(read, Value::Bool(is), "{value} {condition}");
         }
     }
+}
+
+/// `nanos + factor · value`
+fn time(seconds: i64, terms: &[(i64, Expr)]) -> Time {
+    let term = |(factor, value): &(i64, Expr)| TimeTerm { factor: factor * SECOND, value: value.clone() };
+    Time { nanos: seconds * SECOND, terms: terms.iter().map(term).collect() }
+}
+
+fn constraint(clock: u16, minus: Option<u16>, op: ClockOp, bound: Time) -> ClockConstraint {
+    ClockConstraint { clock: ClockId(clock), minus: minus.map(ClockId), op, bound }
+}
+
+#[test]
+fn channels_are_offered_accepted_and_joined() {
+    let p = program(
+        "record Pos { x: 0..3, y: bool }\nenum Way { left, right }\nvar n: 0..4\n\
+         channel take(fork: 0..4, way: Way), go : urgent\nchannel at(p: Pos) : broadcast\nchannel all : joint B | A?\n\
+         automaton A {\n  var v: 0..4\n  init location a\n  a -> a select s: 0..4 on take(v + 1, w) when w == left\n\
+           a -> a do take(n, right)\n  a -> a on all\n  a -> a on at\n a -> a on at((x, true)) do v = x\n a -> a on go }\n\
+         automaton B { init location a\n a -> a do at((n, false))\n a -> a on all\n a -> a on take(3, right)\n a -> a select v2: 0..4 do take(v2, left) }\n\
+         network net = A | B",
+    );
+    let channels: Vec<_> = p.channels.iter().map(|c| (c.name.as_str(), c.urgent, c.kind.clone())).collect();
+    let party = |automaton, optional| Party { automaton: AutomatonId(automaton), optional };
+    assert_eq!(
+        channels,
+        [
+            ("take", true, ChannelKind::HandShake),
+            ("go", true, ChannelKind::HandShake),
+            ("at", false, ChannelKind::Broadcast),
+            ("all", false, ChannelKind::Joint(vec![party(1, false), party(0, true)])),
+        ]
+    );
+    let params = |i: usize| -> Vec<(&str, i64, i64, bool)> {
+        let params = &p.channels[i].params;
+        params.iter().map(|v| (v.name.as_str(), v.lo, v.hi, v.enumeration.is_some())).collect()
+    };
+    assert_eq!(params(0), [("fork", 0, 4, false), ("way", 0, 1, true)]);
+    assert_eq!(params(2), [("p.x", 0, 3, false), ("p.y", 0, 1, false)]);
+    assert_eq!((p.automata[0].actor, p.actors.len()), (None, 2));
+    let bind = ReceiveArg::Bind;
+    let any = ReceiveArg::Match(ArgPattern::Any);
+    let take = ChannelId(0);
+    let e = &p.automata[0].edges;
+    // n 0, v 1, s 2, the first argument 3, w 4
+    assert_eq!(e[0].sync, Sync::Accept { channel: take, args: vec![bind, bind] });
+    let first = op(BinaryOp::Eq, Expr::Var(3), op(BinaryOp::Add, Expr::Var(1), Expr::int(1)));
+    let left = op(BinaryOp::Eq, Expr::Var(4), symbol("left"));
+    assert_eq!(e[0].guard, Some(op(BinaryOp::And, first, left)));
+    assert_eq!(e[1].sync, Sync::Offer { channel: take, args: vec![Expr::Var(0), symbol("right")] });
+    assert_eq!(e[2].sync, Sync::Join { channel: ChannelId(3) });
+    assert_eq!(e[3].sync, Sync::Accept { channel: ChannelId(2), args: vec![any, any] });
+    assert_eq!(e[4].sync, Sync::Accept { channel: ChannelId(2), args: vec![bind, ReceiveArg::Match(TRUE)] });
+    assert_eq!(e[5].sync, Sync::Accept { channel: ChannelId(1), args: vec![] });
+    let e = &p.automata[1].edges;
+    assert_eq!(e[0].sync, Sync::Offer { channel: ChannelId(2), args: vec![Expr::Var(0), Expr::bool(false)] });
+    let right = ReceiveArg::Match(ArgPattern::Is(Value::Symbol(Symbol::intern("right"))));
+    let three = ReceiveArg::Match(ArgPattern::Is(Value::Int(3)));
+    assert_eq!(e[2].sync, Sync::Accept { channel: take, args: vec![three, right] });
+}
+
+#[test]
+fn clocks_are_shared_compared_and_set() {
+    let p = program(
+        "var total: clock\nvar lap: clock[2]\nvar n: 0..4\nvar b: bool\nconst I = 1\n\
+         automaton A {\n  clock x, y\n  var v: 0..4\n\
+           init location a { invariant x >= 1 s && total < n * 2 s - 1 s && v < 3 && b && x - lap[I] == y_ }\n\
+           location b_\n\
+           a -> b_ when x < y && 3 s <= y - x && x <= total + v * 1 s && y > (if b { 2 s } else { n * 3 s }) && v > 0 do x = 3 s; y = n * 1 s; x = y; lap[0] = total + 2 s - v * 500 ms; x += 1 s; y -= 2 s; x = 0\n\
+           b_ -> a when x - 1 s == total && -y >= -4 s && x > n * (v * 1 s + 2 s) && (n + 1) * 4 s / 2 > y }\n\
+         const y_ = 2 s\nnetwork net = A",
+    );
+    assert_eq!(p.clocks, ["total", "lap[0]", "lap[1]"]);
+    // total 0, lap 1 and 2, x 3, y 4; n 0, b 1, v 2
+    let (n, b, v) = (Expr::Var(0), Expr::Var(1), Expr::Var(2));
+    let a = &p.automata[0];
+    assert_eq!(
+        a.locations[0].invariant,
+        [
+            constraint(3, None, ClockOp::Ge, time(1, &[])),
+            constraint(0, None, ClockOp::Lt, time(-1, &[(2, n.clone())])),
+            constraint(3, Some(2), ClockOp::Eq, time(2, &[])),
+        ]
+    );
+    let less = op(BinaryOp::Lt, v.clone(), Expr::int(3));
+    assert_eq!(a.locations[0].holds, Some(op(BinaryOp::And, less, b.clone())));
+    assert_eq!(a.locations[1].holds, None);
+    let choice = |x, y| Expr::If(b.clone().into(), Box::new(x), Box::new(y));
+    let e = &a.edges[0];
+    assert_eq!(
+        e.clock_guard,
+        [
+            constraint(3, Some(4), ClockOp::Lt, time(0, &[])),
+            constraint(4, Some(3), ClockOp::Ge, time(3, &[])),
+            constraint(3, Some(0), ClockOp::Le, time(0, &[(1, v.clone())])),
+            constraint(
+                4,
+                None,
+                ClockOp::Gt,
+                time(0, &[(2, choice(Expr::int(1), Expr::int(0))), (3, choice(Expr::int(0), n.clone()))])
+            ),
+        ]
+    );
+    assert_eq!(e.guard, Some(op(BinaryOp::Gt, v.clone(), Expr::int(0))));
+    let set =
+        |clock, from: Option<u16>, to| Update::Reset { clock: ClockId(clock), from: from.map(ClockId), to };
+    let half = TimeTerm { factor: -SECOND / 2, value: v.clone() };
+    assert_eq!(
+        e.updates,
+        [
+            set(3, None, time(3, &[])),
+            set(4, None, time(0, &[(1, n.clone())])),
+            set(3, Some(4), time(0, &[])),
+            set(1, Some(0), Time { nanos: 2 * SECOND, terms: vec![half] }),
+            set(3, Some(3), time(1, &[])),
+            set(4, Some(4), time(-2, &[])),
+            Update::zero(ClockId(3)),
+        ]
+    );
+    let product = op(BinaryOp::Mul, n.clone(), v);
+    let more = op(BinaryOp::Add, n.clone(), Expr::int(1));
+    assert_eq!(
+        a.edges[1].clock_guard,
+        [
+            constraint(3, Some(0), ClockOp::Eq, time(1, &[])),
+            constraint(4, None, ClockOp::Le, time(4, &[])),
+            constraint(3, None, ClockOp::Gt, time(0, &[(1, product), (2, n)])),
+            constraint(4, None, ClockOp::Lt, time(0, &[(2, more)])),
+        ]
+    );
 }

@@ -7,7 +7,7 @@
 const KEYWORDS = require("./keywords.json").map((row) => row.word);
 
 // From the loosest operator to the tightest.
-const PREC = { OR: 1, AND: 2, NOT: 3, COMPARE: 4, RANGE: 5, ADD: 6, MULTIPLY: 7, NEGATE: 8 };
+const PREC = { IMPLY: 1, OR: 2, AND: 3, NOT: 4, COMPARE: 5, RANGE: 6, ADD: 7, MULTIPLY: 8, NEGATE: 9 };
 
 /** The external token of a keyword, shown as the word itself. */
 function keyword($, word) {
@@ -35,6 +35,7 @@ module.exports = grammar({
     $._member, // any word after a dot
     $._origin, // a name before `->`
     $.unit,
+    $.quantifier, // `E<>`, `A[]`, `E[]`, `A<>`
     $.missing_brace, // without text, where a declaration begins in a block
     ...KEYWORDS.map((word) => $[`_keyword_${word}`]),
     $._never, // valid only after a fault
@@ -72,6 +73,9 @@ module.exports = grammar({
         $.agent_declaration,
         $.var_declaration,
         $.automaton_declaration,
+        $.channel_declaration,
+        $.function_declaration,
+        $.query_declaration,
         $.network_declaration,
         $.require_declaration,
         $.assume_declaration,
@@ -228,6 +232,14 @@ module.exports = grammar({
         [PREC.MULTIPLY, ["*", "/", "%"]],
       ];
       return choice(
+        prec.right(
+          PREC.IMPLY,
+          seq(
+            field("left", $.expression),
+            field("operator", keyword($, "imply")),
+            field("right", $.expression),
+          ),
+        ),
         ...rows.map(([level, operators]) =>
           prec.left(
             level,
@@ -456,11 +468,11 @@ module.exports = grammar({
         keyword($, "automaton"),
         field("name", $.identifier),
         optional(field("parameters", $.parameters)),
-        keyword($, "plays"),
-        field("plays", $.identifier),
+        optional(seq(keyword($, "plays"), field("plays", $.identifier))),
         field("body", $.automaton_body),
       ),
-    automaton_body: ($) => block($, choice($.clock, $.var_declaration, $.location, $.edge, $.allow)),
+    automaton_body: ($) =>
+      block($, choice($.clock, $.var_declaration, $.location, $.edge, $.function_declaration, $.allow)),
     clock: ($) => seq(keyword($, "clock"), list(field("name", $.identifier))),
     location: ($) =>
       seq(
@@ -495,6 +507,74 @@ module.exports = grammar({
         field("left", choice($._path, $.index_expression, $.field_expression)),
         field("operator", choice("=", "+=", "-=")),
         field("right", $.expression),
+      ),
+
+    channel_declaration: ($) =>
+      seq(keyword($, "channel"), list($.event_name), optional(seq(":", $._channel_kind))),
+    _channel_kind: ($) =>
+      choice(
+        keyword($, "urgent"),
+        seq(optional(keyword($, "urgent")), keyword($, "broadcast")),
+        seq(optional(keyword($, "urgent")), keyword($, "joint"), list($.party, "|")),
+      ),
+    party: ($) => seq(field("automaton", $.identifier), optional("?")),
+
+    // The statements of a function are separated as the steps of a plan are.
+    function_declaration: ($) =>
+      seq(
+        keyword($, "fn"),
+        field("name", $.identifier),
+        field("parameters", $.parameters),
+        optional(seq("->", field("result", $.type))),
+        field("body", $.function_body),
+      ),
+    function_body: ($) =>
+      seq(
+        "{",
+        repeat(choice(seq($._statement, ";"), seq($._block_statement, optional(";")))),
+        optional($._statement),
+        closing($),
+      ),
+    _statement: ($) => choice($.var_declaration, $.assignment, $.call, $.return_statement),
+    return_statement: ($) => seq(keyword($, "return"), optional(field("value", $.expression))),
+    _block_statement: ($) => choice($.if_statement, $.while_statement, $.for_statement),
+    if_statement: ($) =>
+      seq(
+        keyword($, "if"),
+        field("condition", $.expression),
+        field("consequence", $.function_body),
+        optional(seq(keyword($, "else"), field("alternative", choice($.function_body, $.if_statement)))),
+      ),
+    while_statement: ($) =>
+      seq(keyword($, "while"), field("condition", $.expression), field("body", $.function_body)),
+    for_statement: ($) =>
+      seq(
+        keyword($, "for"),
+        field("name", $.identifier),
+        keyword($, "in"),
+        field("range", $.range),
+        field("body", $.function_body),
+      ),
+
+    query_declaration: ($) =>
+      seq(
+        keyword($, "query"),
+        field("name", $.identifier),
+        optional(field("title", $.string)),
+        keyword($, "of"),
+        field("network", $.identifier),
+        "=",
+        $._ask,
+      ),
+    _ask: ($) => choice($.quantified, $.leads_to, $.bound),
+    quantified: ($) => seq(field("quantifier", $.quantifier), field("formula", $.expression)),
+    leads_to: ($) => seq(field("left", $.expression), "-->", field("right", $.expression)),
+    bound: ($) =>
+      seq(
+        choice(keyword($, "sup"), keyword($, "inf")),
+        optional(seq("{", field("condition", $.expression), closing($))),
+        ":",
+        list(field("of", $.expression)),
       ),
 
     network_declaration: ($) =>
@@ -637,6 +717,7 @@ module.exports = grammar({
         ...["tests", "horizon", "patience"].map((word) =>
           seq(keyword($, word), field("value", $.expression)),
         ),
+        ...["witness", "delays"].map((word) => seq(keyword($, word), field("value", $.identifier))),
         seq(keyword($, "stimuli"), list(field("value", $.identifier))),
         seq(keyword($, "await"), field("value", $.await_events)),
         ...["length", "pause"].map((word) => seq(keyword($, word), field("value", $.range))),
@@ -644,13 +725,19 @@ module.exports = grammar({
     reach: ($) =>
       seq(
         keyword($, "reach"),
-        keyword($, "each"),
         choice(
-          seq(keyword($, "bin"), keyword($, "of"), field("of", $.identifier)),
-          keyword($, "location"),
-          keyword($, "edge"),
-          keyword($, "plan"),
-          field("what", $.identifier),
+          seq(
+            keyword($, "each"),
+            choice(
+              seq(keyword($, "bin"), keyword($, "of"), field("of", $.identifier)),
+              keyword($, "location"),
+              keyword($, "edge"),
+              keyword($, "plan"),
+              field("what", $.identifier),
+            ),
+          ),
+          seq(field("what", $.identifier), keyword($, "of"), list(field("of", $.identifier))),
+          seq(keyword($, "query"), list(field("query", $.identifier))),
         ),
       ),
 

@@ -12,6 +12,9 @@ pub(crate) enum Noun {
     Stimulus,
     /// Where both are good.
     EventOrStimulus,
+    Channel,
+    /// Where all three are good.
+    Medium,
     Parameter,
     Sample,
     Unit,
@@ -76,6 +79,7 @@ impl Noun {
             Noun::Automaton => "automata".to_owned(),
             Noun::Body => "bodies".to_owned(),
             Noun::EventOrStimulus => "events and stimuli".to_owned(),
+            Noun::Medium => "events, stimuli and channels".to_owned(),
             Noun::Player => "agents and automata".to_owned(),
             Noun::RequirementKind => "kinds of requirement".to_owned(),
             Noun::Explore => "ways to explore".to_owned(),
@@ -88,6 +92,7 @@ impl Noun {
             | Noun::Role
             | Noun::Constant
             | Noun::Event
+            | Noun::Channel
             | Noun::Parameter
             | Noun::Sample
             | Noun::Unit
@@ -136,6 +141,8 @@ impl fmt::Display for Noun {
             Noun::Event => "event",
             Noun::Stimulus => "stimulus",
             Noun::EventOrStimulus => "event or stimulus",
+            Noun::Channel => "channel",
+            Noun::Medium => "event, stimulus or channel",
             Noun::Parameter => "parameter",
             Noun::Sample => "sample",
             Noun::Unit => "unit",

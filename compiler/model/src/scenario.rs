@@ -39,8 +39,10 @@ ids! {
     AutomatonId,
     /// Index into [`Automaton::locations`].
     LocationId,
-    /// Index into [`Automaton::clocks`].
+    /// The shared clocks first, then those of the automaton.
     ClockId,
+    /// Index into [`Scenario::channels`].
+    ChannelId,
     /// Index into [`Scenario::networks`].
     NetworkId,
     /// Index into [`Scenario::points`].
@@ -71,6 +73,9 @@ pub struct Scenario {
     pub agents: Vec<Agent>,
     pub contents: Vec<Content>,
     pub shared: Vec<Var>,
+    /// Clocks that all automata share.
+    pub clocks: Vec<SharedClock>,
+    pub channels: Vec<Channel>,
     pub automata: Vec<Automaton>,
     pub networks: Vec<Network>,
     pub requirements: Vec<Requirement>,
@@ -130,7 +135,7 @@ pub struct AutomatonPlaces {
     pub waits: Vec<Span>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct VarPlace {
     pub name: Span,
     /// The whole declaration.
@@ -669,10 +674,48 @@ pub struct Var {
     pub span: Span,
 }
 
+/// A clock that all automata share, or one of an array of them: `t[0]`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SharedClock {
+    pub name: String,
+    /// Where the variable is declared.
+    pub place: VarPlace,
+}
+
+/// A medium between automata: for each combination of arguments one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Channel {
+    pub name: String,
+    pub kind: ChannelKind,
+    /// Time does not pass while a transition over it is possible.
+    pub urgent: bool,
+    /// Finite types.
+    pub params: Vec<Param>,
+    pub place: Span,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelKind {
+    HandShake,
+    Broadcast,
+    Joint(Vec<Party>),
+}
+
+/// An automaton that has a part in a joint channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Party {
+    pub automaton: AutomatonId,
+    pub optional: bool,
+    pub span: Span,
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Automaton {
     pub name: String,
-    pub actor: ActorId,
+    /// `None`: it knows channels only.
+    pub actor: Option<ActorId>,
     pub clocks: Vec<String>,
     pub vars: Vec<Var>,
     pub locations: Vec<Location>,
@@ -686,16 +729,46 @@ pub struct Location {
     pub name: String,
     pub kind: LocationKind,
     pub invariant: Vec<ClockConstraint>,
+    /// The part of the invariant over variables.
+    pub holds: Option<Expr>,
     pub span: Span,
 }
 
-/// `clock - minus op bound`, the bound in seconds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// `clock - minus op bound`
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClockConstraint {
     pub clock: ClockId,
     pub minus: Option<ClockId>,
     pub op: ClockOp,
-    pub bound: f64,
+    pub bound: Time,
+}
+
+impl ClockConstraint {
+    /// Its clocks.
+    pub fn clocks(&self) -> impl Iterator<Item = ClockId> {
+        std::iter::once(self.clock).chain(self.minus)
+    }
+}
+
+/// A time that variables may have a part in, in nanoseconds: `nanos + Σ factor · value`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Time {
+    pub nanos: i64,
+    /// Each value is a whole number.
+    pub terms: Vec<(i64, Expr)>,
+}
+
+impl Time {
+    #[must_use]
+    pub fn constant(nanos: i64) -> Self {
+        Self { nanos, terms: Vec::new() }
+    }
+
+    /// The nanoseconds, if no variable has a part in it.
+    #[must_use]
+    pub fn fixed(&self) -> Option<i64> {
+        self.terms.is_empty().then_some(self.nanos)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -725,8 +798,41 @@ pub struct Edge {
 #[serde(rename_all = "snake_case")]
 pub enum Sync {
     Internal,
-    Send { event: EventId, args: Vec<Expr> },
-    Receive { event: EventId, args: Vec<ReceiveArg> },
+    Send {
+        event: EventId,
+        args: Vec<Expr>,
+    },
+    Receive {
+        event: EventId,
+        args: Vec<ReceiveArg>,
+    },
+    /// `do c(…)`
+    Offer {
+        channel: ChannelId,
+        args: Vec<Expr>,
+    },
+    /// `on c(…)`
+    Accept {
+        channel: ChannelId,
+        args: Vec<ReceiveArg>,
+    },
+    /// `on c` of a joint channel
+    Join {
+        channel: ChannelId,
+    },
+}
+
+impl Sync {
+    /// The channel that it is a part in.
+    #[must_use]
+    pub fn channel(&self) -> Option<ChannelId> {
+        match self {
+            Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => None,
+            Sync::Offer { channel, .. } | Sync::Accept { channel, .. } | Sync::Join { channel } => {
+                Some(*channel)
+            }
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -743,7 +849,12 @@ pub enum ReceiveArg {
 pub enum Update {
     Shared(u16, Expr),
     Own(u16, Expr),
-    Reset(ClockId),
+    /// The clock becomes `from + to`; without `from`, just `to`.
+    Reset {
+        clock: ClockId,
+        from: Option<ClockId>,
+        to: Time,
+    },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

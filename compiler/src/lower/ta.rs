@@ -4,10 +4,9 @@ use hrdsl_ir::{
     ActorId, ArgPattern, EventId, Expr, Span, Type,
     expr::Place,
     ta::{
-        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
-        Network, ReceiveArg, Sync, Time, Update, Var,
+        Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
+        Location, LocationId, LocationKind, Network, Party, ReceiveArg, Sync, Time, TimeTerm, Update, Var,
     },
-    value::nanos,
 };
 use hrdsl_model::{self as model, Leaf, StimulusStep};
 use hrdsl_syntax::ast;
@@ -47,19 +46,37 @@ fn bounded(name: &str, ty: model::Type) -> Var {
     Var { name: name.to_owned(), lo, hi, init: lo, is_bool, enumeration }
 }
 
+pub(crate) fn channel(c: &model::Channel) -> Channel {
+    let party = |p: &model::Party| Party { automaton: AutomatonId(p.automaton.0), optional: p.optional };
+    Channel {
+        name: c.name.clone(),
+        kind: match &c.kind {
+            model::ChannelKind::HandShake => ChannelKind::HandShake,
+            model::ChannelKind::Broadcast => ChannelKind::Broadcast,
+            model::ChannelKind::Joint(parties) => ChannelKind::Joint(parties.iter().map(party).collect()),
+        },
+        urgent: c.urgent,
+        params: c.params.iter().map(|p| bounded(&p.name, p.ty)).collect(),
+        origin: c.span,
+    }
+}
+
 pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Automaton {
+    let shared = count(scenario.shared.len());
+    // Nothing is bound in a location.
+    let slots = Slots { shared, own: count(a.vars.len()) };
     let mut lowered = Automaton {
         name: a.name.clone(),
-        actor: Some(ActorId(a.actor.0)),
+        actor: a.actor.map(|actor| ActorId(actor.0)),
         clocks: a.clocks.clone(),
         vars: a.vars.iter().map(var).collect(),
-        locations: a.locations.iter().map(location).collect(),
+        locations: a.locations.iter().map(|l| slots.location(l)).collect(),
         initial: LocationId(a.initial.0),
         edges: Vec::new(),
         origin: a.span,
     };
     let plans: Vec<Option<Chain>> = a.edges.iter().map(|e| chain(e, a, scenario, &mut lowered)).collect();
-    let slots = Slots { shared: count(scenario.shared.len()), own: count(lowered.vars.len()) };
+    let slots = Slots { shared, own: count(lowered.vars.len()) };
     for (edge, plan) in a.edges.iter().zip(plans) {
         let first = slots.edge(edge);
         match plan {
@@ -72,31 +89,6 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
 
 fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
-}
-
-fn location(l: &model::Location) -> Location {
-    let kind = match l.kind {
-        ast::LocationKind::Normal => LocationKind::Normal,
-        ast::LocationKind::Urgent => LocationKind::Urgent,
-        ast::LocationKind::Committed => LocationKind::Committed,
-    };
-    Location { name: l.name.clone(), kind, invariant: bounds(&l.invariant), holds: None, origin: l.span }
-}
-
-fn bounds(cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
-    let bound = |c: &model::ClockConstraint| ClockConstraint {
-        clock: ClockId(c.clock.0),
-        minus: c.minus.map(|m| ClockId(m.0)),
-        op: match c.op {
-            model::ClockOp::Lt => ClockOp::Lt,
-            model::ClockOp::Le => ClockOp::Le,
-            model::ClockOp::Eq => ClockOp::Eq,
-            model::ClockOp::Ge => ClockOp::Ge,
-            model::ClockOp::Gt => ClockOp::Gt,
-        },
-        bound: Time::constant(nanos(c.bound)),
-    };
-    cs.iter().map(bound).collect()
 }
 
 // ── what a stimulus emits ──
@@ -215,12 +207,66 @@ impl Slots {
         })
     }
 
-    fn edge(&self, e: &model::Edge) -> Edge {
+    fn location(&self, l: &model::Location) -> Location {
+        Location {
+            name: l.name.clone(),
+            kind: match l.kind {
+                ast::LocationKind::Normal => LocationKind::Normal,
+                ast::LocationKind::Urgent => LocationKind::Urgent,
+                ast::LocationKind::Committed => LocationKind::Committed,
+            },
+            invariant: self.bounds(&l.invariant),
+            holds: l.holds.as_ref().map(|e| self.expr(e)),
+            origin: l.span,
+        }
+    }
+
+    fn bounds(&self, cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
+        let bound = |c: &model::ClockConstraint| ClockConstraint {
+            clock: ClockId(c.clock.0),
+            minus: c.minus.map(|m| ClockId(m.0)),
+            op: match c.op {
+                model::ClockOp::Lt => ClockOp::Lt,
+                model::ClockOp::Le => ClockOp::Le,
+                model::ClockOp::Eq => ClockOp::Eq,
+                model::ClockOp::Ge => ClockOp::Ge,
+                model::ClockOp::Gt => ClockOp::Gt,
+            },
+            bound: self.time(&c.bound),
+        };
+        cs.iter().map(bound).collect()
+    }
+
+    fn time(&self, t: &model::Time) -> Time {
+        let term =
+            |(factor, value): &(i64, model::Expr)| TimeTerm { factor: *factor, value: self.expr(value) };
+        Time { nanos: t.nanos, terms: t.terms.iter().map(term).collect() }
+    }
+
+    fn sync(&self, sync: &model::Sync) -> Sync {
         let received = |arg: &model::ReceiveArg| match arg {
             model::ReceiveArg::Any => ReceiveArg::Match(ArgPattern::Any),
             model::ReceiveArg::Is(v) => ReceiveArg::Match(ArgPattern::Is(expr::value(*v))),
             model::ReceiveArg::Bind => ReceiveArg::Bind,
         };
+        let sent = |args: &[model::Expr]| args.iter().map(|a| self.expr(a)).collect();
+        match sync {
+            model::Sync::Internal => Sync::Internal,
+            model::Sync::Send { event, args } => Sync::Send { event: EventId(event.0), args: sent(args) },
+            model::Sync::Receive { event, args } => {
+                Sync::Receive { event: EventId(event.0), args: args.iter().map(received).collect() }
+            }
+            model::Sync::Offer { channel, args } => {
+                Sync::Offer { channel: ChannelId(channel.0), args: sent(args) }
+            }
+            model::Sync::Accept { channel, args } => {
+                Sync::Accept { channel: ChannelId(channel.0), args: args.iter().map(received).collect() }
+            }
+            model::Sync::Join { channel } => Sync::Join { channel: ChannelId(channel.0) },
+        }
+    }
+
+    fn edge(&self, e: &model::Edge) -> Edge {
         let update = |u: &model::Update| match u {
             model::Update::Shared(i, v) => {
                 Update::Assign { place: Place::slot(self.slot(Leaf::Shared(*i))), value: self.expr(v) }
@@ -228,23 +274,17 @@ impl Slots {
             model::Update::Own(i, v) => {
                 Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
             }
-            model::Update::Reset(clock) => Update::zero(ClockId(clock.0)),
+            model::Update::Reset { clock, from, to } => {
+                Update::Reset { clock: ClockId(clock.0), from: from.map(|f| ClockId(f.0)), to: self.time(to) }
+            }
         };
         Edge {
             from: LocationId(e.from.0),
             to: LocationId(e.to.0),
             selects: e.selects.iter().map(|s| bounded(&s.name, s.ty)).collect(),
-            clock_guard: bounds(&e.clock_guard),
+            clock_guard: self.bounds(&e.clock_guard),
             guard: e.guard.as_ref().map(|g| self.expr(g)),
-            sync: match &e.sync {
-                model::Sync::Internal => Sync::Internal,
-                model::Sync::Send { event, args } => {
-                    Sync::Send { event: EventId(event.0), args: args.iter().map(|a| self.expr(a)).collect() }
-                }
-                model::Sync::Receive { event, args } => {
-                    Sync::Receive { event: EventId(event.0), args: args.iter().map(received).collect() }
-                }
-            },
+            sync: self.sync(&e.sync),
             updates: e.updates.iter().map(update).collect(),
             origin: e.span,
         }

@@ -550,6 +550,30 @@ automaton P(n: 0..4) plays person{
 network table=P|Q
 automaton Q=P(3)
 "#
+    channels r#"
+channel take(fork:0..4),free(fork:0..4)
+channel hurry:urgent
+channel tick:broadcast
+channel alarm(n:0..3):urgent broadcast
+channel done:joint P|Q?|R?
+channel more:urgent joint P?|Q
+var total:clock
+var t:clock[3]
+fn front()->0..4{return q[0]}
+fn push(e:0..4){var i:0..5=0;while i<5{q[i]=e;i+=1}for k in 0..3{if q[k]>2{q[k]=0}else if q[k]==1{return}else{push2(k)}}}
+automaton P{
+clock x
+init location a{invariant x<=n*1s&&n>0}
+fn full()->bool{return q[n]>1}
+a->b select i:0..4 when x-y<=q[i]*1s+2s&&full() on take(i) do push(2);x=0;y=3s;x=y+n*1s
+b->a on done
+}
+query live "title" of net=P.a-->Q.b
+query other of net=E<>P.a and not deadlock
+query most of net=sup{P.a}:P.x,q[0]
+query least of net=inf:P.x
+query all of net=A[]P.a imply Q.b
+"#
     requirements r#"
 require R1 functional "a leg is released or discarded in time" after decided ( _ ):(released or discarded)within DEADLINE
 require R2 functional "short"

@@ -169,6 +169,18 @@ automaton P plays person {
 }
 network table = P | Robot
 "#
+    channels r#"
+channel take(fork: 0..4), free
+channel hurry : urgent channel tick : broadcast channel alarm(n: 0..3) : urgent broadcast
+channel done : joint P | Q? | R
+channel more : urgent joint P?
+automaton P { init location a  a -> a on done  fn f(i: 0..3) { if i > 0 { return } g(i) } }
+"#
+    queries r#"
+query live "title" of net = P.a --> Q.b
+query most of net = sup{P.a}: P.x, q[0]
+query none of net = A[] not deadlock imply P.x <= 3 s
+"#
     requirements r#"
 require R1 functional "in time" after decided(_): (released or discarded) within DEADLINE
 require R2 functional sensed(true, true) causes released or discarded

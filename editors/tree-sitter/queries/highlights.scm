@@ -20,7 +20,7 @@
 
 ["(" ")" "{" "}" "[" "]"] @punctuation.bracket
 ["," ";" ":" "."] @punctuation.delimiter
-["->" ".." "=" "+=" "-=" "|" "||" "&&" "!" "!!" "==" "!=" "<" "<=" ">" ">=" "+" "-" "*" "/" "%" "?" "-+" "@" "~"] @operator
+["->" "-->" ".." "=" "+=" "-=" "|" "||" "&&" "!" "!!" "==" "!=" "<" "<=" ">" ">=" "+" "-" "*" "/" "%" "?" "-+" "@" "~"] @operator
 (trigger_kind) @operator
 
 ; ── Keywords ──
@@ -33,17 +33,22 @@
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
   "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"
-  "stop" "minimise"
+  "stop" "minimise" "channel" "query" "witness" "delays"
 ] @keyword
+"fn" @keyword.function
+"return" @keyword.return
 ["for" "fork" "while"] @keyword.repeat
 (never_pattern "while" @keyword)
 ["enum" "record"] @keyword.type
-["init" "urgent" "committed"] @keyword.modifier
+["init" "urgent" "committed" "broadcast"] @keyword.modifier
+(channel_declaration "joint" @keyword.modifier)
 ["if" "else"] @keyword.conditional
 ["await" "wait"] @keyword.coroutine
 "use" @keyword.import
 "allow" @keyword.directive
-["not" "and" "or"] @keyword.operator
+["not" "and" "or" "imply"] @keyword.operator
+["sup" "inf"] @function.builtin
+(quantifier) @operator
 (fork_step ["and" "or"] @keyword.repeat)
 (boolean ["true" "false"] @boolean)
 
@@ -78,6 +83,11 @@
 (plan mode: (identifier) @attribute)
 (automaton_declaration name: (identifier) @type)
 (automaton_declaration plays: (identifier) @type)
+(party automaton: (identifier) @type)
+(function_declaration name: (identifier) @function)
+(for_statement name: (identifier) @variable)
+(query_declaration name: (identifier) @constant)
+(query_declaration network: (identifier) @type)
 (location name: (identifier) @label)
 (edge from: (identifier) @label)
 (edge to: (identifier) @label)
@@ -109,7 +119,7 @@
 (named_type name: (identifier) @type)
 ((named_type name: (identifier) @type.builtin)
   (#any-of? @type.builtin
-    "bool" "int" "string" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
+    "bool" "clock" "int" "string" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
 (template_type ["event" "actor" "cover" "agent"] @type.builtin)
 (call name: (identifier) @function.call)
 (call_expression function: (identifier) @function.call)

@@ -5,6 +5,7 @@
   (agent_body)
   (plan_body)
   (automaton_body)
+  (function_body)
   (location_body)
   (cross_body)
   (suite_body)
@@ -26,6 +27,7 @@
 [
   (require_declaration)
   (cover_declaration)
+  (query_declaration)
   (signal)
   (rule)
   (belief_rule)

@@ -6,6 +6,8 @@
 (plan) @local.scope
 (belief_rule) @local.scope
 (automaton_declaration) @local.scope
+(function_declaration) @local.scope
+(for_statement) @local.scope
 (edge) @local.scope
 (require_declaration) @local.scope
 (cover_declaration) @local.scope
@@ -30,6 +32,8 @@
 (goal_type name: (identifier) @local.definition)
 (var_declaration name: (identifier) @local.definition)
 (clock name: (identifier) @local.definition)
+(for_statement name: (identifier) @local.definition)
+(query_declaration name: (identifier) @local.definition)
 (placement name: (identifier) @local.definition)
 (body name: (identifier) @local.definition)
 (joint name: (identifier) @local.definition)

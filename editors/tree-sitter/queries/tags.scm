@@ -10,6 +10,8 @@
 (agent_declaration name: (identifier) @name) @definition.class
 (automaton_declaration name: (identifier) @name) @definition.class
 (instance_declaration name: (identifier) @name) @definition.class
+(function_declaration name: (identifier) @name) @definition.function
+(query_declaration name: (identifier) @name) @definition.constant
 (network_declaration name: (identifier) @name) @definition.class
 (require_declaration name: (identifier) @name) @definition.constant
 (cover_declaration name: (identifier) @name) @definition.constant
@@ -40,4 +42,5 @@
 (instance_declaration template: (identifier) @name) @reference.class
 (agent_declaration plays: (identifier) @name) @reference.interface
 (automaton_declaration plays: (identifier) @name) @reference.interface
+(party automaton: (identifier) @name) @reference.class
 (named_type name: (identifier) @name) @reference.type

@@ -13,6 +13,7 @@ enum Token {
   MEMBER,
   ORIGIN,
   UNIT,
+  QUANTIFIER,
   MISSING_BRACE,
 #define HEAD(id, word) KEYWORD_##id,
 #define HARD(id, word) KEYWORD_##id,
@@ -179,6 +180,17 @@ static bool in_wrong_block(TSLexer *lexer, const Keyword *keyword, const bool *v
   return is_letter(next);
 }
 
+// `E<>`, `A[]` and the like, without blanks: the mark after the letter. Moves on; the word must have been marked.
+static bool take_quantifier(TSLexer *lexer, const Word *word) {
+  int32_t open = lexer->lookahead;
+  if ((!equals(word, "E") && !equals(word, "A")) || (open != '<' && open != '[')) return false;
+  advance(lexer);
+  if (lexer->lookahead != (open == '<' ? '>' : ']')) return false;
+  advance(lexer);
+  lexer->mark_end(lexer);
+  return true;
+}
+
 // What a word is here. A word is always taken, also where none fits: its parts must not be read as keywords.
 static enum Token role(TSLexer *lexer, const Word *word, bool same_line, bool failed, const bool *valid) {
   const Keyword *keyword = keyword_of(word);
@@ -214,6 +226,10 @@ bool tree_sitter_hri_external_scanner_scan(void *payload, TSLexer *lexer, const 
     return true;
   }
   lexer->mark_end(lexer);
+  if (take_quantifier(lexer, &word)) {
+    lexer->result_symbol = QUANTIFIER;
+    return true;
+  }
   if (unit && is_plain(&word)) {
     static const enum Token TOKENS[] = {UNIT, IDENTIFIER, ORIGIN};
     lexer->result_symbol = TOKENS[after_number(lexer)];

@@ -1,10 +1,10 @@
 //! Assignments of edges: to single values, to several at once, and to elements that an index names.
 
-use hrdsl_syntax::ast::{self, Access, BinaryOp, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, Access, BinaryOp, Name};
 
-use super::{Checker, Env, automaton::Scope, edge::and};
+use super::{Checker, Env, automaton::Scope, clock::is_clock, edge::and};
 use crate::{
-    ClockId, Dim, Expr, ExprKind, Kind, Leaf, Type, Update, Value,
+    Expr, ExprKind, Kind, Leaf, Type, Update, Value,
     noun::Noun,
     report::{automata, types},
     types::Layout,
@@ -21,9 +21,8 @@ impl Checker<'_> {
         env: &mut Env,
         updates: &mut Vec<Update>,
     ) {
-        if let Some(clock) = scope.clocks.get(&target.text) {
-            let reset = self.reset(target, access, op, value, env);
-            return updates.extend(reset.then_some(Update::Reset(ClockId(clock))));
+        if is_clock(target, env) {
+            return updates.extend(self.set_clock((target, access), op, value, scope, env));
         }
         let slot = env.find(&target.text).map(|l| l.leaf);
         if env.layout(&target.text) == Some(&Layout::Unknown) {
@@ -67,29 +66,6 @@ impl Checker<'_> {
         self.leaves(name, layout, &mut leaves);
         let own = |l: &super::env::Local| matches!(l.leaf, Some(Leaf::Own(_) | Leaf::Shared(_)));
         !leaves.iter().all(|(name, _)| env.find(name).is_some_and(own))
-    }
-
-    /// `x = 0`
-    fn reset(
-        &mut self,
-        target: &Name,
-        access: &[Access],
-        op: Option<BinaryOp>,
-        value: &ast::Expr,
-        env: &mut Env,
-    ) -> bool {
-        let zero = match value.kind {
-            Syntax::Int(n) => n == 0,
-            Syntax::Quantity { number, .. } => {
-                number == 0.0 && self.expr_of(value, Kind::Float(Dim::TIME), env).constant().is_some()
-            }
-            _ => false,
-        };
-        let fits = zero && op.is_none() && access.is_empty();
-        if !fits {
-            self.report(automata::clock_set(&target.text, target.span));
-        }
-        fits
     }
 
     fn type_of(&self, scope: &Scope, leaf: Leaf) -> Type {

@@ -7,15 +7,16 @@ use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sor
 
 use super::{Checker, Declared, Env, table::Table};
 use crate::{
-    ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync,
-    noun::Noun, report::automata, types::Layout,
+    ActorId, AutomatonId, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync, noun::Noun,
+    report::automata, types::Layout,
 };
 
 /// The names of one automaton.
 pub(super) struct Scope {
     /// Into the scenario's automata.
     pub index: usize,
-    pub actor: ActorId,
+    pub actor: Option<ActorId>,
+    /// Its own.
     pub clocks: Table,
     /// The single values of the variables.
     pub vars: Table,
@@ -101,7 +102,15 @@ impl Checker<'_> {
         let mut bound = 0;
         for edge in &automaton.edges {
             bound = bound.max(edge.selects.len());
-            let (Sync::Send { event, .. } | Sync::Receive { event, .. }) = &edge.sync else { continue };
+            let event = match &edge.sync {
+                Sync::Internal | Sync::Join { .. } => continue,
+                Sync::Offer { channel, .. } | Sync::Accept { channel, .. } => {
+                    let params = self.s.channels[usize::from(channel.0)].params.len();
+                    bound = bound.max(edge.selects.len() + params);
+                    continue;
+                }
+                Sync::Send { event, .. } | Sync::Receive { event, .. } => event,
+            };
             let event = &self.s.events[usize::from(event.0)];
             bound = bound.max(edge.selects.len() + event.params.len());
             let emitted = event.stimulus.as_ref().map_or(0, |s| emissions(&s.steps));
@@ -113,6 +122,10 @@ impl Checker<'_> {
         let name = &automaton.name;
         if locations > automaton.locations.len() + MAX_MADE {
             let message = format!("the stimuli on the edges of `{name}` emit more than {MAX_MADE} events");
+            return Some(super::too_many(message, span));
+        }
+        if automaton.clocks.len() + self.s.clocks.len() > super::table::MAX_NAMES {
+            let message = format!("`{name}` sees more than {} clocks", super::table::MAX_NAMES);
             return Some(super::too_many(message, span));
         }
         (vars + bound > super::table::MAX_NAMES).then(|| {
@@ -151,28 +164,8 @@ impl Checker<'_> {
         for member in &automaton.members {
             broken |= matches!(member.kind, Member::Error);
             let Member::Location { init, kind, name, invariant } = &member.kind else { continue };
-            let mut bounds = Vec::new();
-            if let Some(e) = invariant {
-                let mut env = scope.env.clone();
-                for part in super::edge::conjuncts(e) {
-                    let bound = self.clock_bound(part, scope, &mut env);
-                    match bound {
-                        Some(Some(b)) if b.minus.is_none() && matches!(b.op, ClockOp::Lt | ClockOp::Le) => {
-                            bounds.push(b);
-                        }
-                        Some(None) => {}
-                        Some(Some(_)) => self.report(automata::bad_invariant(part.span)),
-                        None => {
-                            let known = self.issues.len();
-                            self.expr_of(part, crate::Kind::Bool, &mut env);
-                            // A name that does not exist is said before what an invariant is.
-                            if self.issues.len() == known && !self.unread_members {
-                                self.report(automata::bad_invariant(part.span));
-                            }
-                        }
-                    }
-                }
-            }
+            let mut env = scope.env.clone();
+            let (bounds, data, _) = self.conjunction(scope, invariant.as_ref(), &mut env);
             let Some(id) = Self::declare(&mut self.issues, &mut scope.locations, Noun::Location, name) else {
                 continue;
             };
@@ -182,9 +175,13 @@ impl Checker<'_> {
                     Some((_, first)) => self.report(automata::second_initial(&name.text, name.span, first)),
                 }
             }
-            let location =
-                Location { name: name.text.clone(), kind: *kind, invariant: bounds, span: member.span };
-            self.s.automata[index].locations.push(location);
+            self.s.automata[index].locations.push(Location {
+                name: name.text.clone(),
+                kind: *kind,
+                invariant: bounds,
+                holds: data.into_iter().reduce(super::edge::and),
+                span: member.span,
+            });
         }
         match initial {
             Some((id, _)) => self.s.automata[index].initial = id,

@@ -5,10 +5,10 @@ use hrdsl_syntax::ast::{
     self, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam,
 };
 
-use super::{Checker, Env, automaton::Scope, is_variable_name, item::Part};
+use super::{Checker, Env, automaton::Scope, channel::Medium, is_variable_name, item::Part};
 use crate::{
-    ClockConstraint, ClockId, ClockOp, Dim, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param,
-    ReceiveArg, StimulusStep, Sync, Type, Value,
+    ClockConstraint, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param, ReceiveArg, StimulusStep,
+    Sync, Type,
     noun::Noun,
     report::{automata, types},
     types::Layout,
@@ -21,16 +21,8 @@ impl Checker<'_> {
         let selects = self.selects(&edge.selects, &mut env);
         let mut equal = Vec::new();
         let receive = edge.on.as_ref().map(|call| self.receive(scope, call, &mut env, &mut equal));
-        let mut clock_guard = Vec::new();
-        let mut data: Vec<Expr> = equal;
-        if let Some(guard) = &edge.guard {
-            for part in conjuncts(guard) {
-                match self.clock_bound(part, scope, &mut env) {
-                    Some(bound) => clock_guard.extend(bound),
-                    None => data.push(self.expr_of(part, Kind::Bool, &mut env)),
-                }
-            }
-        }
+        let (clock_guard, mut data, timed) = self.conjunction(scope, edge.guard.as_ref(), &mut env);
+        data.splice(0..0, equal);
         let mut updates = Vec::new();
         let mut sent: Option<(Span, Option<Sync>)> = None;
         for action in &edge.actions {
@@ -56,8 +48,29 @@ impl Checker<'_> {
             (None, Some((_, send))) => send?,
             (None, None) => Sync::Internal,
         };
+        self.check_urgent(&sync, timed);
         let guard = data.into_iter().reduce(and);
         Some(Edge { from: from?, to: to?, selects, clock_guard, guard, sync, updates, span })
+    }
+
+    /// A conjunction taken apart: the bounds on clocks, the rest, and where the first bound is.
+    pub(super) fn conjunction(
+        &mut self,
+        scope: &Scope,
+        condition: Option<&ast::Expr>,
+        env: &mut Env,
+    ) -> (Vec<ClockConstraint>, Vec<Expr>, Option<Span>) {
+        let (mut bounds, mut data, mut timed) = (Vec::new(), Vec::new(), None);
+        for part in condition.into_iter().flat_map(conjuncts) {
+            match self.clock_bound(part, scope, env) {
+                Some(bound) => {
+                    timed = timed.or(Some(part.span));
+                    bounds.extend(bound);
+                }
+                None => data.push(self.expr_of(part, Kind::Bool, env)),
+            }
+        }
+        (bounds, data, timed)
     }
 
     fn location(&mut self, scope: &Scope, name: &Name) -> Option<LocationId> {
@@ -87,17 +100,37 @@ impl Checker<'_> {
     /// `on e(…)`: a lower-case name that means nothing yet is bound; a variable's value is compared by the guard.
     fn receive(&mut self, scope: &Scope, call: &Call, env: &mut Env, equal: &mut Vec<Expr>) -> Option<Sync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
-        let Some(event) = self.event(Noun::EventOrStimulus, &call.name, local) else {
-            self.bind_unknown(call, env);
-            return None;
-        };
-        self.perceives(scope.actor, event, call.name.span, true);
-        let fields = self.fields_of(event);
+        match self.medium(scope, &call.name, local) {
+            Some(Medium::Channel(channel)) => self.accept(scope, channel, call, env, equal),
+            Some(Medium::Event(event)) => {
+                if let Some(actor) = scope.actor {
+                    self.perceives(actor, event, call.name.span, true);
+                }
+                let fields = self.fields_of(event);
+                let args = self.received_args(self.noun_of(event), call, &fields, env, equal)?;
+                Some(Sync::Receive { event, args })
+            }
+            None => {
+                self.bind_unknown(call, env);
+                None
+            }
+        }
+    }
+
+    /// What is done with each single value of an event or channel.
+    pub(super) fn received_args(
+        &mut self,
+        noun: Noun,
+        call: &Call,
+        fields: &[(String, Layout)],
+        env: &mut Env,
+        equal: &mut Vec<Expr>,
+    ) -> Option<Vec<ReceiveArg>> {
         let Some(args) = &call.args else {
-            return Some(Sync::Receive { event, args: vec![ReceiveArg::Any; self.arity_of(event)] });
+            return Some(vec![ReceiveArg::Any; self.flat(fields).len()]);
         };
         if args.len() != fields.len() {
-            self.wrong_arity(self.noun_of(event), call, &fields);
+            self.wrong_arity(noun, call, fields);
             return None;
         }
         // What is there before the edge binds anything.
@@ -109,9 +142,8 @@ impl Checker<'_> {
                 && !c.has_value(&name.text)
                 && !is_variable_name(&name.text)
         };
-        let parts = self.spread_args(args, &fields, env, &free);
-        let received = parts.into_iter().map(|part| self.received_part(part, env, equal)).collect();
-        Some(Sync::Receive { event, args: received })
+        let parts = self.spread_args(args, fields, env, &free);
+        Some(parts.into_iter().map(|part| self.received_part(part, env, equal)).collect())
     }
 
     /// What an unknown event would bind is known, but not its types.
@@ -176,8 +208,13 @@ impl Checker<'_> {
 
     fn send(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Option<Sync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
-        let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
-        self.owns(scope.actor, event, call);
+        let event = match self.medium(scope, &call.name, local)? {
+            Medium::Channel(channel) => return self.offer(channel, call, env),
+            Medium::Event(event) => event,
+        };
+        if let Some(actor) = scope.actor {
+            self.owns(actor, event, call);
+        }
         let fields = self.fields_of(event);
         let args = self.args(self.noun_of(event), call, &fields, env);
         let params = self.s.events[usize::from(event.0)].params.clone();
@@ -200,78 +237,6 @@ impl Checker<'_> {
         let e = &self.s.events[usize::from(event.0)];
         let params = e.params.len();
         e.stimulus.as_ref().is_some_and(|s| sampled(&s.steps, params))
-    }
-
-    // ── clock bounds ──
-
-    /// A comparison with a clock on one side. `None`: there is no clock at the top of it, it is data;
-    /// `Some(None)`: it is a bound, but a wrong one.
-    pub(super) fn clock_bound(
-        &mut self,
-        e: &ast::Expr,
-        scope: &Scope,
-        env: &mut Env,
-    ) -> Option<Option<ClockConstraint>> {
-        let Syntax::Binary { op, left, right } = &e.kind else { return None };
-        let (l, r) = (clock_side(left, scope), clock_side(right, scope));
-        let (side, other, flipped) = match (l, r) {
-            (Some((x, None)), Some((y, None))) => {
-                // `x < y` is `x - y < 0`
-                let op = self.clock_op(*op, e.span, false);
-                return Some(op.map(|op| ClockConstraint { clock: x, minus: Some(y), op, bound: 0.0 }));
-            }
-            (Some(side), _) => (side, right, false),
-            (None, Some(side)) => (side, left, true),
-            (None, None) => return None,
-        };
-        let op = self.clock_op(*op, e.span, flipped);
-        let bound = self.constant(other, Kind::Float(Dim::TIME), env).and_then(Value::number);
-        let constraint = op.zip(bound);
-        Some(constraint.map(|(op, bound)| ClockConstraint { clock: side.0, minus: side.1, op, bound }))
-    }
-
-    fn clock_op(&mut self, op: BinaryOp, span: Span, flipped: bool) -> Option<ClockOp> {
-        let written = match op {
-            BinaryOp::Lt => Ok(ClockOp::Lt),
-            BinaryOp::Le => Ok(ClockOp::Le),
-            BinaryOp::Eq => Ok(ClockOp::Eq),
-            BinaryOp::Ge => Ok(ClockOp::Ge),
-            BinaryOp::Gt => Ok(ClockOp::Gt),
-            BinaryOp::Ne => Err("!="),
-            BinaryOp::Or => Err("||"),
-            BinaryOp::And => Err("&&"),
-            BinaryOp::Add => Err("+"),
-            BinaryOp::Sub => Err("-"),
-            BinaryOp::Mul => Err("*"),
-            BinaryOp::Div => Err("/"),
-            BinaryOp::Rem => Err("%"),
-        };
-        match (written, flipped) {
-            (Ok(op), false) => Some(op),
-            (Ok(op), true) => Some(match op {
-                ClockOp::Lt => ClockOp::Gt,
-                ClockOp::Le => ClockOp::Ge,
-                ClockOp::Eq => ClockOp::Eq,
-                ClockOp::Ge => ClockOp::Le,
-                ClockOp::Gt => ClockOp::Lt,
-            }),
-            (Err(op), _) => {
-                self.report(automata::clock_comparison(op, span));
-                None
-            }
-        }
-    }
-}
-
-/// `x` or `x - y`
-fn clock_side(e: &ast::Expr, scope: &Scope) -> Option<(ClockId, Option<ClockId>)> {
-    let clock = |e: &ast::Expr| match &e.kind {
-        Syntax::Path(path) if path.names.len() == 1 => scope.clocks.get(&path.names[0].text).map(ClockId),
-        _ => None,
-    };
-    match &e.kind {
-        Syntax::Binary { op: BinaryOp::Sub, left, right } => Some((clock(left)?, Some(clock(right)?))),
-        _ => Some((clock(e)?, None)),
     }
 }
 

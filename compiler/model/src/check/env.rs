@@ -27,8 +27,10 @@ pub(crate) struct Local {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scope {
     pub names: Map<String, Local>,
-    /// Without values.
+    /// Without values; of an array each element, and the array itself.
     pub clocks: Map<String, Local>,
+    /// The sizes of the arrays of clocks.
+    pub clock_arrays: Map<String, Vec<u16>>,
     /// As in [`Env::layouts`].
     pub layouts: Map<String, Layout>,
 }
@@ -91,6 +93,7 @@ impl Env {
             .or_else(|| self.own.names.get(name))
             .or_else(|| self.own.clocks.get(name))
             .or_else(|| self.shared.names.get(name))
+            .or_else(|| self.shared.clocks.get(name))
     }
 
     /// What a leaf stands for.
@@ -105,7 +108,8 @@ impl Env {
     /// All names, those of the place itself first.
     pub fn all(&self) -> impl Iterator<Item = &Local> {
         let own = self.own.names.values().chain(self.own.clocks.values());
-        self.locals.iter().chain(own).chain(self.shared.names.values())
+        let shared = self.shared.names.values().chain(self.shared.clocks.values());
+        self.locals.iter().chain(own).chain(shared)
     }
 
     /// The names that stand for several values.

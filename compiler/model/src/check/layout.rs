@@ -9,7 +9,7 @@ use super::{Checker, Env, table::Table};
 use crate::{
     Enum, Kind, Of, Param, Type, Value,
     noun::Noun,
-    report::{names, types},
+    report::{automata, names, types},
     types::Layout,
 };
 
@@ -268,6 +268,10 @@ impl<'a> Checker<'a> {
             }
             // One without fields has a diagnostic.
             return (self.records[usize::from(id)].size > 0).then_some(Layout::Record(id));
+        }
+        if name.text == "clock" {
+            self.report(automata::clock_type(name.span));
+            return None;
         }
         let mut all = self.type_names();
         if self.given.is_some() {

@@ -252,7 +252,7 @@ impl<'a> Checker<'a> {
 }
 
 /// The first names of all paths in an expression.
-fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
+pub(super) fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
     match &e.kind {
         Syntax::Bool(_)
         | Syntax::Int(_)

@@ -4,6 +4,8 @@ mod agent;
 mod args;
 mod assign;
 mod automaton;
+mod channel;
+mod clock;
 mod combine;
 mod context;
 mod coverage;
@@ -16,6 +18,7 @@ mod internal;
 mod internal_table;
 mod item;
 mod layout;
+mod linear;
 mod list;
 mod lookup;
 mod measure;
@@ -58,13 +61,14 @@ use given::{Given, Givens, Template};
 pub use internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
 use item::Item;
 use layout::{Fields, RecordEntry};
+pub(crate) use linear::BadTime;
 use table::{MAX_NAMES, Map, Refused, Table};
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///
 /// # Steps
-/// 1. [`Checker::vocabulary`]: actors, types, constants, events, stimuli, shared variables, templates, and the names of
-///    agents and automata
+/// 1. [`Checker::vocabulary`]: actors, types, constants, events, stimuli, shared variables, templates, the names of
+///    agents and automata, and channels
 /// 2. [`Checker::world`]: bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
@@ -188,8 +192,14 @@ pub(crate) struct Checker<'a> {
     /// The single values of the shared variables.
     shared: Table,
     shared_names: Table,
-    /// What every automaton sees of them.
+    /// What every automaton sees of them, and of the shared clocks.
     shared_scope: Rc<env::Scope>,
+    shared_clocks: Table,
+    channels: Table,
+    /// Some party of these joint channels has a diagnostic.
+    vague_channels: BTreeSet<String>,
+    /// By [`ChannelId`](crate::ChannelId): the parameters as declared.
+    channel_fields: Vec<Fields>,
     networks: Table,
     points: Table,
     crosses: Table,
@@ -264,6 +274,10 @@ impl<'a> Checker<'a> {
             shared: Table::default(),
             shared_names: Table::default(),
             shared_scope: Rc::default(),
+            shared_clocks: Table::default(),
+            channels: Table::default(),
+            vague_channels: BTreeSet::new(),
+            channel_fields: Vec::new(),
             networks: Table::default(),
             points: Table::default(),
             crosses: Table::default(),
@@ -417,6 +431,7 @@ impl<'a> Checker<'a> {
         let tables = [
             (&self.actors, Noun::Actor),
             (&self.shared_names, Noun::Variable),
+            (&self.channels, Noun::Channel),
             (&self.networks, Noun::Network),
             (&self.points, Noun::Point),
             (&self.crosses, Noun::Cross),

@@ -104,8 +104,14 @@ impl Checker<'_> {
             };
             let player = self.player_ids[usize::from(id)];
             let actor = match player {
-                Player::Agent(a) => self.s.agents[usize::from(a.0)].actor,
+                Player::Agent(a) => Some(self.s.agents[usize::from(a.0)].actor),
                 Player::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
+            };
+            let Some(actor) = actor else {
+                let message = format!("`{}` plays no actor: it cannot be a player", name.text);
+                let help = format!("write `automaton {} plays ACTOR`, or name another", name.text);
+                self.report(bad_suite(name.span, message, &help));
+                continue;
             };
             if let Some((_, first)) = actors.iter().find(|(a, _)| *a == actor && actor != NOBODY) {
                 let message = format!("`{}` plays `{}` a second time", name.text, self.actor_name(actor));

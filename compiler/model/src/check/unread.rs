@@ -79,6 +79,8 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Event
         | Noun::Stimulus
         | Noun::EventOrStimulus
+        | Noun::Channel
+        | Noun::Medium
         | Noun::Agent
         | Noun::Automaton
         | Noun::Player

@@ -69,10 +69,11 @@ impl<'a> Checker<'a> {
                     self.declare_automaton(plain, &syntax.name, span);
                 }
                 ItemKind::Instance(instance) => self.declare_instance(instance, span),
-                ItemKind::Var(var) => self.declare_shared(var),
+                ItemKind::Var(var) => self.declare_shared(var, span),
                 _ => {}
             }
         }
+        self.declare_channels();
     }
 
     /// An instance of a template of agents or automata.
@@ -222,8 +223,9 @@ impl<'a> Checker<'a> {
         span: Span,
     ) {
         let plays = automaton.syntax.plays.as_ref();
-        let actor = self.as_instance(automaton.given.clone(), None, |c| plays.and_then(|p| c.actor(p)));
-        let actor = actor.unwrap_or(NOBODY);
+        let actor = plays.map(|plays| {
+            self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY)
+        });
         self.s.automata.push(Automaton {
             name: name.text.clone(),
             actor,
@@ -236,10 +238,13 @@ impl<'a> Checker<'a> {
         });
     }
 
-    fn declare_shared(&mut self, var: &ast::Var) {
+    fn declare_shared(&mut self, var: &ast::Var, span: Span) {
         self.check_free(&Env::constants(), Noun::Variable, &var.name);
         let (issues, names) = (&mut self.issues, &mut self.shared_names);
         if Self::declare(issues, names, Noun::Variable, &var.name).is_none() {
+            return;
+        }
+        if self.declare_shared_clocks(var, span) {
             return;
         }
         let (layout, vars) = self.var(var);

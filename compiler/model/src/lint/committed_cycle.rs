@@ -4,14 +4,14 @@ use hrdsl_source::{Code, Diagnostic};
 use hrdsl_syntax::ast::LocationKind;
 
 use super::facts::Facts;
-use crate::{Automaton, Edge, LocationId, Scenario, Sync, Update};
+use crate::{Automaton, Edge, LocationId, Scenario, Sync, Time, Update};
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let instant = |l: LocationId| {
             let location = automaton.locations.get(usize::from(l.0));
-            location.is_some_and(|l| l.kind != LocationKind::Normal)
+            location.is_some_and(|l| l.kind != LocationKind::Normal && l.holds.is_none())
         };
         let mut next: Vec<Vec<usize>> = vec![Vec::new(); automaton.locations.len()];
         for edge in automaton.edges.iter().filter(|e| is_free(e) && flow.reached(e.from)) {
@@ -30,7 +30,10 @@ fn is_free(edge: &Edge) -> bool {
     edge.sync == Sync::Internal
         && edge.guard.is_none()
         && edge.clock_guard.is_empty()
-        && edge.updates.iter().all(|u| matches!(u, Update::Reset(_)))
+        && edge
+            .updates
+            .iter()
+            .all(|u| matches!(u, Update::Reset { from: None, to, .. } if *to == Time::default()))
 }
 
 fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize]) -> Diagnostic {

@@ -160,7 +160,7 @@ impl Facts {
     fn declared(&mut self, scenario: &Scenario) {
         let mut modelled = vec![false; scenario.actors.len()];
         let players = scenario.agents.iter().map(|a| a.actor);
-        for actor in players.chain(scenario.automata.iter().map(|a| a.actor)) {
+        for actor in players.chain(scenario.automata.iter().filter_map(|a| a.actor)) {
             if let Some(m) = modelled.get_mut(usize::from(actor.0)) {
                 *m = true;
             }
@@ -244,7 +244,7 @@ impl Facts {
             let places = scenario.places.automata.get(index);
             for (i, edge) in automaton.edges.iter().enumerate() {
                 match &edge.sync {
-                    Sync::Internal => {}
+                    Sync::Internal | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
                     Sync::Send { event, args } => self.makes_exprs(*event, args),
                     Sync::Receive { event, args } => {
                         let span = places.and_then(|p| p.waits.get(i)).copied().unwrap_or(edge.span);

@@ -3,8 +3,8 @@
 use std::{collections::VecDeque, rc::Rc};
 
 use crate::{
-    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, Leaf, LocationId, ReceiveArg, Scenario,
-    Sync, Update,
+    Automaton, ChannelKind, ClockConstraint, ClockOp, Edge, EventId, Expr, Leaf, LocationId, Param,
+    ReceiveArg, Scenario, Sync, Update,
     lint::interval::{Env, Interval},
 };
 
@@ -19,12 +19,20 @@ struct Ranges {
     shared: Vec<Interval>,
     /// By event.
     params: Vec<Vec<Interval>>,
+    /// By channel.
+    channels: Vec<Vec<Interval>>,
+    /// By channel: it is a broadcast.
+    broadcasts: Vec<bool>,
+    /// How many clocks are shared: those come first.
+    clocks: usize,
 }
 
 /// What is known about one automaton.
 pub(crate) struct Flow {
     ranges: Rc<Ranges>,
     own: Vec<Interval>,
+    /// By location: what holds of the variables there.
+    holds: Vec<Option<Expr>>,
     /// By location; `None`: no edge reaches it.
     states: Vec<Option<Vec<Interval>>>,
     /// The edges out of each location.
@@ -33,10 +41,13 @@ pub(crate) struct Flow {
 
 /// The flows of all automata.
 pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
-    let params = |e: &Event| e.params.iter().map(|p| Interval::of(p.ty)).collect();
+    let intervals = |params: &[Param]| params.iter().map(|p| Interval::of(p.ty)).collect();
     let ranges = Rc::new(Ranges {
         shared: scenario.shared.iter().map(|v| Interval::of(v.ty)).collect(),
-        params: scenario.events.iter().map(params).collect(),
+        params: scenario.events.iter().map(|e| intervals(&e.params)).collect(),
+        channels: scenario.channels.iter().map(|c| intervals(&c.params)).collect(),
+        broadcasts: scenario.channels.iter().map(|c| c.kind == ChannelKind::Broadcast).collect(),
+        clocks: scenario.clocks.len(),
     });
     scenario.automata.iter().map(|a| Flow::of(a, Rc::clone(&ranges))).collect()
 }
@@ -51,7 +62,8 @@ impl Flow {
             }
         }
         let states = vec![None; automaton.locations.len()];
-        let mut flow = Self { ranges, own, states, out };
+        let holds = automaton.locations.iter().map(|l| l.holds.clone()).collect();
+        let mut flow = Self { ranges, own, holds, states, out };
         flow.grow(automaton);
         flow.shrink(automaton);
         flow.shrink(automaton);
@@ -138,19 +150,40 @@ impl Flow {
             return None;
         }
         let mut env = Env::new(own, &self.ranges.shared, self.locals(edge));
-        let possible = edge.guard.as_ref().is_none_or(|g| env.assume(g, true));
+        let holds = self.holds.get(at(edge.from)).and_then(Option::as_ref);
+        let possible = holds.into_iter().chain(&edge.guard).all(|g| env.assume(g, true));
         possible.then_some(env)
     }
 
-    /// The selects, then what the event binds.
+    /// The selects, then what the event or channel binds.
     fn locals(&self, edge: &Edge) -> Vec<Interval> {
         let mut locals: Vec<Interval> = edge.selects.iter().map(|p| Interval::of(p.ty)).collect();
-        if let Sync::Receive { event, args } = &edge.sync {
-            let params = self.params(*event);
-            let bound = args.iter().zip(params).filter(|(a, _)| **a == ReceiveArg::Bind);
-            locals.extend(bound.map(|(_, range)| *range));
-        }
+        let (args, params) = match &edge.sync {
+            Sync::Receive { event, args } => (args, self.params(*event)),
+            Sync::Accept { channel, args } => {
+                (args, self.ranges.channels.get(usize::from(channel.0)).map_or(&[][..], Vec::as_slice))
+            }
+            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => return locals,
+        };
+        let bound = args.iter().zip(params).filter(|(a, _)| **a == ReceiveArg::Bind);
+        locals.extend(bound.map(|(_, range)| *range));
         locals
+    }
+
+    /// Whether an edge only follows another automaton, which need not wait for it.
+    pub fn only_hears(&self, edge: &Edge) -> bool {
+        match &edge.sync {
+            Sync::Receive { .. } => true,
+            Sync::Accept { channel, .. } => {
+                self.ranges.broadcasts.get(usize::from(channel.0)).copied().unwrap_or(false)
+            }
+            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => false,
+        }
+    }
+
+    /// Whether no other automaton sets the clocks of a bound.
+    pub fn is_own(&self, bound: &ClockConstraint) -> bool {
+        bound.clocks().all(|c| usize::from(c.0) >= self.ranges.clocks)
     }
 
     /// The ranges of an event's parameters.
@@ -163,7 +196,7 @@ impl Flow {
         let (leaf, e, range) = match update {
             Update::Own(i, e) => (Leaf::Own(*i), e, self.own.get(usize::from(*i))),
             Update::Shared(i, e) => (Leaf::Shared(*i), e, self.ranges.shared.get(usize::from(*i))),
-            Update::Reset(_) => return None,
+            Update::Reset { .. } => return None,
         };
         Some((leaf, e, range.copied().unwrap_or(Interval::ALL)))
     }
@@ -199,18 +232,20 @@ fn contradictory(guard: &[ClockConstraint]) -> bool {
     guard.iter().any(|low| guard.iter().any(|high| clash(low, high)))
 }
 
-/// Whether the first demands more than the second allows, of the same clock or difference of clocks.
+/// Whether the first demands more than the second allows, of the same clock or difference of clocks; of bounds with
+/// variables that is not known.
 pub(crate) fn clash(low: &ClockConstraint, high: &ClockConstraint) -> bool {
-    let (lower, open_below) = match low.op {
-        ClockOp::Ge | ClockOp::Eq => (low.bound, false),
-        ClockOp::Gt => (low.bound, true),
+    let open_below = match low.op {
+        ClockOp::Ge | ClockOp::Eq => false,
+        ClockOp::Gt => true,
         ClockOp::Lt | ClockOp::Le => return false,
     };
-    let (upper, open_above) = match high.op {
-        ClockOp::Le | ClockOp::Eq => (high.bound, false),
-        ClockOp::Lt => (high.bound, true),
+    let open_above = match high.op {
+        ClockOp::Le | ClockOp::Eq => false,
+        ClockOp::Lt => true,
         ClockOp::Gt | ClockOp::Ge => return false,
     };
+    let Some((lower, upper)) = low.bound.fixed().zip(high.bound.fixed()) else { return false };
     let same = (low.clock, low.minus) == (high.clock, high.minus);
     same && (lower > upper || lower >= upper && (open_below || open_above))
 }

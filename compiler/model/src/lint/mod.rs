@@ -5,6 +5,7 @@
 mod agent_facts;
 mod applicable;
 mod belief_never_added;
+mod channels;
 mod committed_cycle;
 mod contradiction;
 mod cross_bins;
@@ -53,6 +54,7 @@ const RULES: &[Rule] = &[
     unreachable_location::check,
     time_stops::check,
     committed_cycle::check,
+    channels::check,
     never_triggered::check,
     cross_bins::empty,
     cross_bins::equal,

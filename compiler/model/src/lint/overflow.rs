@@ -68,14 +68,19 @@ impl<'a> Checker<'a> {
     fn automaton(&mut self, automaton: &Automaton, flow: &Flow) {
         for edge in &automaton.edges {
             let Some(mut env) = flow.taken(edge) else { continue };
-            if let Sync::Send { event, args } = &edge.sync {
-                self.args(&env, args, self.params(*event));
+            match &edge.sync {
+                Sync::Send { event, args } => self.args(&env, args, self.params(*event)),
+                Sync::Offer { channel, args } => {
+                    let channel = self.scenario.channels.get(usize::from(channel.0));
+                    self.args(&env, args, channel.map_or(&[], |c| &c.params));
+                }
+                Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
             }
             for update in &edge.updates {
                 let var = match update {
                     Update::Own(i, _) => automaton.vars.get(usize::from(*i)),
                     Update::Shared(i, _) => self.scenario.shared.get(usize::from(*i)),
-                    Update::Reset(_) => None,
+                    Update::Reset { .. } => None,
                 };
                 let (Some(var), Some((leaf, e, range))) = (var, flow.set_by(update)) else { continue };
                 // One assignment sets an element of which only the index tells which it is.

@@ -7,7 +7,7 @@ use super::{
     facts::Facts,
     flow::{Flow, clash},
 };
-use crate::{Automaton, ClockConstraint, ClockId, Edge, Location, LocationId, Scenario, Sync, Update};
+use crate::{Automaton, ClockConstraint, ClockOp, Edge, Location, LocationId, Scenario, Update};
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
@@ -29,7 +29,7 @@ pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnos
                         .help("reset the clock on the edges that lead here"),
                 );
             } else if stopping[i] {
-                let listens = flow.out[i].iter().any(|e| is_receive(&automaton.edges[*e]));
+                let listens = flow.out[i].iter().any(|e| flow.only_hears(&automaton.edges[*e]));
                 let help = if listens {
                     "add an edge without `on` that is taken by then: the event may not come"
                 } else {
@@ -44,29 +44,33 @@ pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnos
     }
 }
 
-fn is_receive(edge: &Edge) -> bool {
-    matches!(edge.sync, Sync::Receive { .. })
-}
-
-/// By location: it has an invariant and no edge that the automaton can take by itself by then.
+/// By location: it has an invariant that ends, and no edge that the automaton can take by then. An edge over a channel
+/// counts as one: whether its partner is ready only a search can tell.
 pub(super) fn stopping(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
     let stops = |(i, location): (usize, &Location)| {
         let leaves = |e: &Edge| {
             let late = e.clock_guard.iter().any(|g| location.invariant.iter().any(|i| clash(g, i)));
-            let stays = usize::from(e.to.0) == i && !location.invariant.iter().any(|i| resets(e, i.clock));
-            !is_receive(e) && !late && !stays && flow.taken(e).is_some()
+            let stays = usize::from(e.to.0) == i && !location.invariant.iter().any(|i| sets(e, i));
+            !flow.only_hears(e) && !late && !stays && flow.taken(e).is_some()
         };
-        let ends = location.kind == LocationKind::Normal && !location.invariant.is_empty();
+        let ends = |i: &ClockConstraint| {
+            // What other automata may set back need not end.
+            i.minus.is_none() && flow.is_own(i) && !matches!(i.op, ClockOp::Ge | ClockOp::Gt)
+        };
+        let ends = location.kind == LocationKind::Normal && location.invariant.iter().any(ends);
         ends && !flow.out[i].iter().any(|e| leaves(&automaton.edges[*e]))
     };
     automaton.locations.iter().enumerate().map(stops).collect()
 }
 
 /// Whether an edge would enter its target past the end of the target's invariant.
-pub(super) fn violates(automaton: &Automaton, edge: &Edge) -> bool {
+pub(super) fn violates(automaton: &Automaton, flow: &Flow, edge: &Edge) -> bool {
     let invariant: &[ClockConstraint] =
         automaton.locations.get(usize::from(edge.to.0)).map_or(&[], |l| &l.invariant);
-    invariant.iter().any(|i| !resets(edge, i.clock) && edge.clock_guard.iter().any(|g| clash(g, i)))
+    let past = |i: &ClockConstraint| {
+        flow.is_own(i) && !sets(edge, i) && edge.clock_guard.iter().any(|g| clash(g, i))
+    };
+    invariant.iter().any(past)
 }
 
 /// By location: it is not the initial one, and every edge that leads there violates its invariant.
@@ -74,7 +78,7 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
     let mut ways = vec![(false, false); automaton.locations.len()];
     for edge in automaton.edges.iter().filter(|e| e.from != e.to && flow.taken(e).is_some()) {
         if let Some((good, bad)) = ways.get_mut(usize::from(edge.to.0)) {
-            let violates = violates(automaton, edge);
+            let violates = violates(automaton, flow, edge);
             *good |= !violates;
             *bad |= violates;
         }
@@ -85,7 +89,10 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
     ways.into_iter().map(|(good, bad)| bad && !good).collect()
 }
 
-/// Whether an edge sets this clock to 0.
-fn resets(edge: &Edge, clock: ClockId) -> bool {
-    edge.updates.contains(&Update::Reset(clock))
+/// Whether an edge sets a clock of a bound.
+fn sets(edge: &Edge, bound: &ClockConstraint) -> bool {
+    edge.updates.iter().any(|u| match u {
+        Update::Reset { clock, .. } => bound.clocks().any(|c| c == *clock),
+        Update::Shared(..) | Update::Own(..) => false,
+    })
 }

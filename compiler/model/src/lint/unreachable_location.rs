@@ -43,7 +43,7 @@ fn dead_edges(automaton: &Automaton, flow: &Flow) -> Vec<(usize, &'static str)> 
         }
         let said = barred.get(usize::from(edge.to.0)).copied().unwrap_or(true);
         let why = "it would enter a location whose invariant does not hold then";
-        (!said && violates(automaton, edge)).then_some(why)
+        (!said && violates(automaton, flow, edge)).then_some(why)
     };
     automaton.edges.iter().enumerate().filter_map(|(i, e)| Some((i, dead(e)?))).collect()
 }

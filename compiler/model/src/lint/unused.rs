@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Performative, Player, Role, Scenario, StepKind, Subject, Sync, Update, Var,
+    Performative, Player, Role, Scenario, StepKind, Subject, Sync, Time, Update, Var,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -203,10 +203,16 @@ fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
 
 fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     let mut shared = Uses::new(scenario.shared.len());
+    let first = scenario.clocks.len();
+    let mut shared_clocks = Uses::new(first);
     for (index, automaton) in scenario.automata.iter().enumerate() {
-        let (mut own, clocks) = uses_of(automaton, &mut shared);
+        let (mut own, clocks) = uses_of(automaton, first, &mut shared);
+        for (i, (read, set)) in clocks.read.iter().zip(&clocks.set).take(first).enumerate() {
+            shared_clocks.read[i] |= *read;
+            shared_clocks.set[i] |= *set;
+        }
         let places = scenario.places.automata.get(index);
-        for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[*i]) {
+        for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[first + *i]) {
             let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.span);
             // Several clocks may share a declaration: there is no text that can simply go.
             found.push(Unused { noun: "the clock", name: clock, at, lacks: "read", whole: None });
@@ -225,12 +231,29 @@ fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
             });
         }
     }
+    unread_clocks(scenario, &shared_clocks, found);
     for i in unread(&scenario.shared, &mut shared) {
         let var = &scenario.shared[i];
         let Some(place) = scenario.places.shared.get(i) else { continue };
         let whole = (!shared.set[i]).then_some((place.whole, true));
         let (name, at) = (whole_name(&var.name), place.name);
         found.push(Unused { noun: "the variable", name, at, lacks: "read", whole });
+    }
+}
+
+/// Shared clocks; an array of which one is read is read.
+fn unread_clocks<'a>(scenario: &'a Scenario, uses: &Uses, found: &mut Vec<Unused<'a>>) {
+    let mut at = 0;
+    for clocks in scenario.clocks.chunk_by(|a, b| a.place == b.place) {
+        let part = at..at + clocks.len();
+        at = part.end;
+        if uses.read[part.clone()].contains(&true) {
+            continue;
+        }
+        let place = clocks[0].place;
+        let whole = (!uses.set[part].contains(&true)).then_some((place.whole, true));
+        let name = whole_name(&clocks[0].name);
+        found.push(Unused { noun: "the clock", name, at: place.name, lacks: "read", whole });
     }
 }
 
@@ -256,23 +279,27 @@ fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
     first
 }
 
-/// The uses of an automaton's own variables, and of its clocks.
-fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
+/// The uses of an automaton's own variables, and of all clocks that it sees, the shared ones first.
+fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (Uses, Uses) {
     let mut own = Uses::new(automaton.vars.len());
-    let mut clocks = Uses::new(automaton.clocks.len());
+    let mut clocks = Uses::new(shared_clocks + automaton.clocks.len());
     let bounds = automaton.locations.iter().flat_map(|l| &l.invariant);
     for bound in bounds.chain(automaton.edges.iter().flat_map(|e| &e.clock_guard)) {
-        for clock in std::iter::once(bound.clock).chain(bound.minus) {
-            clocks.read[usize::from(clock.0)] = true;
-        }
+        bound.clocks().for_each(|c| clocks.read[usize::from(c.0)] = true);
+        reads_time(&bound.bound, &mut own, shared);
+    }
+    for holds in automaton.locations.iter().filter_map(|l| l.holds.as_ref()) {
+        reads(holds, &mut own, shared, None);
     }
     for edge in &automaton.edges {
         if let Some(guard) = &edge.guard {
             reads(guard, &mut own, shared, None);
         }
         match &edge.sync {
-            Sync::Send { args, .. } => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
-            Sync::Internal | Sync::Receive { .. } => {}
+            Sync::Send { args, .. } | Sync::Offer { args, .. } => {
+                args.iter().for_each(|e| reads(e, &mut own, shared, None));
+            }
+            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
         }
         for update in &edge.updates {
             match update {
@@ -284,11 +311,20 @@ fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
                     shared.set[usize::from(*i)] = true;
                     reads(e, &mut own, shared, Some(Leaf::Shared(*i)));
                 }
-                Update::Reset(clock) => clocks.set[usize::from(clock.0)] = true,
+                Update::Reset { clock, from, to } => {
+                    clocks.set[usize::from(clock.0)] = true;
+                    let other = from.filter(|f| f != clock);
+                    other.iter().for_each(|c| clocks.read[usize::from(c.0)] = true);
+                    reads_time(to, &mut own, shared);
+                }
             }
         }
     }
     (own, clocks)
+}
+
+fn reads_time(time: &Time, own: &mut Uses, shared: &mut Uses) {
+    time.terms.iter().for_each(|(_, value)| reads(value, own, shared, None));
 }
 
 /// Signals that no actor, rule, requirement or other signal reads.

@@ -2,6 +2,8 @@
 
 use hrdsl_source::{Code, Diagnostic, Span};
 
+use crate::{check::BadTime, noun::Noun};
+
 /// HR0501
 pub(crate) fn no_initial(automaton: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::NO_INITIAL_LOCATION, span, format!("`{automaton}` has no initial location"))
@@ -17,8 +19,7 @@ pub(crate) fn second_initial(location: &str, span: Span, first: Span) -> Diagnos
 
 /// HR0502
 pub(crate) fn clock_misused(clock: &str, span: Span) -> Diagnostic {
-    let message =
-        format!("the clock `{clock}` can only be compared with a constant, as a part of a conjunction");
+    let message = format!("the clock `{clock}` can only be compared with a time, as a part of a conjunction");
     Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
         .help(format!("write a bound such as `{clock} >= 3 s && …`; for an alternative, use two edges"))
 }
@@ -31,14 +32,62 @@ pub(crate) fn clock_comparison(op: &str, span: Span) -> Diagnostic {
 
 /// HR0502
 pub(crate) fn clock_set(clock: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, format!("the clock `{clock}` can only be set to 0"))
-        .help(format!("write `{clock} = 0`"))
+    let message = format!("the clock `{clock}` can only be set to a time, or to another clock plus one");
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
+        .help(format!("write `{clock} = 0`, `{clock} = n * 1 s`, or `{clock} = y + 2 s`"))
+}
+
+/// HR0502: a comparison of something else than a clock or a difference.
+pub(crate) fn clock_sum(span: Span) -> Diagnostic {
+    let message = "a clock is compared, or the difference of two clocks, and this is neither";
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
+        .help("write a bound such as `x <= 3 s` or `x - y < n * 1 s`")
+}
+
+/// HR0502: a time that variables have another part in than that of a factor.
+pub(crate) fn not_linear(span: Span) -> Diagnostic {
+    let message =
+        "a clock is compared with sums of constant times and of whole numbers that multiply such times";
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
+        .here("this is no such sum")
+        .help("write sums and differences of `3 s` and `n * 1 s`, or an `if` between them")
+}
+
+/// HR0502: a time that cannot be counted in nanoseconds.
+pub(crate) fn bad_time(why: BadTime, span: Span) -> Diagnostic {
+    let (message, help) = match why {
+        BadTime::Fraction => (
+            "a variable multiplies a time that is no whole number of nanoseconds",
+            "multiply it by a whole one: `n * 1 ms`",
+        ),
+        BadTime::TooLong => ("this time is longer than thirty years", "times are at most 1000000000 s"),
+    };
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message).help(help)
 }
 
 /// HR0502
-pub(crate) fn bad_invariant(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, "an invariant is an upper bound on a clock")
-        .help("write `x <= 3 s` or `x < 3 s`, several joined by `&&`")
+pub(crate) fn clock_init(clock: &str, span: Span) -> Diagnostic {
+    let message = format!("the clock `{clock}` starts at 0 as all clocks do");
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message).help("set it on an edge that leaves `init`")
+}
+
+/// HR0502: an array of clocks without an index, or a clock with one.
+pub(crate) fn clock_indices(clock: &str, sizes: usize, span: Span) -> Diagnostic {
+    let (message, form) = match sizes {
+        0 => (format!("`{clock}` is one clock: it has no elements"), format!("write `{clock}`")),
+        n => (
+            format!("`{clock}` is an array of clocks"),
+            format!("name one of them: `{clock}{}`", "[0]".repeat(n)),
+        ),
+    };
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message).help(form)
+}
+
+/// HR0502: `clock` as the type of something else than a shared variable.
+pub(crate) fn clock_type(span: Span) -> Diagnostic {
+    let message = "`clock` is only the type of a variable that all automata share";
+    Diagnostic::error(Code::BAD_CLOCK_CONSTRAINT, span, message)
+        .help("write `var t: clock` outside of automata, and `clock x` inside of one")
 }
 
 /// HR0503
@@ -50,7 +99,7 @@ pub(crate) fn two_sends(span: Span, first: Span) -> Diagnostic {
 
 /// HR0503
 pub(crate) fn takes_and_sends(span: Span, on: Span) -> Diagnostic {
-    Diagnostic::error(Code::TWO_SENDS, span, "the edge takes an event and sends one")
+    Diagnostic::error(Code::TWO_SENDS, span, "the edge takes part in something and sends")
         .label(on, "it takes this")
         .help("put a committed location between the two")
 }
@@ -73,4 +122,42 @@ pub(crate) fn read_while_set(name: &str, span: Span) -> Diagnostic {
     let message = format!("`{name}` is read while its parts are being set");
     Diagnostic::error(Code::TYPE_MISMATCH, span, message)
         .help("set the parts one by one, or keep the old value in a variable")
+}
+
+/// HR0511
+pub(crate) fn urgent_guard(channel: &str, span: Span, declared: Span) -> Diagnostic {
+    let message = format!("an edge of the urgent channel `{channel}` has no clock guard");
+    Diagnostic::error(Code::URGENT_GUARD, span, message)
+        .label(declared, "it is declared here")
+        .help("guard it by variables alone, or let the channel not be urgent")
+}
+
+/// HR0512: an edge of an automaton that has no part in the channel.
+pub(crate) fn not_a_party(automaton: &str, channel: &str, span: Span, declared: Span) -> Diagnostic {
+    let message = format!("`{automaton}` has no part in the joint channel `{channel}`");
+    Diagnostic::error(Code::BAD_JOINT, span, message)
+        .label(declared, "its parties are named here")
+        .help(format!("add `| {automaton}` to them, or use another channel"))
+}
+
+/// HR0512
+pub(crate) fn joint_offered(channel: &str, span: Span) -> Diagnostic {
+    let message = format!("nobody offers the joint channel `{channel}`: all its parties are alike");
+    Diagnostic::error(Code::BAD_JOINT, span, message)
+        .help(format!("write `on {channel}` on the edge of each"))
+}
+
+/// HR0512
+pub(crate) fn joint_params(channel: &str, span: Span) -> Diagnostic {
+    let message = format!("the joint channel `{channel}` carries nothing: nobody sends");
+    Diagnostic::error(Code::BAD_JOINT, span, message)
+        .help("hand values over in shared variables, or declare a channel for each value")
+}
+
+/// HR0513
+pub(crate) fn no_actor(automaton: &str, noun: Noun, name: &str, span: Span) -> Diagnostic {
+    let message = format!("`{automaton}` plays no actor, so that it knows no {}", noun.plural());
+    Diagnostic::error(Code::NO_ACTOR, span, message)
+        .here(format!("`{name}` is {}", noun.with_article()))
+        .help(format!("write `automaton {automaton} plays ACTOR`, or use a channel"))
 }

@@ -26,22 +26,29 @@ pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
         | Kind::Dot
         | Kind::Internal
         | Kind::At_
-        | Kind::Question
         | Kind::Tilde
         | Kind::MinusPlus => return false,
+        // A party that may stay away, and not a question.
+        Kind::Question if n.kind != Kind::Pipe => return false,
         Kind::Bang | Kind::BangBang => return matches!(n.kind, Kind::Bang | Kind::BangBang),
         Kind::Plus | Kind::Minus if p.mark.prefix => return false,
         Kind::DotDot => return !p.mark.tight,
         _ => {}
     }
     match n.kind {
-        Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor,
+        Kind::Question => !p.kind.is_name(),
+        Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor || of_channel(toks, at),
         Kind::LParen => !n.mark.call,
         // An index and annotations belong to what is before; a list stands alone.
         Kind::LBracket => n.mark.apart || !p.kind.ends_operand(),
         Kind::DotDot => !n.mark.tight,
         _ => true,
     }
+}
+
+/// A colon with the kind of a channel behind it: it belongs to all names, as that of an actor does not to the name alone.
+fn of_channel(toks: &[Tok<'_>], at: usize) -> bool {
+    toks.get(at + 1).is_some_and(|t| matches!(t.kind, Kind::Urgent | Kind::Broadcast | Kind::Joint))
 }
 
 /// How weakly the token at `at` holds to the one before; `None`: a line does not break here.

@@ -47,12 +47,13 @@ fn automaton(mut edges: Vec<Edge>) -> Automaton {
         name: format!("l{i}"),
         kind: LocationKind::Normal,
         invariant: Vec::new(),
+        holds: None,
         span: Span::default(),
     };
     let ty = Type::Int { lo: *RANGE.start(), hi: *RANGE.end() };
     Automaton {
         name: "A".to_owned(),
-        actor: ActorId(0),
+        actor: Some(ActorId(0)),
         clocks: Vec::new(),
         vars: (0..VARS)
             .map(|i| Var { name: format!("v{i}"), ty, init: Value::Int(0), span: Span::default() })

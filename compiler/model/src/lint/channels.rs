@@ -1,0 +1,96 @@
+//! HR0514: channels over which nothing can happen, because one side of them has no edge. HR0107: those that have no side.
+
+use hrdsl_source::{Code, Diagnostic, FileId};
+
+use super::facts::Facts;
+use crate::{AutomatonId, Channel, ChannelId, ChannelKind, Party, Scenario, Sync};
+
+/// The automata with edges over one channel, in order, each once.
+#[derive(Default)]
+struct Sides {
+    offer: Vec<AutomatonId>,
+    accept: Vec<AutomatonId>,
+    join: Vec<AutomatonId>,
+}
+
+impl Sides {
+    fn of(scenario: &Scenario) -> Vec<Self> {
+        let mut all: Vec<Self> = scenario.channels.iter().map(|_| Self::default()).collect();
+        for (id, automaton) in (0..=u16::MAX).map(AutomatonId).zip(&scenario.automata) {
+            for edge in &automaton.edges {
+                let Some(ChannelId(channel)) = edge.sync.channel() else { continue };
+                let Some(sides) = all.get_mut(usize::from(channel)) else { continue };
+                let side = match edge.sync {
+                    Sync::Offer { .. } => &mut sides.offer,
+                    Sync::Accept { .. } => &mut sides.accept,
+                    Sync::Join { .. } => &mut sides.join,
+                    Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => continue,
+                };
+                if side.last() != Some(&id) {
+                    side.push(id);
+                }
+            }
+        }
+        all
+    }
+
+    fn is_empty(&self) -> bool {
+        self.offer.is_empty() && self.accept.is_empty() && self.join.is_empty()
+    }
+}
+
+pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+    let sides = Sides::of(scenario);
+    for (channel, sides) in scenario.channels.iter().zip(&sides) {
+        if channel.place.file != FileId(0) {
+            continue;
+        }
+        if sides.is_empty() {
+            issues.push(unused(channel));
+            continue;
+        }
+        match &channel.kind {
+            ChannelKind::HandShake | ChannelKind::Broadcast => {
+                issues.extend(one_side(scenario, channel, sides));
+            }
+            ChannelKind::Joint(parties) => {
+                let absent = parties.iter().filter(|p| !sides.join.contains(&p.automaton));
+                issues.extend(absent.map(|p| no_part(scenario, channel, p)));
+            }
+        }
+    }
+}
+
+fn unused(channel: &Channel) -> Diagnostic {
+    let name = &channel.name;
+    Diagnostic::warning(Code::UNUSED, channel.place, format!("the channel `{name}` is never used"))
+        .help("use it, or delete it")
+}
+
+/// A hand-shake or broadcast that only some edges offer, only some accept, or only one automaton does both.
+fn one_side(scenario: &Scenario, channel: &Channel, sides: &Sides) -> Option<Diagnostic> {
+    let name = &channel.name;
+    let (message, help) = match (sides.offer.as_slice(), sides.accept.as_slice()) {
+        ([], _) => (format!("nobody offers the channel `{name}`"), format!("let an edge do so: `do {name}`")),
+        (_, []) => {
+            (format!("nobody accepts the channel `{name}`"), format!("let an edge do so: `on {name}`"))
+        }
+        ([one], [other]) if one == other => {
+            let automaton = scenario.automata.get(usize::from(one.0)).map_or("?", |a| a.name.as_str());
+            let message = format!("only `{automaton}` offers and accepts the channel `{name}`");
+            (message, "let another automaton take one of the sides: none does both at once".to_owned())
+        }
+        ([_, ..], [_, ..]) => return None,
+    };
+    Some(Diagnostic::warning(Code::ONE_SIDED_CHANNEL, channel.place, message).help(help))
+}
+
+fn no_part(scenario: &Scenario, channel: &Channel, party: &Party) -> Diagnostic {
+    let (name, of) = (&channel.name, usize::from(party.automaton.0));
+    let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
+    let message = format!("`{automaton}` has no edge for the joint channel `{name}`");
+    let why = if party.optional { "it never takes part" } else { "nobody can take part without it" };
+    Diagnostic::warning(Code::ONE_SIDED_CHANNEL, party.span, message)
+        .here(why)
+        .help(format!("give it an edge with `on {name}`, or take it out of the parties"))
+}
