@@ -55,8 +55,6 @@ pub(crate) struct Process {
     pub args: Vec<i64>,
     /// As the scenario calls it.
     pub name: String,
-    /// Index into the templates.
-    pub template: usize,
     /// Its parameters, and what it declares.
     pub scope: Scope,
     /// Declarations of its constant arrays, and whether they are needed.

@@ -265,7 +265,6 @@ impl Cx<'_> {
             model_name: plan.model_name,
             args: plan.args,
             name,
-            template: plan.template,
             scope,
             arrays: std::mem::take(&mut self.own_arrays),
             clocks: std::mem::take(&mut self.own_clocks),

@@ -19,7 +19,6 @@ pub struct Model {
 #[derive(Debug)]
 pub struct Template {
     pub name: String,
-    pub span: Span,
     pub parameters: Piece,
     pub declaration: Piece,
     pub locations: Vec<Location>,
@@ -47,7 +46,6 @@ pub struct Location {
 
 #[derive(Debug)]
 pub struct Transition {
-    pub span: Span,
     pub from: usize,
     pub to: usize,
     pub select: Piece,
@@ -155,7 +153,6 @@ impl Reader<'_> {
         };
         let mut template = Template {
             name: name.to_owned(),
-            span: self.span(child("name").unwrap_or(node)),
             parameters: child("parameter").map(|n| self.piece(n)).unwrap_or_default(),
             declaration: child("declaration").map(|n| self.piece(n)).unwrap_or_default(),
             locations: Vec::new(),
@@ -250,10 +247,9 @@ impl Reader<'_> {
         if node.attribute("controllable") == Some("false") {
             self.unsupported(node, "transitions that are not controllable (games)");
         }
-        let (span, blank) = (self.span(node), Piece::default);
+        let blank = Piece::default;
         let (select, guard, sync, assign) = (blank(), blank(), blank(), blank());
-        let mut transition =
-            Transition { span, from, to, select, guard, sync, assign, comment: String::new() };
+        let mut transition = Transition { from, to, select, guard, sync, assign, comment: String::new() };
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "label" => self.transition_label(part, &mut transition),
