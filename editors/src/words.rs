@@ -13,7 +13,8 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         "hard" => Some(words(&|k| k.class == Class::Hard)),
         "soft" => Some(words(&|k| k.class == Class::Soft)),
         "units" => Some(base_units()),
-        "types" => Some(Type::names().collect()),
+        // A shared clock is declared as a variable is.
+        "types" => Some(Type::names().chain(["clock"]).collect()),
         other => {
             let place = other.strip_prefix("soft:")?;
             let found: Vec<_> = words(&|k| k.class == Class::Soft && places(k).any(|p| p == place));

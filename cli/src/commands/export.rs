@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 use hrdsl_compiler::Compilation;
-use hrdsl_export::{Exported, Unsaid, uppaal};
+use hrdsl_export::{
+    Obstacle,
+    uppaal::{self, Exported},
+};
 use hrdsl_ir::Program;
 
 use crate::{
@@ -80,9 +83,9 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
     }
 }
 
-fn said(compilation: &Compilation, all: &[Unsaid], word: &str) {
-    for Unsaid { span, message } in all {
-        eprintln!("{}: {word}: {message}", compilation.files.place(*span));
+fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
+    for Obstacle { origin, message } in all {
+        eprintln!("{}: {word}: {message}", compilation.files.place(*origin));
     }
 }
 

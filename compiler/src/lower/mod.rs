@@ -3,6 +3,7 @@
 pub mod bdi;
 pub mod coverage;
 pub mod expr;
+pub mod function;
 pub mod monitor;
 pub mod suite;
 pub mod ta;
@@ -19,6 +20,7 @@ use hrdsl_source::Files;
 pub fn lower(scenario: &Scenario, files: &Files) -> Program {
     let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &mut signals));
+    let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
     Program {
         name: scenario.name.clone(),
@@ -29,9 +31,9 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
         shared: scenario.shared.iter().map(ta::var).collect(),
         clocks: scenario.clocks.iter().map(|c| c.name.clone()).collect(),
         channels: scenario.channels.iter().map(ta::channel).collect(),
-        functions: Vec::new(),
         queries: Vec::new(),
-        automata: scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect(),
+        functions: scenario.functions.iter().map(|f| function::function(f, scenario, &automata)).collect(),
+        automata,
         networks: scenario.networks.iter().map(ta::network).collect(),
         signals: signals.into_list(),
         monitors,

@@ -5,7 +5,8 @@ use hrdsl_ir::{
     expr::Place,
     ta::{
         Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
-        Location, LocationId, LocationKind, Network, Party, ReceiveArg, Sync, Time, TimeTerm, Update, Var,
+        FunctionId, Location, LocationId, LocationKind, Network, Party, ReceiveArg, Sync, Time, TimeTerm,
+        Update, Var,
     },
 };
 use hrdsl_model::{self as model, Leaf, StimulusStep};
@@ -36,7 +37,7 @@ pub(crate) fn var(v: &model::Var) -> Var {
 }
 
 /// A variable over a finite type, starting with its first value.
-fn bounded(name: &str, ty: model::Type) -> Var {
+pub(super) fn bounded(name: &str, ty: model::Type) -> Var {
     let (lo, hi, is_bool, enumeration) = match expr::ty(ty) {
         Type::Int { lo, hi } => (lo, hi, false, None),
         Type::Enum(e) => (0, e.values().len() as i64 - 1, false, Some(e)),
@@ -87,7 +88,7 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
     lowered
 }
 
-fn count(n: usize) -> u16 {
+pub(super) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
@@ -184,13 +185,13 @@ impl Emission<'_> {
 // ── edges ──
 
 /// Where variables are found: `Expr::Var` counts shared, own, then the edge's binders.
-struct Slots {
-    shared: u16,
-    own: u16,
+pub(super) struct Slots {
+    pub shared: u16,
+    pub own: u16,
 }
 
 impl Slots {
-    fn slot(&self, leaf: Leaf) -> u16 {
+    pub(super) fn slot(&self, leaf: Leaf) -> u16 {
         match leaf {
             Leaf::Shared(i) => i,
             Leaf::Own(i) => self.shared + i,
@@ -200,11 +201,20 @@ impl Slots {
         }
     }
 
-    fn expr(&self, e: &model::Expr) -> Expr {
-        expr::expr(e, &mut |source| match source {
-            Source::Leaf(leaf) => Expr::Var(self.slot(leaf)),
+    pub(super) fn expr(&self, e: &model::Expr) -> Expr {
+        expr::expr(e, &mut |source| self.read(&source))
+    }
+
+    pub(super) fn place(&self, place: &model::Place) -> Place {
+        expr::place(place, &mut |source| self.read(&source))
+    }
+
+    fn read(&self, source: &Source) -> Expr {
+        match source {
+            Source::Leaf(leaf) => Expr::Var(self.slot(*leaf)),
+            // INVARIANT: automata measure nothing.
             Source::Term(..) => Expr::bool(false),
-        })
+        }
     }
 
     fn location(&self, l: &model::Location) -> Location {
@@ -274,6 +284,13 @@ impl Slots {
             model::Update::Own(i, v) => {
                 Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
             }
+            model::Update::Element(place, v) => {
+                Update::Assign { place: self.place(place), value: self.expr(v) }
+            }
+            model::Update::Call(function, args) => Update::Call {
+                function: FunctionId(function.0),
+                args: args.iter().map(|a| self.expr(a)).collect(),
+            },
             model::Update::Reset { clock, from, to } => {
                 Update::Reset { clock: ClockId(clock.0), from: from.map(|f| ClockId(f.0)), to: self.time(to) }
             }

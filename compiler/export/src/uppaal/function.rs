@@ -13,7 +13,7 @@ use super::{
     expr::{Context, Level, Said},
     slots::{Names, Slots, slot, ty},
 };
-use crate::Unsaid;
+use crate::Obstacle;
 
 /// The functions that an expression calls.
 pub fn in_expr(e: &Expr, note: &mut dyn FnMut(FunctionId)) {
@@ -107,11 +107,11 @@ pub fn order(
     id: FunctionId,
     above: &mut Vec<FunctionId>,
     out: &mut IndexSet<FunctionId>,
-) -> Result<(), Unsaid> {
+) -> Result<(), Obstacle> {
     let function = &program.functions[usize::from(id.0)];
     if above.contains(&id) {
         let message = format!("the function `{}` calls itself: UPPAAL's functions cannot", function.name);
-        return Err(Unsaid { span: function.origin, message });
+        return Err(Obstacle { origin: function.origin, message });
     }
     if out.contains(&id) {
         return Ok(());

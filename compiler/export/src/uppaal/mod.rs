@@ -20,7 +20,7 @@ use hrdsl_ir::{
     Enumeration, EventId, Expr, Nanos, Program, Span, Type,
     ta::{
         Ask, Automaton, AutomatonId, ChannelId, ChannelKind, Formula, FunctionId, Measure, Network, Party,
-        Query, Statement, Sync, Time, Update, Var,
+        Query, Statement, Sync, Var,
     },
 };
 use indexmap::{IndexMap, IndexSet};
@@ -29,7 +29,18 @@ use self::{
     expr::Context,
     slots::{Names, Slots},
 };
-use crate::{Exported, Unsaid, common_divisor};
+use crate::{Obstacle, unit};
+
+/// The texts of an export.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exported {
+    /// The model in XML, with its queries.
+    pub text: String,
+    /// The queries alone, as a `.q` file has them.
+    pub queries: String,
+    /// Queries that were left out; the model means the same without them.
+    pub left_out: Vec<Obstacle>,
+}
 
 /// A channel of UPPAAL, or an array of them.
 #[derive(Clone, Debug)]
@@ -53,7 +64,7 @@ enum Part {
 struct Exporter<'p> {
     program: &'p Program,
     network: &'p Network,
-    faults: Vec<Unsaid>,
+    faults: Vec<Obstacle>,
     names: Names,
     /// What all automata know.
     global: Context,
@@ -71,21 +82,21 @@ struct Exporter<'p> {
 ///
 /// # Errors
 /// Everything that UPPAAL's language cannot say.
-pub fn export(program: &Program, network: usize) -> Result<Exported, Vec<Unsaid>> {
+pub fn export(program: &Program, network: usize) -> Result<Exported, Vec<Obstacle>> {
     let Some(chosen) = program.networks.get(network) else {
         let message = "there is no such network".to_owned();
-        return Err(vec![Unsaid { span: Span::default(), message }]);
+        return Err(vec![Obstacle { origin: Span::default(), message }]);
     };
     let queries: Vec<&Query> = program.queries.iter().filter(|q| usize::from(q.network) == network).collect();
     let mut exporter = Exporter::new(program, chosen);
-    exporter.global.unit = exporter.unit(&queries);
+    exporter.global.unit = unit::of(program, &exporter.automata().collect::<Vec<_>>());
     let declarations = exporter.declarations();
     let mut functions = exporter.shared_functions(&queries);
     let templates: Vec<String> = (0..chosen.automata.len()).map(|at| exporter.template(at)).collect();
     let (asked, left_out) = exporter.queries(&queries);
     if !exporter.faults.is_empty() {
         let mut faults = exporter.faults;
-        faults.sort_by_key(|f| (f.span.file.0, f.span.start));
+        faults.sort_by_key(|f| (f.origin.file.0, f.origin.start));
         faults.dedup();
         return Err(faults);
     }
@@ -157,7 +168,7 @@ impl<'p> Exporter<'p> {
     }
 
     fn fault(&mut self, span: Span, message: impl Into<String>) {
-        self.faults.push(Unsaid { span, message: message.into() });
+        self.faults.push(Obstacle { origin: span, message: message.into() });
     }
 
     /// Keeps what was said; notes what could not be.
@@ -166,28 +177,6 @@ impl<'p> Exporter<'p> {
             self.fault(span, format!("{place}: UPPAAL cannot say {why}"));
             T::default()
         })
-    }
-
-    // ── Time ──
-
-    /// The greatest time that all times of the network are multiples of.
-    fn unit(&self, queries: &[&Query]) -> Nanos {
-        let mut all: Vec<Nanos> = Vec::new();
-        let mut note = |t: &Time| all.extend(t.terms.iter().map(|t| t.factor).chain([t.nanos]));
-        for automaton in self.automata() {
-            automaton.locations.iter().flat_map(|l| &l.invariant).for_each(|c| note(&c.bound));
-            for edge in &automaton.edges {
-                edge.clock_guard.iter().for_each(|c| note(&c.bound));
-                for update in &edge.updates {
-                    if let Update::Reset { to, .. } = update {
-                        note(to);
-                    }
-                }
-            }
-        }
-        queries.iter().for_each(|q| formulas(&q.ask).into_iter().for_each(|f| times(f, &mut note)));
-        let unit = all.iter().fold(0, |d, t| common_divisor(t.unsigned_abs(), d));
-        if unit == 0 { hrdsl_ir::value::SECOND } else { i64::try_from(unit).unwrap_or(i64::MAX) }
     }
 
     // ── What all automata know ──
@@ -382,15 +371,6 @@ fn formulas(ask: &Ask) -> Vec<&Formula> {
         Ask::Possibly(f) | Ask::Invariantly(f) | Ask::PotentiallyAlways(f) | Ask::Eventually(f) => vec![f],
         Ask::LeadsTo(f, g) => vec![f, g],
         Ask::Sup { when, .. } | Ask::Inf { when, .. } => vec![when],
-    }
-}
-
-fn times(formula: &Formula, note: &mut dyn FnMut(&Time)) {
-    match formula {
-        Formula::Clock(c) => note(&c.bound),
-        Formula::Not(f) => times(f, note),
-        Formula::And(all) | Formula::Or(all) => all.iter().for_each(|f| times(f, note)),
-        Formula::At { .. } | Formula::Data(_) | Formula::Deadlock => {}
     }
 }
 

@@ -7,11 +7,11 @@ use super::{
     expr::{Context, Level, Said, Text},
     slots::Slots,
 };
-use crate::Unsaid;
+use crate::Obstacle;
 
 impl Exporter<'_> {
     /// Each query's formula and comment; and those that UPPAAL cannot ask.
-    pub fn queries(&self, queries: &[&Query]) -> (Vec<(String, String)>, Vec<Unsaid>) {
+    pub fn queries(&self, queries: &[&Query]) -> (Vec<(String, String)>, Vec<Obstacle>) {
         let context = self.network_context();
         let (mut asked, mut left_out) = (Vec::new(), Vec::new());
         for query in queries {
@@ -22,7 +22,7 @@ impl Exporter<'_> {
                 }
                 Err(why) => {
                     let message = format!("the query `{}`: UPPAAL cannot say {why}", query.name);
-                    left_out.push(Unsaid { span: query.origin, message });
+                    left_out.push(Obstacle { origin: query.origin, message });
                 }
             }
         }

@@ -13,6 +13,7 @@ mod due;
 mod edge;
 mod env;
 mod expr;
+mod function;
 mod given;
 mod internal;
 mod internal_table;
@@ -23,11 +24,13 @@ mod list;
 mod lookup;
 mod measure;
 mod message;
+mod place;
 mod places;
 mod plan;
 mod range;
 mod requirement;
 mod rule;
+mod statement;
 mod steps;
 mod stimulus;
 mod suite;
@@ -194,6 +197,8 @@ pub(crate) struct Checker<'a> {
     shared_names: Table,
     /// What every automaton sees of them, and of the shared clocks.
     shared_scope: Rc<env::Scope>,
+    /// What is known of the functions that are being checked.
+    functions: function::Functions,
     shared_clocks: Table,
     channels: Table,
     /// Some party of these joint channels has a diagnostic.
@@ -274,6 +279,7 @@ impl<'a> Checker<'a> {
             shared: Table::default(),
             shared_names: Table::default(),
             shared_scope: Rc::default(),
+            functions: function::Functions::default(),
             shared_clocks: Table::default(),
             channels: Table::default(),
             vague_channels: BTreeSet::new(),

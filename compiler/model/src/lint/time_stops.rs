@@ -93,6 +93,6 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
 fn sets(edge: &Edge, bound: &ClockConstraint) -> bool {
     edge.updates.iter().any(|u| match u {
         Update::Reset { clock, .. } => bound.clocks().any(|c| c == *clock),
-        Update::Shared(..) | Update::Own(..) => false,
+        Update::Shared(..) | Update::Own(..) | Update::Element(..) | Update::Call(..) => false,
     })
 }

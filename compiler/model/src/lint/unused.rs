@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Performative, Player, Role, Scenario, StepKind, Subject, Sync, Time, Update, Var,
+    Performative, Player, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -188,8 +188,7 @@ impl Uses {
 
 /// Marks the variables that an expression reads; `but` is the one it is for.
 fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
-    e.each(&mut |part| {
-        let ExprKind::Leaf(leaf) = part.kind else { return };
+    e.each_leaf(&mut |leaf| {
         if Some(leaf) == but {
             return;
         }
@@ -203,10 +202,16 @@ fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
 
 fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     let mut shared = Uses::new(scenario.shared.len());
+    let owned = |owner: Option<AutomatonId>| -> Vec<&Routine> {
+        scenario.functions.iter().filter(|f| f.owner == owner).collect()
+    };
+    in_functions(&owned(None), &mut Uses::new(0), &mut shared);
     let first = scenario.clocks.len();
     let mut shared_clocks = Uses::new(first);
     for (index, automaton) in scenario.automata.iter().enumerate() {
         let (mut own, clocks) = uses_of(automaton, first, &mut shared);
+        let id = u16::try_from(index).ok().map(AutomatonId);
+        in_functions(&owned(id), &mut own, &mut shared);
         for (i, (read, set)) in clocks.read.iter().zip(&clocks.set).take(first).enumerate() {
             shared_clocks.read[i] |= *read;
             shared_clocks.set[i] |= *set;
@@ -279,6 +284,28 @@ fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
     first
 }
 
+fn sets(leaf: Leaf, own: &mut Uses, shared: &mut Uses) {
+    match leaf {
+        Leaf::Own(i) => own.set[usize::from(i)] = true,
+        Leaf::Shared(i) => shared.set[usize::from(i)] = true,
+        Leaf::Local(_) | Leaf::Signal(_) => {}
+    }
+}
+
+/// What functions read and assign, whether they are called or not.
+fn in_functions(functions: &[&Routine], own: &mut Uses, shared: &mut Uses) {
+    for function in functions {
+        for leaf in &function.reads {
+            match leaf {
+                Leaf::Own(i) => own.read[usize::from(*i)] = true,
+                Leaf::Shared(i) => shared.read[usize::from(*i)] = true,
+                Leaf::Local(_) | Leaf::Signal(_) => {}
+            }
+        }
+        function.assigns.iter().for_each(|l| sets(*l, own, shared));
+    }
+}
+
 /// The uses of an automaton's own variables, and of all clocks that it sees, the shared ones first.
 fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (Uses, Uses) {
     let mut own = Uses::new(automaton.vars.len());
@@ -311,6 +338,12 @@ fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (U
                     shared.set[usize::from(*i)] = true;
                     reads(e, &mut own, shared, Some(Leaf::Shared(*i)));
                 }
+                Update::Element(place, e) => {
+                    reads(e, &mut own, shared, None);
+                    place.indices.iter().for_each(|i| reads(&i.at, &mut own, shared, None));
+                    place.leaves().into_iter().for_each(|l| sets(l, &mut own, shared));
+                }
+                Update::Call(_, args) => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
                 Update::Reset { clock, from, to } => {
                     clocks.set[usize::from(clock.0)] = true;
                     let other = from.filter(|f| f != clock);
