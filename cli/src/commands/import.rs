@@ -6,6 +6,7 @@ use clap::Subcommand;
 use hrdsl_import::{
     Imported, Loader, Note, Severity, Source, SyntaxError,
     agentspeak::{self, Options},
+    uppaal,
 };
 use serde::Serialize;
 
@@ -22,7 +23,8 @@ use crate::{
 Examples:
   hrdsl import agentspeak house.mas2j -o house.hri
   hrdsl import agentspeak robot.asl owner.asl --name house > house.hri
-  hrdsl import agentspeak house.mas2j --strict --json | jq .notes")]
+  hrdsl import agentspeak house.mas2j --strict --json | jq .notes
+  hrdsl import uppaal gate.xml gate.q -o gate.hri")]
 pub struct Args {
     #[command(subcommand)]
     from: From,
@@ -31,6 +33,7 @@ pub struct Args {
 #[derive(Subcommand)]
 enum From {
     Agentspeak(AgentSpeak),
+    Uppaal(Uppaal),
 }
 
 /// From Jason's AgentSpeak: agents with their beliefs, rules, goals and plans.
@@ -43,12 +46,43 @@ struct AgentSpeak {
     /// Programs (`.asl`, one agent each) and projects (`.mas2j`).
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The file to write; otherwise the scenario goes to stdout.
-    #[arg(short, long, value_name = "FILE")]
-    out: Option<PathBuf>,
     /// The scenario's name; otherwise that of the project or of the first file.
     #[arg(long, value_name = "SCENARIO")]
     name: Option<String>,
+    #[command(flatten)]
+    to: To,
+}
+
+/// From UPPAAL: templates, declarations and queries; each process becomes an automaton.
+///
+/// What a scenario cannot say (rates, probabilities, priorities) ends the import with its name and place; a query that
+/// cannot be asked is left out.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl import uppaal gate.xml -o gate.hri
+  hrdsl import uppaal gate.xml gate.q -o gate.hri
+  hrdsl import uppaal gate.xml --strict --json | jq .notes")]
+struct Uppaal {
+    /// The model, in UPPAAL's XML (`.xml`).
+    #[arg(value_name = "MODEL.xml")]
+    model: PathBuf,
+    /// Queries (`.q`), besides those in the model.
+    #[arg(value_name = "QUERIES.q")]
+    queries: Option<PathBuf>,
+    /// The scenario's name; otherwise that of the file.
+    #[arg(long, value_name = "SCENARIO")]
+    name: Option<String>,
+    #[command(flatten)]
+    to: To,
+}
+
+/// Where what is imported goes.
+#[derive(clap::Args)]
+struct To {
+    /// The file to write; otherwise the scenario goes to stdout.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// Print the report as JSON on stdout, with the scenario if it is not written to a file.
     #[arg(long)]
     json: bool,
@@ -70,18 +104,46 @@ impl Loader for Disk {
 /// # Errors
 /// A file that cannot be read or written.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
-    let From::Agentspeak(args) = &args.from;
+    match &args.from {
+        From::Agentspeak(args) => from_agentspeak(args),
+        From::Uppaal(args) => from_uppaal(args),
+    }
+}
+
+fn from_agentspeak(args: &AgentSpeak) -> Result<Exit, Fault> {
     let mut files = Vec::new();
     for path in &args.files {
         if !path.extension().is_some_and(|e| e == "asl" || e == "mas2j") {
             return Err(format!("{} is neither a program (.asl) nor a project (.mas2j)", path.display()));
         }
-        files.push(Source { name: path.display().to_string(), text: input::read(path)? });
+        files.push(source(path)?);
     }
-    match agentspeak::import(&files, &Disk, &Options { name: args.name.clone() }) {
-        Ok(imported) => imported_to(args, &imported),
+    let imported = agentspeak::import(&files, &Disk, &Options { name: args.name.clone() });
+    finished(&args.to, imported)
+}
+
+fn from_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
+    if args.model.extension().is_some_and(|e| e == "q") {
+        return Err(format!(
+            "{} is a file of queries: name the model (.xml) before it",
+            args.model.display()
+        ));
+    }
+    let model = source(&args.model)?;
+    let queries = args.queries.as_deref().map(source).transpose()?;
+    let options = uppaal::Options { name: args.name.clone() };
+    finished(&args.to, uppaal::import(&model, queries.as_ref(), &options))
+}
+
+fn source(path: &Path) -> Result<Source, Fault> {
+    Ok(Source { name: path.display().to_string(), text: input::read(path)? })
+}
+
+fn finished(to: &To, imported: Result<Imported, Vec<SyntaxError>>) -> Result<Exit, Fault> {
+    match imported {
+        Ok(imported) => imported_to(to, &imported),
         Err(errors) => {
-            if args.json {
+            if to.json {
                 print(&Document {
                     errors: errors.iter().map(Row::of_error).collect(),
                     ..Document::default()
@@ -93,7 +155,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     }
 }
 
-fn imported_to(args: &AgentSpeak, imported: &Imported) -> Result<Exit, Fault> {
+fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
     if let Some(path) = &args.out {
         input::write(path, &imported.text)?;
     }

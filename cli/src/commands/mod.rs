@@ -4,6 +4,7 @@ pub mod check;
 pub mod completions;
 pub mod emit;
 pub mod explain;
+pub mod export;
 pub mod fmt;
 pub mod generate;
 pub mod import;

@@ -1,5 +1,6 @@
 //! Networks of timed automata as text for other tools.
 //!
+//! - [`uppaal`]: UPPAAL's XML, with its queries
 //! - [`tchecker`]: TChecker's text format
 //! - [`picture`]: Graphviz's DOT and Mermaid's state diagrams
 //!
@@ -9,6 +10,7 @@ pub mod picture;
 mod show;
 pub mod tchecker;
 mod unit;
+pub mod uppaal;
 
 use hrdsl_ir::Span;
 

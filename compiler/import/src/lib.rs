@@ -2,12 +2,14 @@
 //!
 //! - [`agentspeak`]: Jason's `.asl` and `.mas2j`
 //! - [`tchecker`]: the text format of TChecker
+//! - [`uppaal`]: UPPAAL's models in XML and their queries
 //!
 //! What a scenario cannot say is left out, with a comment at its place and a [`Note`]; nothing is left out silently.
 
 pub mod agentspeak;
 mod note;
 pub mod tchecker;
+pub mod uppaal;
 
 pub use note::{Imported, Note, Severity, SyntaxError};
 

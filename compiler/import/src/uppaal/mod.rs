@@ -1,0 +1,181 @@
+//! UPPAAL's models (`.xml`, flat DTD and newer) and queries (`.q`, or in the model) to a scenario.
+//!
+//! # Steps
+//! 1. `xml`: the file to templates and pieces of text, each character with its place
+//! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
+//! 3. `declare`, `statement`: what is declared for all; functions
+//! 4. `process`: the processes of the system, each template with its arguments an automaton of its own
+//! 5. `clocks`: conditions over clocks, split into alternatives where a scenario has conjunctions only
+//! 6. `write`: the text
+//!
+//! [`import`] does them all. A model that a scenario cannot say is refused, with the name and place of what is in the
+//! way; a query that cannot be asked is left out.
+
+mod ast;
+mod clocks;
+mod declare;
+mod expr;
+mod lex;
+mod parse;
+mod process;
+mod queries;
+mod scope;
+mod statement;
+mod write;
+mod xml;
+
+use hrdsl_source::{FileId, Files, Position, Span};
+use indexmap::IndexMap;
+
+use self::{
+    process::Parsed,
+    scope::{ChanSym, Names, Scope},
+};
+use crate::{Imported, Note, Severity, Source, SyntaxError};
+
+/// How to import.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The scenario's name; otherwise that of the file.
+    pub name: Option<String>,
+}
+
+/// Something that cannot be read, or not be said in a scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    pub span: Span,
+    pub message: String,
+}
+
+/// A process: an automaton of the scenario.
+#[derive(Debug)]
+pub(crate) struct Process {
+    /// As the model calls it, with the values of what it ranges over.
+    pub model_name: String,
+    pub args: Vec<i64>,
+    /// As the scenario calls it.
+    pub name: String,
+    /// Its parameters, and what it declares.
+    pub scope: Scope,
+    /// Declarations of its constant arrays, and whether they are needed.
+    pub arrays: IndexMap<String, (String, bool)>,
+    pub clocks: Vec<String>,
+    pub lines: Vec<String>,
+    pub functions: Vec<String>,
+    pub locations: Vec<String>,
+    pub edges: Vec<String>,
+    pub doc: String,
+}
+
+/// All that is known while a model is translated.
+pub(crate) struct Cx<'m> {
+    model: &'m xml::Model,
+    templates: Vec<Parsed>,
+    faults: Vec<Fault>,
+    notes: Vec<(Span, Severity, String)>,
+    names: Names,
+    global: Scope,
+    process: Option<Scope>,
+    locals: Vec<Scope>,
+    processes: Vec<Process>,
+    in_query: bool,
+    /// How many functions are being written, one called by the other.
+    writing: usize,
+    channels: Vec<ChanSym>,
+    lines: Vec<String>,
+    functions: Vec<String>,
+    arrays: IndexMap<String, (String, bool)>,
+    specialised: IndexMap<String, String>,
+    own_clocks: Vec<String>,
+    own_lines: Vec<String>,
+    own_functions: Vec<String>,
+    own_arrays: IndexMap<String, (String, bool)>,
+    own_specialised: IndexMap<String, String>,
+}
+
+impl<'m> Cx<'m> {
+    fn new(model: &'m xml::Model) -> Self {
+        Self {
+            model,
+            templates: Vec::new(),
+            faults: Vec::new(),
+            notes: Vec::new(),
+            names: Names::default(),
+            global: Scope::new(),
+            process: None,
+            locals: Vec::new(),
+            processes: Vec::new(),
+            in_query: false,
+            writing: 0,
+            channels: Vec::new(),
+            lines: Vec::new(),
+            functions: Vec::new(),
+            arrays: IndexMap::new(),
+            specialised: IndexMap::new(),
+            own_clocks: Vec::new(),
+            own_lines: Vec::new(),
+            own_functions: Vec::new(),
+            own_arrays: IndexMap::new(),
+            own_specialised: IndexMap::new(),
+        }
+    }
+}
+
+/// Makes a scenario of a model and queries about it.
+///
+/// # Errors
+/// What cannot be read, and what a scenario cannot say.
+pub fn import(
+    model: &Source,
+    questions: Option<&Source>,
+    options: &Options,
+) -> Result<Imported, Vec<SyntaxError>> {
+    let mut files = Files::default();
+    let file = files.add(&model.name, &model.text);
+    let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
+    if let Some(source) = questions {
+        let file: FileId = files.add(&source.name, &source.text);
+        read.queries.extend(queries::read(file, &source.text));
+    }
+    let mut cx = Cx::new(&read);
+    let written =
+        cx.write(&options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned()), &model.name);
+    if !cx.faults.is_empty() {
+        return Err(errors(&files, cx.faults));
+    }
+    for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
+        cx.notes.push((span, Severity::Info, format!("`{old}` is called `{new}`")));
+    }
+    let skipped = read.skipped.iter().map(|(span, what)| (*span, Severity::LeftOut, what.clone()));
+    let mut notes: Vec<Note> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
+    notes.sort();
+    notes.dedup();
+    let text = hrdsl_syntax::format(&written).unwrap_or(written);
+    Ok(Imported { text, notes })
+}
+
+fn note(files: &Files, (span, severity, message): (Span, Severity, String)) -> Note {
+    let (file, Position { line, column }) = place(files, span);
+    Note { file, line, column, severity, message, help: None }
+}
+
+fn errors(files: &Files, faults: Vec<Fault>) -> Vec<SyntaxError> {
+    let error = |fault: Fault| {
+        let (file, Position { line, column }) = place(files, fault.span);
+        SyntaxError { file, line, column, message: fault.message }
+    };
+    let mut errors: Vec<SyntaxError> = faults.into_iter().map(error).collect();
+    errors.sort();
+    errors.dedup();
+    errors
+}
+
+fn place(files: &Files, span: Span) -> (String, Position) {
+    (files.get(span.file).map(|f| f.name.clone()).unwrap_or_default(), files.position(span))
+}
+
+/// The file's name without its folder and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
