@@ -1,14 +1,14 @@
 //! `hrdsl export`: networks of automata to the files of other tools.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use hrdsl_compiler::Compilation;
 use hrdsl_export::{
-    Obstacle,
+    Obstacle, picture, tchecker,
     uppaal::{self, Exported},
 };
-use hrdsl_ir::Program;
+use hrdsl_ir::{Program, ta::Network};
 
 use crate::{
     exit::Exit,
@@ -22,7 +22,9 @@ use crate::{
 #[command(after_help = "\
 Examples:
   hrdsl export uppaal gate.hri -o gate.xml
-  hrdsl export uppaal gate.hri --network crossing --queries gate.q > gate.xml")]
+  hrdsl export uppaal gate.hri --network crossing --queries gate.q > gate.xml
+  hrdsl export tchecker gate.hri -o gate.txt
+  hrdsl export dot gate.hri | dot -Tsvg > gate.svg")]
 pub struct Args {
     #[command(subcommand)]
     to: Tool,
@@ -31,6 +33,36 @@ pub struct Args {
 #[derive(Subcommand)]
 enum Tool {
     Uppaal(Uppaal),
+    /// To TChecker's text format; each location gets the label `AUTOMATON_LOCATION`.
+    #[command(after_help = "\
+Examples:
+  hrdsl export tchecker gate.hri -o gate.txt
+  hrdsl export tchecker gate.hri | tck-reach -a covreach -l Train_cross")]
+    Tchecker(Plain),
+    /// As a picture for Graphviz: the automata with their locations and edges.
+    #[command(after_help = "\
+Examples:
+  hrdsl export dot gate.hri | dot -Tsvg > gate.svg")]
+    Dot(Plain),
+    /// As a Mermaid state diagram, which many Markdown viewers draw.
+    #[command(after_help = "\
+Examples:
+  hrdsl export mermaid gate.hri -o gate.mmd")]
+    Mermaid(Plain),
+}
+
+/// Of which scenario, and where to.
+#[derive(clap::Args)]
+struct Plain {
+    /// The scenario.
+    #[arg(value_name = "FILE.hri")]
+    file: PathBuf,
+    /// The network; it may be left out if there is only one.
+    #[arg(long, value_name = "NETWORK")]
+    network: Option<String>,
+    /// The file to write; otherwise the text goes to stdout.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
 }
 
 /// To UPPAAL: the XML of version 4 and newer, with the network's queries.
@@ -59,7 +91,35 @@ struct Uppaal {
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     match &args.to {
         Tool::Uppaal(args) => to_uppaal(args),
+        Tool::Tchecker(args) => plain(args, tchecker::export),
+        Tool::Dot(args) => plain(args, |program, network| Ok(picture::dot(program, network))),
+        Tool::Mermaid(args) => plain(args, |program, network| Ok(picture::mermaid(program, network))),
     }
+}
+
+fn plain(
+    args: &Plain,
+    export: impl Fn(&Program, &Network) -> Result<String, Vec<Obstacle>>,
+) -> Result<Exit, Fault> {
+    let compilation = input::load(&args.file, &[])?;
+    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let index = network(program, args.network.as_deref(), &args.file.display().to_string())?;
+    match export(program, &program.networks[index]) {
+        Ok(text) => {
+            match &args.out {
+                Some(path) => input::write(path, &text)?,
+                None => input::print(&text)?,
+            }
+            Ok(Exit::Ok)
+        }
+        Err(obstacles) => Ok(refused(&args.file, &compilation, &obstacles)),
+    }
+}
+
+fn refused(file: &Path, compilation: &Compilation, obstacles: &[Obstacle]) -> Exit {
+    said(compilation, obstacles, "error");
+    eprintln!("{} cannot be exported: change the scenario, or export another network", file.display());
+    Exit::Errors
 }
 
 fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
@@ -72,14 +132,7 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
             write(args, &exported)?;
             Ok(Exit::Ok)
         }
-        Err(faults) => {
-            said(&compilation, &faults, "error");
-            eprintln!(
-                "{} cannot be exported: change the scenario, or export another network",
-                args.file.display()
-            );
-            Ok(Exit::Errors)
-        }
+        Err(faults) => Ok(refused(&args.file, &compilation, &faults)),
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Subcommand;
 use hrdsl_import::{
     Imported, Loader, Note, Severity, Source, SyntaxError,
     agentspeak::{self, Options},
-    uppaal,
+    tchecker, uppaal,
 };
 use serde::Serialize;
 
@@ -24,7 +24,8 @@ Examples:
   hrdsl import agentspeak house.mas2j -o house.hri
   hrdsl import agentspeak robot.asl owner.asl --name house > house.hri
   hrdsl import agentspeak house.mas2j --strict --json | jq .notes
-  hrdsl import uppaal gate.xml gate.q -o gate.hri")]
+  hrdsl import uppaal gate.xml gate.q -o gate.hri
+  hrdsl import tchecker fischer.txt -o fischer.hri")]
 pub struct Args {
     #[command(subcommand)]
     from: From,
@@ -34,6 +35,7 @@ pub struct Args {
 enum From {
     Agentspeak(AgentSpeak),
     Uppaal(Uppaal),
+    Tchecker(Tchecker),
 }
 
 /// From Jason's AgentSpeak: agents with their beliefs, rules, goals and plans.
@@ -77,6 +79,25 @@ struct Uppaal {
     to: To,
 }
 
+/// From TChecker's text format: each process becomes an automaton, each synchronisation a joint channel, each label a query.
+///
+/// What a scenario cannot say (a clock that is set under a condition) ends the import with its place.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl import tchecker fischer.txt -o fischer.hri
+  hrdsl import tchecker csmacd.tck --name csma_cd > csma_cd.hri")]
+struct Tchecker {
+    /// The system.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The scenario's name; otherwise that of the system.
+    #[arg(long, value_name = "SCENARIO")]
+    name: Option<String>,
+    #[command(flatten)]
+    to: To,
+}
+
 /// Where what is imported goes.
 #[derive(clap::Args)]
 struct To {
@@ -107,6 +128,10 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     match &args.from {
         From::Agentspeak(args) => from_agentspeak(args),
         From::Uppaal(args) => from_uppaal(args),
+        From::Tchecker(args) => {
+            let options = tchecker::Options { name: args.name.clone() };
+            finished(&args.to, tchecker::import(&source(&args.file)?, &options))
+        }
     }
 }
 
