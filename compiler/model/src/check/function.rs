@@ -32,8 +32,8 @@ pub(super) struct Functions {
     only_read: Vec<(FunctionId, Span)>,
     /// Where the names of called functions are declared.
     pub used: BTreeSet<Span>,
-    /// The functions that all automata know, and those of automata: where they are declared.
-    pub declared: Vec<(Name, Span)>,
+    /// By the place of their names: the functions that all automata know, and those of automata.
+    pub declared: BTreeMap<Span, (Name, Span)>,
 }
 
 impl Checker<'_> {
@@ -44,7 +44,10 @@ impl Checker<'_> {
         for (item, span) in self.each_item() {
             let ItemKind::Function(function) = item else { continue };
             let env = Env { shared: self.shared_scope.clone(), ..Env::default() };
-            if let Some(callable) = self.declare_function(function, None, &env, span) {
+            let callable = self.declare_function(function, None, &env, span);
+            // Nobody else holds the scope now: it grows without a copy.
+            drop(env);
+            if let Some(callable) = callable {
                 bodies.push((callable.id, function));
                 Rc::make_mut(&mut self.shared_scope).functions.insert(function.name.text.clone(), callable);
             }
@@ -91,9 +94,7 @@ impl Checker<'_> {
         span: Span,
     ) -> Option<Callable> {
         let name = &function.name;
-        if !self.functions.declared.iter().any(|(n, _)| n.span == name.span) {
-            self.functions.declared.push((name.clone(), span));
-        }
+        self.functions.declared.entry(name.span).or_insert_with(|| (name.clone(), span));
         let params = self.function_params(function);
         let result = function.result.as_ref().map(|ty| {
             let ty = self.ty(ty);

@@ -65,7 +65,7 @@ impl Checker<'_> {
                 | ItemKind::Error => {}
             }
         }
-        for (name, span) in std::mem::take(&mut self.functions.declared) {
+        for (name, span) in std::mem::take(&mut self.functions.declared).into_values() {
             let used = self.functions.used.contains(&name.span);
             self.declared("the function", &name, span, used);
         }
