@@ -248,12 +248,25 @@ impl<'m, 'p> Graph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
         let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
+        self.deadlocked_by(&self.actions(state), &stay, zone)
+    }
+
+    /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
+    ///
+    /// # Errors
+    /// If an invariant has no value.
+    pub(crate) fn deadlocked_by(
+        &self,
+        actions: &[Action],
+        stay: &Stay,
+        zone: &Dbm,
+    ) -> Result<Federation, ModelError> {
         let mut left = Federation::of(zone.clone());
-        for action in self.actions(state) {
+        for action in actions {
             if left.is_empty() {
                 break;
             }
-            if let Some(from) = self.leaves(&action, &stay)? {
+            if let Some(from) = self.leaves(action, stay)? {
                 left = left.minus(&from);
             }
         }

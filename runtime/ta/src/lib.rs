@@ -20,14 +20,20 @@
 //! sends them itself.
 
 mod abstraction;
+mod answer;
+mod cells;
 mod check;
 mod concrete;
 pub mod dbm;
 mod error;
 mod extrapolation;
+mod extremum;
+mod fastest;
 pub mod federation;
 mod graph;
+mod liveness;
 mod network;
+mod plain;
 mod player;
 pub mod query;
 mod replay;
@@ -39,7 +45,11 @@ mod story;
 mod witness;
 mod zone;
 
+pub use answer::{Answer, Options, Verdict, answer, answers};
 pub use error::{EdgeName, Error, ModelError};
+pub use extremum::{Extremum, Quantity, RAISES, Reach};
+pub use fastest::fastest;
+pub use federation::Federation;
 pub use network::{Model, slot_names};
 pub use player::Player;
 pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula};

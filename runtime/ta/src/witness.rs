@@ -132,7 +132,29 @@ pub(crate) fn build(
     let Some(GoalKind::Condition(f)) = goal.map(|g| &g.what).filter(|_| goal.is_some_and(timed)) else {
         return concrete(&graph, &stops, Ending::Reached, goal, timing);
     };
-    reach_in_time(&graph, stops, f, goal, timing)
+    reach_in_time(&graph, stops, f, &[], goal, timing)
+}
+
+/// The path, and then the time that the formula needs, with what must hold then besides.
+pub(crate) fn reach_formula(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    besides: &[Constraint],
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, besides, None, timing)
+}
+
+/// The path, and then the time that a goal's formula needs.
+pub(crate) fn reach_goal(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    goal: &Goal,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, &[], Some(goal), timing)
 }
 
 fn timed(goal: &Goal) -> bool {
@@ -144,13 +166,14 @@ fn reach_in_time(
     graph: &Graph,
     stops: Vec<Stop>,
     f: &StateFormula,
+    besides: &[Constraint],
     goal: Option<&Goal>,
     timing: Timing,
 ) -> Result<Witness, Error> {
     let state = walk(graph, &stops)?.state;
     let mut all = Dbm::universe(graph.dim());
     let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
-    stay.invariant.iter().for_each(|c| {
+    stay.invariant.iter().chain(besides).for_each(|c| {
         crate::federation::keep(&mut all, *c);
     });
     let parts = f.part(&graph.here(&state), &all)?.into_zones();
@@ -314,4 +337,39 @@ fn step(model: &Model, before: &[i64], after: &[i64], action: Action) -> Witness
             .filter_map(|s| value(before, s).zip(value(after, s)).map(|(a, b)| (s, a, b)))
             .collect(),
     }
+}
+
+/// The same run with other delays: its path is found again by the moves and, among transitions of the same moves, by the
+/// clocks.
+///
+/// # Errors
+/// If the run is not one of the model.
+pub fn retimed(model: &Model, run: &Witness, goal: &Goal, timing: Timing) -> Result<Witness, Error> {
+    let graph = Graph::new(model, Detail::Tell, &[], 0)?;
+    let mut choices = Vec::new();
+    let mut state = graph.initial();
+    // Each clock is zero at a time, in ticks.
+    let scale = i128::from(model.unit) * i128::from(run.ticks);
+    let mut zero = vec![0i128; model.dim];
+    for s in &run.steps {
+        let now = i128::from(s.time);
+        let value = |x: u16| if x == 0 { 0 } else { now - zero[usize::from(x)] };
+        let keeps = |c: &Constraint| {
+            let (d, b) = (value(c.i) - value(c.j), i128::from(c.bound.value()) * scale);
+            c.bound.is_infinite() || d < b || (d == b && !c.bound.is_strict())
+        };
+        let found = graph
+            .actions(&state)
+            .into_iter()
+            .enumerate()
+            .find(|(_, a)| a.moves.as_slice() == s.moves.as_slice() && a.guard.iter().all(keeps));
+        let (choice, action) = found.ok_or_else(|| internal("a run takes a transition that is not there"))?;
+        choices.push(choice as u32);
+        for set in &action.sets {
+            let from = if set.from == 0 { now } else { zero[usize::from(set.from)] };
+            zero[usize::from(set.clock)] = from - i128::from(set.plus) * scale;
+        }
+        state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
+    }
+    build(model, &choices, Some(goal), timing)
 }
