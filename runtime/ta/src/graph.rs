@@ -14,7 +14,7 @@ use crate::{
     ModelError, StateFormula,
     abstraction::{Bounds, KEEP, NONE, extra, split},
     dbm::{Bound, Dbm},
-    federation::{Federation, forget, keep, past},
+    federation::{Federation, keep, past},
     network::{Constraint, Model},
     query::{Symbolic, View, as_bounds, nanos},
     semantics::Move,
@@ -28,7 +28,7 @@ pub(crate) enum Label {
     Channel(ChannelId, Vec<Value>),
 }
 
-/// `clock := from + plus`, in units; `from` is 0 for none.
+/// The clock becomes what `from` was before the transition (0: zero), plus some units. All sets of a transition are at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SetClock {
     pub clock: u16,
@@ -42,7 +42,6 @@ pub(crate) struct Action {
     pub label: Label,
     pub moves: SmallVec<[Move; 2]>,
     pub guard: SmallVec<[Constraint; 4]>,
-    /// In order.
     pub sets: SmallVec<[SetClock; 4]>,
     /// The discrete state after it; it may be one that the invariants over variables forbid.
     pub target: Result<Vec<i64>, Box<ModelError>>,
@@ -207,7 +206,9 @@ impl<'m, 'p> Graph<'m, 'p> {
         if !action.guard.iter().all(|c| keep(zone, *c)) {
             return false;
         }
-        action.sets.iter().for_each(|s| set(zone, *s));
+        if !action.sets.is_empty() {
+            *zone = set(zone, &self.sources(&action.sets));
+        }
         target.invariant.iter().all(|c| keep(zone, *c))
     }
 
@@ -236,6 +237,15 @@ impl<'m, 'p> Graph<'m, 'p> {
         }
         extra(&mut zone, &bounds);
         out(zone);
+    }
+
+    /// For each clock: what it is after a transition, as a clock before it and what is added.
+    fn sources(&self, sets: &[SetClock]) -> Vec<(usize, i64)> {
+        let mut sources: Vec<(usize, i64)> = (0..self.dim()).map(|x| (x, 0)).collect();
+        for s in sets {
+            sources[usize::from(s.clock)] = (usize::from(s.from), s.plus);
+        }
+        sources
     }
 
     pub(crate) fn here<'s>(&'s self, state: &'s [i64]) -> Here<'s, 'm, 'p> {
@@ -282,10 +292,8 @@ impl<'m, 'p> Graph<'m, 'p> {
             if !there.invariant.iter().all(|c| keep(&mut zone, *c)) {
                 return Ok(None);
             }
-            for s in action.sets.iter().rev() {
-                if !unset(&mut zone, *s) {
-                    return Ok(None);
-                }
+            if !action.sets.is_empty() {
+                zone = unset(&zone, &self.sources(&action.sets));
             }
         }
         if !action.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
@@ -295,40 +303,38 @@ impl<'m, 'p> Graph<'m, 'p> {
     }
 }
 
-/// Sets a clock to a value, or to another clock's and more.
-pub(crate) fn set(zone: &mut Dbm, s: SetClock) {
-    let (x, y) = (usize::from(s.clock), usize::from(s.from));
+/// The clocks after a transition: clock `i` is what `sources[i].0` was, plus `sources[i].1`.
+///
+/// INVARIANT: `x'ᵢ - x'ⱼ = xₛᵢ - xₛⱼ + bᵢ - bⱼ`, and the matrix was canonical, so it is again.
+pub(crate) fn set(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut after = zone.clone();
     if zone.is_empty() {
-        return;
+        return after;
     }
-    if x != y {
-        *zone = forget(zone, x);
-        zone.constrain(x, y, Bound::le(s.plus));
-        zone.constrain(y, x, Bound::le(-s.plus));
-        return;
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            after.put(i, j, zone.at(x, y).plus(Bound::le(a - b)));
+        }
     }
-    // It grows by a constant.
-    for k in (0..zone.dim()).filter(|&k| k != x) {
-        let (row, column) = (zone.at(x, k), zone.at(k, x));
-        zone.put(x, k, row.plus(Bound::le(s.plus)));
-        zone.put(k, x, column.plus(Bound::le(-s.plus)));
-    }
-    // INVARIANT: no clock is negative, whatever `plus` is.
-    zone.constrain(0, x, Bound::LE_ZERO);
+    // No clock is negative; a transition that makes one so is a fault.
+    (1..sources.len()).for_each(|i| {
+        after.constrain(0, i, Bound::LE_ZERO);
+    });
+    after
 }
 
-/// What an assignment of a clock brings into the zone; `false`: nothing.
-fn unset(zone: &mut Dbm, s: SetClock) -> bool {
-    let (x, y) = (usize::from(s.clock), usize::from(s.from));
-    if x == y {
-        set(zone, SetClock { plus: -s.plus, ..s });
-        return !zone.is_empty();
+/// The clocks before a transition that sets them into the zone.
+fn unset(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut before = Dbm::universe(zone.dim());
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            let bound = zone.at(i, j).plus(Bound::le(b - a));
+            if !bound.is_infinite() {
+                before.constrain(x, y, bound);
+            }
+        }
     }
-    if !zone.constrain(x, y, Bound::le(s.plus)) || !zone.constrain(y, x, Bound::le(-s.plus)) {
-        return false;
-    }
-    *zone = forget(zone, x);
-    true
+    before
 }
 
 /// A discrete state as formulas see it.

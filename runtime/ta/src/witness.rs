@@ -302,7 +302,7 @@ fn walk(graph: &Graph, stops: &[Stop]) -> Result<Walk, Error> {
         let target =
             action.target.clone().map_err(|_| internal("a path takes a transition that is a fault"))?;
         action.guard.iter().for_each(|c| w.schedule.require(*c));
-        action.sets.iter().for_each(|s| w.schedule.set(*s));
+        w.schedule.set(&action.sets);
         stay = allowed(graph, &target)?;
         stay.invariant.iter().chain(after).for_each(|c| w.schedule.require(*c));
         w.steps.push(step(graph.model, &w.state, &target, action));
@@ -365,8 +365,9 @@ pub fn retimed(model: &Model, run: &Witness, goal: &Goal, timing: Timing) -> Res
             .find(|(_, a)| a.moves.as_slice() == s.moves.as_slice() && a.guard.iter().all(keeps));
         let (choice, action) = found.ok_or_else(|| internal("a run takes a transition that is not there"))?;
         choices.push(choice as u32);
+        let before = zero.clone();
         for set in &action.sets {
-            let from = if set.from == 0 { now } else { zero[usize::from(set.from)] };
+            let from = if set.from == 0 { now } else { before[usize::from(set.from)] };
             zero[usize::from(set.clock)] = from - i128::from(set.plus) * scale;
         }
         state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
