@@ -1,19 +1,22 @@
 //! Answers to queries: what holds, a run that shows it, and a sentence that says why.
 
+use std::ops::ControlFlow;
+
 use hrdsl_ir::{
     Program,
     suite::{Delays, WitnessKind},
-    ta::{Ask, Measure, Network, Query},
+    ta::{Ask, Formula, Measure, Network, Query},
 };
 use serde::Serialize;
 
 use crate::{
-    Budget, Ending, Error, Exhausted, Extremum, Goal, GoalKind, Model, ModelError, Outcome, StateFormula,
-    Timing, Witness,
+    Budget, Ending, Error, Exhausted, Extremum, Goal, GoalKind, Model, ModelError, Observe, Options, Outcome,
+    StateFormula, Timing, Witness,
     extremum::{Side, extrema},
     fastest::fastest,
     graph::{Detail, Graph},
     liveness::{Found, Hunt, Trap},
+    plain::Plain,
     search::explore,
     story::seconds,
     witness,
@@ -21,17 +24,19 @@ use crate::{
 
 /// How questions are answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct Manner {
     /// Of each search.
     pub budget: Budget,
-    /// For what is decided by reachability. `Any` gives the shortest, too.
+    /// For what is decided by reachability.
     pub witness: WitnessKind,
     pub delays: Delays,
     /// For sampled delays.
     pub seed: u64,
+    /// Threads of the exploration for what reachability decides; 0 counts as 1.
+    pub threads: usize,
 }
 
-impl Options {
+impl Manner {
     fn timing(&self) -> Timing {
         Timing { delays: self.delays, seed: self.seed, prompt: false }
     }
@@ -64,13 +69,8 @@ pub struct Answer {
 ///
 /// # Errors
 /// If the model is at fault, the query has no meaning, or the engine contradicts itself.
-pub fn answer(
-    program: &Program,
-    network: &Network,
-    query: &Query,
-    options: &Options,
-) -> Result<Answer, Error> {
-    let mut all = answers(program, network, &[query], options)?;
+pub fn answer(program: &Program, network: &Network, query: &Query, manner: &Manner) -> Result<Answer, Error> {
+    let mut all = answers(program, network, &[query], manner)?;
     all.pop().ok_or_else(|| Error::Internal("a query has no answer".into()))
 }
 
@@ -83,28 +83,19 @@ pub fn answers(
     program: &Program,
     network: &Network,
     queries: &[&Query],
-    options: &Options,
+    manner: &Manner,
 ) -> Result<Vec<Answer>, Error> {
     let goals: Vec<Option<Goal>> = queries.iter().map(|q| reachability(&q.ask)).collect();
-    let asked: Vec<Goal> = goals.iter().flatten().cloned().collect();
     let formulas = queries.iter().flat_map(|q| formulas(&q.ask)).collect();
-    let model = crate::answer::model(program, network, formulas)?;
-    let mut outcomes = Vec::new();
-    if !asked.is_empty() {
-        let report = explore(&model, &asked, options.budget)?;
-        outcomes = report.goals.into_iter().map(|o| (o, report.states_stored)).collect();
-    }
-    let mut outcomes = outcomes.into_iter();
-    let asker = Asker { program, network, model: &model, options };
+    let observe = Observe { formulas, ..Observe::default() };
+    let model = Model::new(program, network, &observe)?;
+    let asker = Asker { program, network, model: &model, manner };
+    let mut outcomes = asker.decide(&goals)?;
     let mut all = Vec::new();
-    for (query, goal) in queries.iter().zip(&goals) {
-        all.push(match goal {
-            Some(goal) => {
-                let next = outcomes.next();
-                let (outcome, states) = next.ok_or_else(|| Error::Internal("a goal is lost".into()))?;
-                asker.reached(&query.ask, goal, outcome, states)?
-            }
-            None => asker.ask(&query.ask)?,
+    for (i, query) in queries.iter().enumerate() {
+        all.push(match (&goals[i], outcomes[i].take()) {
+            (Some(goal), Some((outcome, states))) => asker.reached(&query.ask, goal, outcome, states)?,
+            (_, None) | (None, _) => asker.ask(&query.ask)?,
         });
     }
     Ok(all)
@@ -112,10 +103,10 @@ pub fn answers(
 
 /// The goal that decides a query, if reachability does.
 fn reachability(ask: &Ask) -> Option<Goal> {
-    let goal = |f: StateFormula| Some(Goal { what: GoalKind::Condition(f), settled: false });
+    let goal = |f: Formula| Some(Goal { what: GoalKind::Formula(f), settled: false });
     match ask {
-        Ask::Possibly(f) => goal(f.into()),
-        Ask::Invariantly(f) => goal(StateFormula::from(f).not()),
+        Ask::Possibly(f) => goal(f.clone()),
+        Ask::Invariantly(f) => goal(Formula::Not(Box::new(f.clone()))),
         Ask::PotentiallyAlways(_)
         | Ask::Eventually(_)
         | Ask::LeadsTo(..)
@@ -125,7 +116,7 @@ fn reachability(ask: &Ask) -> Option<Goal> {
 }
 
 /// All formulas of a query.
-fn formulas(ask: &Ask) -> Vec<hrdsl_ir::ta::Formula> {
+fn formulas(ask: &Ask) -> Vec<Formula> {
     match ask {
         Ask::Possibly(f)
         | Ask::Invariantly(f)
@@ -137,23 +128,77 @@ fn formulas(ask: &Ask) -> Vec<hrdsl_ir::ta::Formula> {
     }
 }
 
-fn model<'p>(
-    program: &'p Program,
-    network: &'p Network,
-    formulas: Vec<hrdsl_ir::ta::Formula>,
-) -> Result<Model<'p>, ModelError> {
-    let _ = formulas;
-    Model::new(program, network, &[], &[])
-}
-
 struct Asker<'a> {
     program: &'a Program,
     network: &'a Network,
     model: &'a Model<'a>,
-    options: &'a Options,
+    manner: &'a Manner,
 }
 
+/// How a goal ended, and how many symbolic states were kept.
+type Decided = (Outcome, usize);
+
 impl Asker<'_> {
+    /// Decides the goals: those without `deadlock` in one exploration by simulation, those with it in one of a zone graph
+    /// that tells valuations apart.
+    fn decide(&self, goals: &[Option<Goal>]) -> Result<Vec<Option<Decided>>, Error> {
+        let mut all: Vec<Option<Decided>> = goals.iter().map(|_| None).collect();
+        let asks = |g: &Goal| g.formula().is_some_and(|f| f.asks_deadlock());
+        let of = |deadlock: bool| -> Vec<(usize, &Goal)> {
+            let some = goals.iter().enumerate().filter_map(|(i, g)| Some((i, g.as_ref()?)));
+            some.filter(|(_, g)| asks(g) == deadlock).collect()
+        };
+        let easy = of(false);
+        if !easy.is_empty() {
+            let asked: Vec<Goal> = easy.iter().map(|(_, g)| (*g).clone()).collect();
+            let options = match self.manner.witness {
+                WitnessKind::Shortest => Options::shortest(),
+                WitnessKind::Any | WitnessKind::Fastest => Options::default(),
+            };
+            let options =
+                Options { budget: self.manner.budget, threads: self.manner.threads.max(1), ..options };
+            let report = explore(self.model, &asked, &options, &|_| true)?;
+            for ((i, _), outcome) in easy.iter().zip(report.goals) {
+                all[*i] = Some((outcome, report.states_stored));
+            }
+        }
+        let hard = of(true);
+        if !hard.is_empty() {
+            self.deadlocks(&hard, &mut all)?;
+        }
+        Ok(all)
+    }
+
+    fn deadlocks(&self, goals: &[(usize, &Goal)], all: &mut [Option<Decided>]) -> Result<(), Error> {
+        let formulas: Vec<StateFormula> = goals.iter().filter_map(|(_, g)| g.formula()).collect();
+        let refs: Vec<&StateFormula> = formulas.iter().collect();
+        let graph = Graph::new(self.model, Detail::Tell, &refs, 0)?;
+        let mut met: Vec<Option<u32>> = vec![None; goals.len()];
+        let mut plain = Plain::new(&graph);
+        let exhausted = plain.explore(self.manner.budget, &mut |at, seen, _| {
+            let here = graph.here(&seen.state);
+            for (f, met) in formulas.iter().zip(&mut met) {
+                if met.is_none() && !f.part(&here, &seen.zone)?.is_empty() {
+                    *met = Some(at);
+                }
+            }
+            let done = met.iter().all(Option::is_some);
+            Ok(if done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+        for (((i, goal), f), met) in goals.iter().zip(&formulas).zip(&met) {
+            let outcome = match (met, exhausted) {
+                (Some(at), _) => {
+                    let run = witness::reach_goal(&graph, plain.path(*at), f, goal, Timing::default())?;
+                    Outcome::Reached(Box::new(run))
+                }
+                (None, Some(what)) => Outcome::Open(what),
+                (None, None) => Outcome::Unreachable,
+            };
+            all[*i] = Some((outcome, plain.nodes.len()));
+        }
+        Ok(())
+    }
+
     fn reached(&self, ask: &Ask, goal: &Goal, outcome: Outcome, states: usize) -> Result<Answer, Error> {
         let universal = matches!(ask, Ask::Invariantly(_));
         let plain = |verdict, why| Answer { verdict, why, run: None, extrema: Vec::new() };
@@ -182,9 +227,9 @@ impl Asker<'_> {
 
     /// The witness that the options ask for, instead of the one that was found.
     fn chosen(&self, goal: &Goal, found: Box<Witness>) -> Result<Box<Witness>, Error> {
-        let timing = self.options.timing();
-        if self.options.witness == WitnessKind::Fastest
-            && let Some(run) = fastest(self.model, goal, self.options.budget, timing)?
+        let timing = self.manner.timing();
+        if self.manner.witness == WitnessKind::Fastest
+            && let Some(run) = fastest(self.model, goal, self.manner.budget, timing)?
         {
             return Ok(run);
         }
@@ -258,12 +303,12 @@ impl Asker<'_> {
             return Err(ModelError::Question(what.into()).into());
         }
         let graph = Graph::new(self.model, Detail::Tell, formulas, 0)?;
-        let mut hunt = Hunt::new(&graph, formulas, self.options.budget);
+        let mut hunt = Hunt::new(&graph, formulas, self.manner.budget);
         Ok(match search(&mut hunt)? {
             Found::Nothing => Hunted::Nothing,
             Found::Open(what) => Hunted::Open(what),
             Found::Trap(trap) => {
-                let timing = self.options.timing();
+                let timing = self.manner.timing();
                 let run = witness::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
                 let still = match trap.ending {
                     Ending::Again(_) => {
@@ -312,10 +357,10 @@ impl Asker<'_> {
         }
     }
 
-    fn bounds(&self, side: Side, of: &[Measure], when: &hrdsl_ir::ta::Formula) -> Result<Answer, Error> {
+    fn bounds(&self, side: Side, of: &[Measure], when: &Formula) -> Result<Answer, Error> {
         use crate::Reach;
-        let timing = self.options.timing();
-        let all = extrema(self.model, side, of, &when.into(), self.options.budget, timing)?;
+        let timing = self.manner.timing();
+        let all = extrema(self.model, side, of, &when.into(), self.manner.budget, timing)?;
         let open = all.iter().any(|e| matches!(e.limit, Reach::Open { .. }));
         let verdict = if open { Verdict::Open } else { Verdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
@@ -359,6 +404,7 @@ fn used_up(what: Exhausted) -> String {
     let what = match what {
         Exhausted::States => "states",
         Exhausted::Memory => "memory",
+        Exhausted::Stopped => return "not decided: the search was stopped".to_owned(),
     };
     format!("not decided: the budget of {what} was used up")
 }

@@ -11,9 +11,11 @@ use std::{cmp::Reverse, collections::BinaryHeap, rc::Rc};
 use rustc_hash::FxHashMap;
 
 use crate::{
-    Budget, Error, Goal, GoalKind, Model, StateFormula, Timing, Witness,
+    Budget, Error, Goal, GoalKind, Model, ModelError, StateFormula, Timing, Witness,
     dbm::Dbm,
+    expand::Taken,
     graph::{Action, Detail, Graph, Stay},
+    semantics::Take,
     witness::{Ending, concrete, reach_goal, takes},
 };
 
@@ -23,8 +25,7 @@ type Cost = (i64, bool);
 struct Node {
     state: Rc<[i64]>,
     zone: Dbm,
-    parent: Option<usize>,
-    choice: u32,
+    parent: Option<(usize, Rc<Taken>)>,
 }
 
 /// Something to look at: a node to go on from, or one at which the goal is met.
@@ -44,7 +45,7 @@ struct Race<'g, 'm, 'p> {
     bytes: usize,
 }
 
-/// A run that meets the goal as early as any; `None`: the goal cannot be met, or the budget is used up first.
+/// A run that meets the goal (no pair or use) as early as any; the model must have observed the goal's formula. `None`: the goal cannot be met, or the budget is used up first.
 ///
 /// # Errors
 /// If the model is at fault, or the engine contradicts itself.
@@ -54,13 +55,11 @@ pub fn fastest(
     budget: Budget,
     timing: Timing,
 ) -> Result<Option<Box<Witness>>, Error> {
-    let formula = match &goal.what {
-        GoalKind::Edge { .. } => None,
-        GoalKind::Location { automaton, location } => {
-            Some(StateFormula::At { automaton: *automaton, location: *location })
-        }
-        GoalKind::Condition(f) => Some(f.clone()),
-    };
+    if matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. }) {
+        let what = "a pair of edges is not looked for by time";
+        return Err(ModelError::Question(what.into()).into());
+    }
+    let formula = goal.formula();
     let timed: Vec<&StateFormula> = formula.iter().collect();
     let graph = Graph::new(model, Detail::Reach, &timed, 1)?;
     let mut race = Race {
@@ -72,10 +71,10 @@ pub fn fastest(
         queue: BinaryHeap::new(),
         bytes: 0,
     };
-    let Some(choices) = race.run(budget)? else { return Ok(None) };
+    let Some(path) = race.run(budget)? else { return Ok(None) };
     let own = Graph::new(model, Detail::Tell, &[], 0)?;
     let timing = Timing { prompt: true, ..timing };
-    let stops = takes(&choices);
+    let stops = takes(path);
     let witness = match formula {
         Some(f) if f.is_timed() => reach_goal(&own, stops, &f, goal, timing)?,
         Some(_) | None => concrete(&own, &stops, Ending::Reached, Some(goal), timing)?,
@@ -84,9 +83,9 @@ pub fn fastest(
 }
 
 impl Race<'_, '_, '_> {
-    fn run(&mut self, budget: Budget) -> Result<Option<Vec<u32>>, Error> {
+    fn run(&mut self, budget: Budget) -> Result<Option<Vec<Rc<Taken>>>, Error> {
         let (state, stay, zone) = self.graph.start()?;
-        self.insert(state.into(), &stay, zone, None, 0, false)?;
+        self.insert(state.into(), &stay, zone, None, false)?;
         while let Some(Reverse((_, turn))) = self.queue.pop() {
             if self.nodes.len() >= budget.states || self.bytes >= budget.bytes {
                 return Ok(None);
@@ -101,19 +100,12 @@ impl Race<'_, '_, '_> {
 
     fn expand(&mut self, at: usize) -> Result<(), Error> {
         let (state, zone) = (self.nodes[at].state.clone(), self.nodes[at].zone.clone());
-        for (choice, action) in (0u32..).zip(self.graph.actions(&state)) {
-            let mut next = zone.clone();
-            if !action.guard.iter().all(|c| crate::federation::keep(&mut next, *c)) {
-                continue;
-            }
-            let target = match &action.target {
-                Ok(target) => target,
-                Err(e) => return Err(Error::Model { error: (**e).clone(), witness: None }),
-            };
-            let Some(there) = self.graph.stay(target)? else { continue };
-            if self.graph.take(&action, &there, &mut next) {
+        for action in self.graph.actions(&state) {
+            let followed = self.graph.follow(&action, &zone);
+            let followed = followed.map_err(|error| Error::Model { error, witness: None })?;
+            if let Some((target, there, next)) = followed {
                 let met = self.takes_goal(&action);
-                self.insert(target.as_slice().into(), &there, next, Some(at), choice, met)?;
+                self.insert(target.into(), &there, next, Some((at, action.taken.clone())), met)?;
             }
         }
         Ok(())
@@ -122,9 +114,14 @@ impl Race<'_, '_, '_> {
     fn takes_goal(&self, action: &Action) -> bool {
         match &self.goal.what {
             GoalKind::Edge { automaton, edge } => {
-                action.moves.iter().any(|m| m.automaton == *automaton && m.edge == *edge)
+                let is = |t: &Take| usize::from(t.member) == *automaton && usize::from(t.edge) == *edge;
+                action.taken.parts.iter().any(is)
             }
-            GoalKind::Location { .. } | GoalKind::Condition(_) => false,
+            GoalKind::Pair { .. }
+            | GoalKind::Use { .. }
+            | GoalKind::Location { .. }
+            | GoalKind::Condition(_)
+            | GoalKind::Formula(_) => false,
         }
     }
 
@@ -133,8 +130,7 @@ impl Race<'_, '_, '_> {
         state: Rc<[i64]>,
         stay: &Stay,
         mut zone: Dbm,
-        parent: Option<usize>,
-        choice: u32,
+        parent: Option<(usize, Rc<Taken>)>,
         met: bool,
     ) -> Result<(), Error> {
         self.graph.wait(stay, &mut zone);
@@ -153,7 +149,7 @@ impl Race<'_, '_, '_> {
             let cost = self.cost(&zone);
             self.bytes += zone.heap_bytes() + size_of_val(&*state) + size_of::<Node>();
             let goal = if met { Some(cost) } else { self.goal_cost(&state, &zone)? };
-            self.nodes.push(Node { state: state.clone(), zone, parent, choice });
+            self.nodes.push(Node { state: state.clone(), zone, parent: parent.clone() });
             if let Some(cost) = goal {
                 self.queue.push(Reverse((cost, Turn::Met(at))));
             }
@@ -180,13 +176,13 @@ impl Race<'_, '_, '_> {
         Ok(parts.zones().iter().map(|z| self.cost(z)).min())
     }
 
-    fn path(&self, mut at: usize) -> Vec<u32> {
-        let mut choices = Vec::new();
-        while let Some(parent) = self.nodes[at].parent {
-            choices.push(self.nodes[at].choice);
-            at = parent;
+    fn path(&self, mut at: usize) -> Vec<Rc<Taken>> {
+        let mut path = Vec::new();
+        while let Some((parent, taken)) = &self.nodes[at].parent {
+            path.push(taken.clone());
+            at = *parent;
         }
-        choices.reverse();
-        choices
+        path.reverse();
+        path
     }
 }

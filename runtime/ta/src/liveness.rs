@@ -215,22 +215,16 @@ impl<'g, 'm, 'p> Hunt<'g, 'm, 'p> {
             }
         }
         let before = spot.cuts.bounds(&node.cell);
-        for (choice, action) in (0u32..).zip(&spot.actions) {
-            let mut zone = node.zone.clone();
-            if !action.guard.iter().all(|c| keep(&mut zone, *c)) {
-                continue;
-            }
-            let target = action.target.as_ref().map_err(|e| self.fault(at, e))?;
-            let Some(there) = self.graph.stay(target)? else { continue };
-            if !self.graph.take(action, &there, &mut zone) {
-                continue;
-            }
-            let target: Rc<[i64]> = target.as_slice().into();
+        for action in &spot.actions {
+            let followed = self.graph.follow(action, &node.zone).map_err(|e| self.fault(at, &e))?;
+            let Some((target, there, zone)) = followed else { continue };
+            let target: Rc<[i64]> = target.into();
             let cuts = Cuts::of(&self.formulas, &self.graph.here(&target))?;
             for (cell, part) in cuts.parts(&zone) {
                 let after = cuts.bounds(&cell);
                 self.node(&target, &there, &cuts, &cell, part, &mut |next| {
-                    out.push((Stop::Take { choice, before: before.clone(), after: after.clone() }, next));
+                    let (taken, before, after) = (action.taken.clone(), before.clone(), after.clone());
+                    out.push((Stop::Take { taken, before, after }, next));
                 });
             }
         }

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use crate::{
     Budget, Error, Exhausted,
     dbm::Dbm,
+    expand::Taken,
     graph::{Graph, Stay},
     witness::{Ending, Stop, concrete, takes},
 };
@@ -16,8 +17,7 @@ use crate::{
 pub(crate) struct Seen {
     pub state: Rc<[i64]>,
     pub zone: Dbm,
-    parent: Option<u32>,
-    choice: u32,
+    parent: Option<(u32, Rc<Taken>)>,
 }
 
 /// All symbolic states that were seen.
@@ -42,7 +42,7 @@ impl<'g, 'm, 'p> Plain<'g, 'm, 'p> {
     /// If the model is at fault, or the look finds one.
     pub(crate) fn explore(&mut self, budget: Budget, look: &mut Look) -> Result<Option<Exhausted>, Error> {
         let (state, stay, zone) = self.graph.start()?;
-        self.insert(state.into(), &stay, zone, None, 0);
+        self.insert(state.into(), &stay, zone, None);
         let mut at = 0;
         while at < self.nodes.len() {
             if self.nodes.len() >= budget.states {
@@ -67,18 +67,13 @@ impl<'g, 'm, 'p> Plain<'g, 'm, 'p> {
         if look(at, node, &stay)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        for (choice, action) in (0u32..).zip(self.graph.actions(&state)) {
-            let mut next = zone.clone();
-            if !action.guard.iter().all(|c| crate::federation::keep(&mut next, *c)) {
-                continue;
-            }
-            let target = match &action.target {
-                Ok(target) => target,
-                Err(e) => return Err(self.fault(at, e)),
-            };
-            let Some(there) = self.graph.stay(target)? else { continue };
-            if self.graph.take(&action, &there, &mut next) {
-                self.insert(target.as_slice().into(), &there, next, Some(at), choice);
+        for action in self.graph.actions(&state) {
+            match self.graph.follow(&action, &zone) {
+                Ok(None) => {}
+                Ok(Some((target, there, next))) => {
+                    self.insert(target.into(), &there, next, Some((at, action.taken.clone())));
+                }
+                Err(e) => return Err(self.fault(at, &e)),
             }
         }
         Ok(ControlFlow::Continue(()))
@@ -92,7 +87,7 @@ impl<'g, 'm, 'p> Plain<'g, 'm, 'p> {
         }
     }
 
-    fn insert(&mut self, state: Rc<[i64]>, stay: &Stay, mut zone: Dbm, parent: Option<u32>, choice: u32) {
+    fn insert(&mut self, state: Rc<[i64]>, stay: &Stay, mut zone: Dbm, parent: Option<(u32, Rc<Taken>)>) {
         self.graph.wait(stay, &mut zone);
         let Plain { graph, nodes, of, bytes } = self;
         let known = of.entry(state.clone()).or_default();
@@ -102,18 +97,18 @@ impl<'g, 'm, 'p> Plain<'g, 'm, 'p> {
             }
             *bytes += zone.heap_bytes() + size_of_val(&*state) + size_of::<Seen>();
             known.push(nodes.len() as u32);
-            nodes.push(Seen { state: state.clone(), zone, parent, choice });
+            nodes.push(Seen { state: state.clone(), zone, parent: parent.clone() });
         });
     }
 
     /// The way to a symbolic state.
     pub(crate) fn path(&self, mut at: u32) -> Vec<Stop> {
-        let mut choices = Vec::new();
-        while let Seen { parent: Some(parent), choice, .. } = &self.nodes[at as usize] {
-            choices.push(*choice);
+        let mut path = Vec::new();
+        while let Some((parent, taken)) = &self.nodes[at as usize].parent {
+            path.push(taken.clone());
             at = *parent;
         }
-        choices.reverse();
-        takes(&choices)
+        path.reverse();
+        takes(path)
     }
 }

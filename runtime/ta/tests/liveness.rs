@@ -14,7 +14,7 @@ use hrdsl_ir::{
     ta::{Ask, ClockConstraint, ClockOp, Edge, Formula, LocationId, LocationKind, Query, Sync, Update},
     value::SECOND,
 };
-use hrdsl_ta::{Options, Verdict, answer};
+use hrdsl_ta::{Manner, Verdict, answer};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -339,7 +339,7 @@ fn check(p: &Program, ask: Ask, seed: u64) {
         origin: Span::default(),
     };
     let got =
-        answer(p, &p.networks[0], &query, &Options::default()).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        answer(p, &p.networks[0], &query, &Manner::default()).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     let want = if o.verdict(&ask) { Verdict::Holds } else { Verdict::Fails };
     assert_eq!(got.verdict, want, "seed {seed}: {ask:?}: {}", got.why);
 }

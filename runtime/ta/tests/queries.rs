@@ -10,7 +10,7 @@ use hrdsl_ir::{
     ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, LocationKind, Measure, Query, Time},
     value::SECOND,
 };
-use hrdsl_ta::{Answer, Ending, Options, Quantity, Reach, Verdict, answer};
+use hrdsl_ta::{Answer, Ending, Manner, Quantity, Reach, Verdict, answer};
 
 fn query(ask: Ask) -> Query {
     Query {
@@ -23,12 +23,12 @@ fn query(ask: Ask) -> Query {
     }
 }
 
-fn ask_with(p: &Program, ask: Ask, options: &Options) -> Answer {
+fn ask_with(p: &Program, ask: Ask, options: &Manner) -> Answer {
     answer(p, &p.networks[0], &query(ask), options).unwrap()
 }
 
 fn ask(p: &Program, ask: Ask) -> Answer {
-    ask_with(p, ask, &Options::default())
+    ask_with(p, ask, &Manner::default())
 }
 
 fn at(automaton: u16, l: LocationId) -> Formula {
@@ -305,7 +305,7 @@ fn the_fastest_way_may_have_more_transitions() {
     edge(l[2], l[3]).clock(0, ClockOp::Ge, 3).to(&mut m);
     add(&mut p, m);
     let go = |witness, delays, seed| {
-        let options = Options { witness, delays, seed, ..Options::default() };
+        let options = Manner { witness, delays, seed, ..Manner::default() };
         let run = ask_with(&p, Ask::Possibly(at(0, l[3])), &options).run.unwrap();
         (run.steps.len(), run.end, run.steps.iter().map(|s| s.time).collect::<Vec<_>>())
     };
@@ -320,7 +320,7 @@ fn the_fastest_way_may_have_more_transitions() {
     assert!(drawn.iter().any(|t| t != &drawn[0]));
     assert_eq!(drawn[3], go(WitnessKind::Fastest, Delays::Sampled, 3).2);
     // A goal with a clock: time passes after the last transition.
-    let options = Options { witness: WitnessKind::Fastest, ..Options::default() };
+    let options = Manner { witness: WitnessKind::Fastest, ..Manner::default() };
     let f = Formula::And(vec![at(0, l[2]), x(0, ClockOp::Gt, 2)]);
     let run = ask_with(&p, Ask::Possibly(f), &options).run.unwrap();
     assert_eq!((run.steps.len(), run.end), (2, 2 * SECOND + 1));
@@ -345,7 +345,7 @@ fn fastest_is_finite_where_a_goal_cannot_be_reached() {
 }
 
 fn model(p: &Program) -> hrdsl_ta::Model<'_> {
-    hrdsl_ta::Model::new(p, &p.networks[0], &[], &[]).unwrap()
+    hrdsl_ta::Model::new(p, &p.networks[0], &hrdsl_ta::Observe::default()).unwrap()
 }
 
 #[test]
