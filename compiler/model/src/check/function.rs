@@ -253,7 +253,9 @@ impl Checker<'_> {
                 return true;
             }
             let event = crate::nearest::nearest(text, self.events.names());
-            let Some(near) = meant.filter(|_| event.is_none()) else { return false };
+            // Short names are near to all others.
+            let near = meant.filter(|near| event.is_none() && near.len() > 2);
+            let Some(near) = near else { return false };
             let issue = names::unknown(Noun::Function, text, call.name.span, [near]);
             self.report(issue);
             return true;
