@@ -143,6 +143,13 @@ const GROUPS: &[Group] = &[
         says: &["a line such as `choose` or `tests`"],
     },
     Group {
+        if_all: &["each", "query", "IDENT"],
+        if_none: &[],
+        names: true,
+        covers: &["each", "query"],
+        says: &["`each`", "`query`", "a name"],
+    },
+    Group {
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
@@ -289,7 +296,8 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         Kind::Assign | Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge if fault.has("&&") => {
             "comparisons cannot be chained: write `a < b && b < c`"
         }
-        Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
+        // The expression before may have been taken for complete.
+        Kind::Pipe if fault.has("||") || fault.has("{") || fault.complete() && fault.expected.len() == 1 => "in expressions `or` is written `||` or `or`",
         Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
         Kind::Pipe if before.is_some_and(Kind::ends_operand) && !fault.has("|") => {
             "in expressions `or` is written `||` or `or`"

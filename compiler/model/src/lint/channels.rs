@@ -63,8 +63,14 @@ pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>
 
 fn unused(channel: &Channel) -> Diagnostic {
     let name = &channel.name;
-    Diagnostic::warning(Code::UNUSED, channel.place, format!("the channel `{name}` is never used"))
-        .help("use it, or delete it")
+    let issue =
+        Diagnostic::warning(Code::UNUSED, channel.place, format!("the channel `{name}` is never used"))
+            .help("use it, or delete it");
+    // One of several that are declared together cannot simply go.
+    if channel.span == channel.place {
+        return issue;
+    }
+    issue.fix(format!("delete `{name}`"), channel.span, "", true)
 }
 
 /// A hand-shake or broadcast that only some edges offer, only some accept, or only one automaton does both.

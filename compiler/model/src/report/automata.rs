@@ -99,7 +99,7 @@ pub(crate) fn two_sends(span: Span, first: Span) -> Diagnostic {
 
 /// HR0503
 pub(crate) fn takes_and_sends(span: Span, on: Span) -> Diagnostic {
-    Diagnostic::error(Code::TWO_SENDS, span, "the edge takes part in something and sends")
+    Diagnostic::error(Code::TWO_SENDS, span, "the edge has a part with `on`, and sends as well")
         .label(on, "it takes this")
         .help("put a committed location between the two")
 }
