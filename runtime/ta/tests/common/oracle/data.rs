@@ -83,7 +83,6 @@ impl<'a> Here<'a> {
         binders: &'a [Value],
         statements: &'a Cell<u32>,
     ) -> Self {
-        statements.set(0);
         let rest = Rest::Binders(binders);
         Self { layout, data, member: Some(member), all: false, rest, statements, depth: 0 }
     }
@@ -123,10 +122,10 @@ impl<'a> Here<'a> {
         i64::try_from(sum).map_err(|_| EvalError::Overflow.into())
     }
 
-    /// The value first, then the indices of the place.
+    /// The indices of the place first, then the value.
     pub fn assign(&self, place: &Place, value: &Expr) -> Result<(), Stop> {
-        let value = value.eval_in(self)?;
         let slot = place.resolve(self)?;
+        let value = value.eval_in(self)?;
         match self.place(slot) {
             Slot::Network(at) => {
                 let var = self.layout.vars[at];
@@ -156,6 +155,9 @@ impl<'a> Here<'a> {
         let f = &self.layout.p.functions[usize::from(function.0)];
         if self.depth >= DEPTH {
             return Err(EvalError::Endless.into());
+        }
+        if self.depth == 0 {
+            self.statements.set(0);
         }
         let mut values = Vec::new();
         for (var, value) in f.params.iter().zip(args) {

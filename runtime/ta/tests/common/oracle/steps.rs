@@ -365,7 +365,6 @@ impl<'p> Net<'p> {
             let edge = self.edge(part);
             let here = Here::of_member(&self.layout, &data, part.member, &part.binders, &self.statements);
             for update in &edge.updates {
-                self.statements.set(0);
                 match update {
                     Update::Assign { place, value } => here.assign(place, value)?,
                     Update::Call { function, args } => {
