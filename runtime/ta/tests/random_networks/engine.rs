@@ -5,7 +5,7 @@ use hrdsl_ta::{Budget, Error, Goal, GoalKind, ModelError, Outcome, check};
 
 use crate::oracle::{Graph, Limits, explore};
 
-const LIMITS: Limits = Limits { states: 20_000, bound: 4 };
+const LIMITS: Limits = Limits { states: 20_000, bound: 4, differences: false };
 
 /// What the engine says otherwise than the regions. `Err`: the regions cannot say.
 pub fn disagreement(p: &Program) -> Result<Option<String>, String> {

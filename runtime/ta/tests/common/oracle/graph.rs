@@ -24,6 +24,8 @@ pub struct Limits {
     pub states: usize,
     /// The greatest constant that a bound with variables may become, in units.
     pub bound: i64,
+    /// Formulas compare differences of clocks.
+    pub differences: bool,
 }
 
 /// All that can be reached.
@@ -81,7 +83,7 @@ pub fn explore<'p>(p: &'p Program, network: &Network, limits: Limits) -> Result<
 
 /// The unit of all times, in nanoseconds, and what is told apart.
 fn grain(p: &Program, limits: Limits) -> (i64, Grain) {
-    let (mut unit, mut most, mut set, mut differences) = (0, 0, 0, false);
+    let (mut unit, mut most, mut set, mut differences) = (0, 0, 0, limits.differences);
     let mut time = |t: &Time, most: &mut i64| {
         unit = t.terms.iter().fold(gcd(unit, t.nanos), |u, term| gcd(u, term.factor));
         *most = (*most).max(t.nanos.abs());

@@ -206,6 +206,10 @@ fn location(names: &Names, l: &Location, init: &str, text: &mut String) {
     let _ = writeln!(text, "  {init}{kind}location {} {{ {} }}", l.name, parts.join(" && "));
 }
 
+fn named(name: &str) -> Var {
+    Var { name: name.to_owned(), lo: 0, hi: 0, init: 0, is_bool: false, enumeration: None }
+}
+
 /// One edge of an automaton.
 pub fn edge(p: &Program, a: &Automaton, at: usize, e: &Edge) -> String {
     let takes = match &e.sync {
@@ -213,7 +217,7 @@ pub fn edge(p: &Program, a: &Automaton, at: usize, e: &Edge) -> String {
         Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => &[],
     };
     let binds = takes.iter().filter(|t| matches!(t, ReceiveArg::Bind)).count();
-    let bound: Vec<Var> = (0..binds).map(|i| crate::common::var(&format!("b{i}"), 0, 0, 0)).collect();
+    let bound: Vec<Var> = (0..binds).map(|i| named(&format!("b{i}"))).collect();
     let names = Names::new(p, Some(a), &[&e.selects, &bound]);
     let place = |l: hrdsl_ir::ta::LocationId| &a.locations[usize::from(l.0)].name;
     let mut text = format!("{} -> {}", place(e.from), place(e.to));
