@@ -213,9 +213,11 @@ fn one(d: &mut Dice, p: &mut Program, i: u16, count: u16) {
 
 /// A time in which a variable has a part: `base + s` seconds or less.
 fn timed(d: &mut Dice, base: i64) -> Time {
-    let value = match d.below(3) {
-        0 => v(S),
-        1 => v(OWN),
+    let value = match d.below(40) {
+        // A fault, if it is 2.
+        0 => Expr::Element(Box::new(q_at(v(S)))),
+        n if n % 3 == 0 => v(S),
+        n if n % 3 == 1 => v(OWN),
         _ => Expr::Element(Box::new(q_at(v(OWN)))),
     };
     let factor = if d.one_in(4) { -SECOND } else { SECOND };

@@ -123,15 +123,19 @@ impl<'p> Net<'p> {
         fault.map_or(Ok(true), Err)
     }
 
-    /// The invariants of all locations: first the parts over variables, then those over clocks.
+    /// The invariants of all locations: the parts over variables and the bounds one after the other, then the clocks.
     pub fn invariants(&self, s: &State) -> Result<bool, Stop> {
         let data = RefCell::new(s.data.clone());
         let here = |m| Here::of_member(&self.layout, &data, m, &[], &self.statements);
         for m in 0..self.members() {
-            if let Some(holds) = &self.location(s, m).holds
+            let location = self.location(s, m);
+            if let Some(holds) = &location.holds
                 && !here(m).truth(holds)?
             {
                 return Ok(false);
+            }
+            for c in &location.invariant {
+                here(m).time(&c.bound)?;
             }
         }
         for m in 0..self.members() {
@@ -353,7 +357,8 @@ impl<'p> Net<'p> {
     /// The state after a transition. `None`: a committed location or an invariant forbids it.
     pub fn after(&self, s: &State, group: &[Part]) -> Result<Option<State>, Stop> {
         let committed = |m: usize| self.location(s, m).kind == LocationKind::Committed;
-        if (0..self.members()).any(committed) && !group.iter().any(|p| committed(p.member)) {
+        let calls = |p: &Part| group.len() == 1 && p.fault.is_some() && self.calls_committed(s, p);
+        if (0..self.members()).any(committed) && !group.iter().any(|p| committed(p.member) || calls(p)) {
             return Ok(None);
         }
         if let Some(fault) = group.iter().find_map(|p| p.fault.clone()) {
@@ -383,6 +388,24 @@ impl<'p> Net<'p> {
         next.data = data.into_inner();
         region::tidy(self.grain, &mut next.clocks);
         Ok(self.invariants(&next)?.then_some(next))
+    }
+
+    /// Whether an automaton in a committed location has an edge for what this one sends or offers.
+    fn calls_committed(&self, s: &State, sender: &Part) -> bool {
+        let over = match &self.edge(sender).sync {
+            Sync::Send { event, .. } => Over::Event(*event),
+            Sync::Offer { channel, .. } => Over::Channel(*channel),
+            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => return false,
+        };
+        (0..self.members()).any(|m| {
+            let takes = |e: &Edge| match &e.sync {
+                Sync::Receive { event, .. } => over == Over::Event(*event),
+                Sync::Accept { channel, .. } => over == Over::Channel(*channel),
+                Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => false,
+            };
+            let committed = m != sender.member && self.location(s, m).kind == LocationKind::Committed;
+            committed && self.automaton(m).edges.iter().any(|e| e.from.0 == s.at[m] && takes(e))
+        })
     }
 
     fn moved(&self, clock: usize, from: (i64, u8), by: i64) -> Result<(i64, u8), Stop> {
