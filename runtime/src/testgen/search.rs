@@ -83,6 +83,7 @@ fn fate(outcome: &Outcome, report: &Report) -> (GoalStatus, String) {
         ),
         Outcome::Open(Exhausted::States) => (GoalStatus::Open, "the budget of states was used up".to_owned()),
         Outcome::Open(Exhausted::Memory) => (GoalStatus::Open, "the budget of memory was used up".to_owned()),
+        Outcome::Open(Exhausted::Stopped) => (GoalStatus::Open, "the search was stopped".to_owned()),
     }
 }
 

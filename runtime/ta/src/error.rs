@@ -51,6 +51,12 @@ pub enum ModelError {
     /// An argument of a sent event is outside the range of its parameter, or no value of its enumeration.
     #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
     Argument { edge: Box<EdgeName>, event: String, parameter: String, value: Value },
+    /// A clock would become less than zero.
+    #[error("{edge}: the clock `{clock}` becomes less than zero")]
+    NegativeClock { edge: Box<EdgeName>, clock: String },
+    /// The part of an invariant over variables, or a bound in it, has no value.
+    #[error("automaton `{automaton}`, invariant of `{location}`: {error}")]
+    Invariant { automaton: String, location: String, error: EvalError },
     /// A player's invariant (or urgent location) lets no time pass, yet time passed: nothing it could do was enabled.
     #[error("automaton `{automaton}` may not stay in `{location}` and has no enabled edge")]
     Timelock { automaton: String, location: String },

@@ -20,22 +20,31 @@
 //! sends them itself.
 
 mod check;
+mod code;
+mod compile;
 mod concrete;
 pub mod dbm;
 mod error;
+mod expand;
 mod extrapolation;
+mod goals;
 mod network;
+mod order;
 mod player;
 pub mod query;
 mod search;
 mod semantics;
+mod slice;
+mod store;
 mod witness;
 mod zone;
 
 pub use error::{EdgeName, Error, ModelError};
-pub use network::{Model, slot_names};
+pub use code::Medium;
+pub use extrapolation::Abstraction;
+pub use network::{Model, Observe, slot_names};
 pub use player::Player;
 pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula};
-pub use search::{Exhausted, Outcome, Report, check, explore};
+pub use search::{Exhausted, Options, Order, Outcome, Progress, Report, Subsumption, check, explore};
 pub use semantics::{Binders, Move};
 pub use witness::{Witness, WitnessStep};

@@ -21,7 +21,22 @@ pub enum GoalKind {
         automaton: usize,
         location: LocationId,
     },
+    /// The automaton takes these two of its edges one after the other, whatever others do in between.
+    Pair {
+        automaton: usize,
+        first: usize,
+        second: usize,
+    },
+    /// The edge `user` (automaton, edge) reads the slot, which the edge `definition` was the last to assign to; `None`: the
+    /// slot still has its initial value.
+    Use {
+        slot: usize,
+        definition: Option<(usize, usize)>,
+        user: (usize, usize),
+    },
     Condition(StateFormula),
+    /// A formula over locations, variables and clocks; it holds where the zone meets it.
+    Formula(hrdsl_ir::ta::Formula),
 }
 
 /// A formula over a state's locations, variables and counters.

@@ -16,9 +16,12 @@ use hrdsl_trace::{Step, Trace, What};
 use crate::{
     Error, Goal, GoalKind,
     concrete::{self, Final},
+    code::Medium,
+    compile::values,
+    expand::Taken,
     network::{Constraint, Model},
     search::goal_holds,
-    semantics::Move,
+    semantics::{Effect, Firing, Move, Scratch},
 };
 
 /// A run of the network that leads to a goal.
@@ -124,9 +127,9 @@ struct AtLeast {
     by: Time,
 }
 
-/// Makes the path (given by the candidates' numbers) concrete, replays it, and looks whether it meets the goal.
-pub(crate) fn build(model: &Model, choices: &[u32], goal: Option<&Goal>) -> Result<Witness, Error> {
-    let Walk { mut steps, constraints, state } = walk(model, choices)?;
+/// Makes the path concrete, replays it, and looks whether it meets the goal.
+pub(crate) fn build(model: &Model, path: &[Taken], goal: Option<&Goal>) -> Result<Witness, Error> {
+    let Walk { mut steps, constraints, state } = walk(model, path)?;
     let times = least(steps.len() + 1, &constraints)
         .ok_or_else(|| Error::Internal("the zones reach a goal that no run reaches".into()))?;
     let most = times.iter().map(|t| t.1).max().unwrap_or(0);
@@ -158,10 +161,13 @@ fn believe(model: &Model, witness: &Witness, state: &[i64], goal: Option<&Goal>)
 
 fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> bool {
     match &goal.what {
-        GoalKind::Edge { automaton, edge } => witness
+        GoalKind::Edge { automaton, edge }
+        | GoalKind::Pair { automaton, second: edge, .. }
+        | GoalKind::Use { user: (automaton, edge), .. } => witness
             .steps
             .last()
             .is_some_and(|s| s.moves.iter().any(|m| m.automaton == *automaton && m.edge == *edge)),
+        GoalKind::Formula(_) => true,
         GoalKind::Location { .. } | GoalKind::Condition(_) => {
             (end.settled || !goal.settled) && goal_holds(goal, end) == Ok(true)
         }
@@ -177,31 +183,48 @@ struct Walk {
     state: Vec<i64>,
 }
 
-fn walk(model: &Model, choices: &[u32]) -> Result<Walk, Error> {
+fn walk(model: &Model, path: &[Taken]) -> Result<Walk, Error> {
+    let (mut scratch, mut stack) = (Scratch::default(), Vec::new());
+    let mut effect = Effect::default();
+    let mut invariant = Vec::new();
     let mut state = model.initial();
     let (mut steps, mut constraints) = (Vec::new(), Vec::new());
-    // The transition that last reset each clock; all clocks start at 0, the start.
-    let mut resets = vec![0; model.dim];
-    model.invariant(&state).for_each(|c| bound(c, 0, &resets, &mut constraints));
-    for (before, &choice) in choices.iter().enumerate() {
+    // The transition that last set each clock, and what it had then; all clocks start at 0, the start.
+    let mut resets = vec![(0, 0); model.dim];
+    model.invariant(&mut state, &mut stack, &mut invariant)?;
+    invariant.iter().for_each(|&c| bound(c, 0, &resets, &mut constraints));
+    for (before, taken) in path.iter().enumerate() {
         let now = before + 1;
         constraints.push(AtLeast { later: now, earlier: before, by: (0, 0) });
-        if !model.may_delay(&state) {
+        if !model.may_delay(&mut state, &mut scratch) {
             constraints.push(AtLeast { later: before, earlier: now, by: (0, 0) });
         }
         // An invariant is convex: it holds all the while if it holds at both ends.
-        model.invariant(&state).for_each(|c| bound(c, now, &resets, &mut constraints));
-        let candidate = model.candidates(&state).into_iter().nth(choice as usize);
-        let Some(candidate) = candidate else {
-            return Err(Error::Internal("a path takes a transition that is not there".into()));
+        model.invariant(&mut state, &mut stack, &mut invariant)?;
+        invariant.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
+        taken.guard.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
+        let firing =
+            Firing { parts: &taken.parts, medium: taken.medium, args: &taken.args, guard: &taken.guard };
+        let done = model.effect(&state, &firing, &mut stack, &mut effect);
+        if done.is_err() {
+            return Err(Error::Internal("a path takes a transition that is a fault".into()));
+        }
+        let old = resets.clone();
+        for r in &taken.resets {
+            resets[usize::from(r.clock)] = match r.from {
+                0 => (now, r.by),
+                y => (old[usize::from(y)].0, old[usize::from(y)].1 + r.by),
+            };
+        }
+        let mut target = effect.target.clone();
+        model.invariant(&mut target, &mut stack, &mut invariant)?;
+        invariant.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
+        let event = match taken.medium {
+            Some(medium @ Medium::Event(e)) => Some((e, values(model, medium, &taken.args))),
+            Some(Medium::Channel(_)) | None => None,
         };
-        candidate.guard.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
-        candidate.resets.iter().for_each(|&x| resets[usize::from(x)] = now);
-        let target = candidate
-            .target
-            .map_err(|_| Error::Internal("a path takes a transition that is a fault".into()))?;
-        model.invariant(&target).for_each(|c| bound(c, now, &resets, &mut constraints));
-        steps.push(step(model, &state, &target, candidate.event, candidate.moves.to_vec()));
+        let moves = taken.parts.iter().map(|t| model.moved(t)).collect();
+        steps.push(step(model, &state, &target, event, moves));
         state = target;
     }
     Ok(Walk { steps, constraints, state })
@@ -230,11 +253,12 @@ fn step(
     }
 }
 
-/// `x_i - x_j ≺ b` at the transition `now`: with `x` the time since its reset, `reset_j - reset_i ≺ b`.
-fn bound(c: Constraint, now: usize, resets: &[usize], out: &mut Vec<AtLeast>) {
-    let reset = |x: u16| if x == 0 { now } else { resets[usize::from(x)] };
-    let by = (-c.bound.value(), i64::from(c.bound.is_strict()));
-    out.push(AtLeast { later: reset(c.i), earlier: reset(c.j), by });
+/// `x_i - x_j ≺ b` at the transition `now`: `x` is the time since it was set, and what it was set to.
+fn bound(c: Constraint, now: usize, resets: &[(usize, i64)], out: &mut Vec<AtLeast>) {
+    let reset = |x: u16| if x == 0 { (now, 0) } else { resets[usize::from(x)] };
+    let ((later, more), (earlier, less)) = (reset(c.i), reset(c.j));
+    let by = (more - less - c.bound.value(), i64::from(c.bound.is_strict()));
+    out.push(AtLeast { later, earlier, by });
 }
 
 /// The least times that keep all constraints, from 0 for the start; `None`: there are none.
