@@ -1,16 +1,53 @@
-//! The one place that knows the engine: asks it, and compares its answers with the regions.
+//! The one place that knows the engine: asks it in all its modes, and compares its answers with the regions.
 
-use hrdsl_ir::{Program, ta::LocationId};
-use hrdsl_ta::{Budget, Error, Goal, GoalKind, ModelError, Outcome, check};
+use hrdsl_ir::{
+    Program,
+    ta::{ClockConstraint, ClockId, ClockOp, Formula, LocationId, Time},
+    value::SECOND,
+};
+use hrdsl_ta::{
+    Abstraction, Error, Goal, GoalKind, Model, ModelError, Observe, Options, Order, Outcome, Report, Subsumption,
+    explore as search,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
-use crate::oracle::{Graph, Limits, explore};
+use crate::{
+    common::{eq, n, v},
+    oracle::{Graph, Limits, explore},
+};
 
 const LIMITS: Limits = Limits { states: 20_000, bound: 4, differences: false };
 
 /// What the engine says otherwise than the regions. `Err`: the regions cannot say.
 pub fn disagreement(p: &Program) -> Result<Option<String>, String> {
     let graph = explore(p, &p.networks[0], LIMITS)?;
-    Ok(reachability(p, &graph).err())
+    let goals = goals(p);
+    let expected: Vec<bool> = goals.iter().map(|g| reached(&graph, &g.what)).collect::<Result<_, _>>()?;
+    for (name, options) in modes() {
+        if let Err(what) = compared(p, &graph, &goals, &expected, &options) {
+            return Ok(Some(format!("{name}: {what}")));
+        }
+    }
+    Ok(None)
+}
+
+/// All orders, one thread and two, with and without what makes it fast.
+fn modes() -> Vec<(&'static str, Options)> {
+    let with = |order, threads| Options { order, threads, ..Options::default() };
+    vec![
+        ("reference", Options::reference()),
+        ("equality", Options { subsumption: Subsumption::Equality, ..Options::reference() }),
+        ("greatest constants", Options { abstraction: Abstraction::Greatest, ..Options::reference() }),
+        ("shortest", Options::shortest()),
+        ("breadth", with(Order::Breadth, 1)),
+        ("topological", with(Order::Topological, 1)),
+        ("depth", with(Order::Depth, 1)),
+        ("random depth", Options { seed: 7, ..with(Order::RandomDepth, 1) }),
+        ("two threads", with(Order::Topological, 2)),
+        ("two threads, depth", with(Order::Depth, 2)),
+        ("everything stored", Options { keep_committed: true, reduce: false, ..with(Order::Depth, 1) }),
+    ]
 }
 
 fn goals(p: &Program) -> Vec<Goal> {
@@ -22,36 +59,92 @@ fn goals(p: &Program) -> Vec<Goal> {
         let edges = (0..a.edges.len()).map(|edge| GoalKind::Edge { automaton, edge });
         goals.extend(locations.chain(edges).map(|what| Goal { what, settled: false }));
     }
+    let formulas = formulas(p).into_iter().map(GoalKind::Formula);
+    goals.extend(formulas.map(|what| Goal { what, settled: false }));
     goals
 }
 
-fn reachability(p: &Program, graph: &Graph) -> Result<(), String> {
-    let goals = goals(p);
-    let found = check(p, &p.networks[0], &goals, &[], &[], Budget::default());
-    let report = match found {
+/// A few formulas over locations, variables and clocks.
+pub fn formulas(p: &Program) -> Vec<Formula> {
+    let network = &p.networks[0].automata;
+    let clocks = p.clocks.len() + network.iter().map(|a| p.automata[usize::from(a.0)].clocks.len()).sum::<usize>();
+    let mut rng = ChaCha8Rng::seed_from_u64(clocks as u64 + 10 * network.len() as u64);
+    let mut below = |n: usize| rng.random_range(0..n);
+    let mut all = Vec::new();
+    for i in 0..10 {
+        let mut parts = Vec::new();
+        for (m, a) in network.iter().enumerate() {
+            let at = LocationId(below(p.automata[usize::from(a.0)].locations.len()) as u16);
+            if below(3) > 0 {
+                parts.push(Formula::At { automaton: m as u16, location: at });
+            }
+        }
+        if below(2) == 0 {
+            parts.push(Formula::Data(eq(v(0), n(below(3) as i64))));
+        }
+        if below(2) == 0 {
+            let op = [ClockOp::Lt, ClockOp::Le, ClockOp::Eq, ClockOp::Ge, ClockOp::Gt][below(5)];
+            let bound = Time::constant(below(4) as i64 * SECOND);
+            let c = ClockConstraint { clock: ClockId(below(clocks) as u16), minus: None, op, bound };
+            parts.push(Formula::Clock(c));
+        }
+        let all_of = Formula::And(parts);
+        all.push(if i % 5 == 4 { Formula::Not(Box::new(all_of)) } else { all_of });
+    }
+    all
+}
+
+fn reached(graph: &Graph, goal: &GoalKind) -> Result<bool, String> {
+    match goal {
+        GoalKind::Location { automaton, location } => {
+            Ok(graph.locations().contains(&(*automaton, location.0)))
+        }
+        GoalKind::Edge { automaton, edge } => Ok(graph.edges.contains_key(&(*automaton, *edge))),
+        GoalKind::Formula(f) => graph.possibly(f),
+        GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => Err("no such goal".to_owned()),
+    }
+}
+
+fn asked(p: &Program, goals: &[Goal], options: &Options) -> Result<Report, Error> {
+    let formulas = goals.iter().filter_map(|g| match &g.what {
+        GoalKind::Formula(f) => Some(f.clone()),
+        GoalKind::Location { .. }
+        | GoalKind::Edge { .. }
+        | GoalKind::Pair { .. }
+        | GoalKind::Use { .. }
+        | GoalKind::Condition(_) => None,
+    });
+    let observe = Observe { formulas: formulas.collect(), ..Observe::default() };
+    let model = Model::new(p, &p.networks[0], &observe)?;
+    search(&model, goals, options, &|_| true)
+}
+
+fn compared(p: &Program, graph: &Graph, goals: &[Goal], expected: &[bool], options: &Options) -> Result<(), String> {
+    let report = match asked(p, goals, options) {
         Err(Error::Model { error: ModelError::Initial, .. }) if !graph.starts => return Ok(()),
         Err(Error::Model { .. }) if !graph.faults.is_empty() => return Ok(()),
         Err(error) => return Err(format!("the engine alone: {error:?}")),
         Ok(_) if !graph.starts => return Err("the engine starts".to_owned()),
         Ok(report) => report,
     };
-    let locations = graph.locations();
-    for (goal, outcome) in goals.iter().zip(&report.goals) {
-        let expected = match &goal.what {
-            GoalKind::Location { automaton, location } => locations.contains(&(*automaton, location.0)),
-            GoalKind::Edge { automaton, edge } => graph.edges.contains_key(&(*automaton, *edge)),
-            GoalKind::Condition(_) => unreachable!(),
-        };
+    let fault = graph.faults.first();
+    for ((goal, outcome), &expected) in goals.iter().zip(&report.goals).zip(expected) {
         match outcome {
             Outcome::Reached(w) if !expected => {
                 return Err(format!("{goal:?} is not reachable: {}", w.text(p, &p.networks[0])));
             }
             Outcome::Unreachable if expected => return Err(format!("{goal:?} is reachable")),
-            Outcome::Unreachable if !graph.faults.is_empty() => {
-                return Err(format!("a fault is not told: {:?}", graph.faults[0]));
+            Outcome::Unreachable if fault.is_some() => {
+                return Err(format!("a fault is not told: {fault:?}\n{}", graph.path(graph.faults[0].0)));
             }
             Outcome::Reached(_) | Outcome::Unreachable => {}
             Outcome::Open(_) => return Err("the budget is used up".to_owned()),
+        }
+    }
+    if options.threads > 1 {
+        let alone = asked(p, goals, &Options { threads: 1, ..options.clone() });
+        if alone.as_ref() != Ok(&report) {
+            return Err("one thread gives another report".to_owned());
         }
     }
     Ok(())
