@@ -252,8 +252,7 @@ impl<'m, 'p, N: Number> Worker<'m, 'p, N> {
             visit.taken(before, &s, number, batch);
             if visit.keep || !visit.model.any_committed(s.state) {
                 if until.is_none()
-                    && let Err(error) =
-                        visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
+                    && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
                 {
                     fault = Some(error);
                     return ControlFlow::Break(());
@@ -398,9 +397,11 @@ fn covers<N: Number>(subsumption: Subsumption, frame: &Frame, new: &[N], old: &[
             let rows = new.chunks_exact(dim).zip(old.chunks_exact(dim)).zip(&frame.bounds);
             rows.clone().all(|((new_row, old_row), lu)| {
                 lu.lower == NONE
-                    || new_row.iter().zip(old_row).enumerate().all(|(x, (a, b))| {
-                        a >= b || !breaks(frame, old, x, *a, lu.lower)
-                    })
+                    || new_row
+                        .iter()
+                        .zip(old_row)
+                        .enumerate()
+                        .all(|(x, (a, b))| a >= b || !breaks(frame, old, x, *a, lu.lower))
             })
         }
     }
@@ -564,7 +565,8 @@ impl<N: Number> Visit<'_, '_, '_, N> {
                 return Ok(());
             }
         }
-        let path = Path { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
+        let path =
+            Path { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
         if self.c.open.iter().any(|o| *o) {
             let settled = !self.model.any_committed(state);
             m.met.clear();

@@ -81,14 +81,17 @@ pub(crate) struct Clocks {
 }
 
 impl Clocks {
-    /// All constraints, with the bounds that they have now.
+    /// All constraints, with the bounds that they have now; with a fault, those that have one.
     pub(crate) fn eval(&self, env: &mut Env, out: &mut Vec<Constraint>) -> Result<(), Fault> {
         out.extend_from_slice(&self.fixed);
+        let mut result = Ok(());
         for m in &self.moving {
-            let n = m.time.eval(env)?;
-            constraints(m.i, m.j, m.op, n, &mut |c| out.push(c));
+            match m.time.eval(env) {
+                Ok(n) => constraints(m.i, m.j, m.op, n, &mut |c| out.push(c)),
+                Err(fault) => result = result.and(Err(fault)),
+            }
         }
-        Ok(())
+        result
     }
 }
 
@@ -354,7 +357,8 @@ impl<'p> Model<'p> {
 
     /// Whether a goal speaks of things that exist and that the counters can tell.
     pub(crate) fn check_goal(&self, goal: &Goal) -> Result<(), ModelError> {
-        let edge = |member: usize, edge: usize| self.members.get(member).is_some_and(|m| edge < m.edges.len());
+        let edge =
+            |member: usize, edge: usize| self.members.get(member).is_some_and(|m| edge < m.edges.len());
         let sound = match &goal.what {
             GoalKind::Edge { automaton, edge: e } => edge(*automaton, *e),
             GoalKind::Pair { automaton, first, second } => {

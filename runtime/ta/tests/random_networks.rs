@@ -12,6 +12,8 @@ mod engine;
 mod less;
 #[path = "common/oracle/mod.rs"]
 mod oracle;
+#[path = "random_networks/pinned.rs"]
+mod pinned;
 
 use dice::{Flavour, network};
 use engine::disagreement;
@@ -35,7 +37,8 @@ fn compare(flavour: Flavour, cases: u64) {
             Ok(Some(_)) => {
                 let small = less::reduced(&p, &|p| matches!(disagreement(p), Ok(Some(_))));
                 let what = disagreement(&small);
-                panic!("seed {seed} of {flavour:?}: {what:?}\n{}", oracle::text::program(&small));
+                let what = what.ok().flatten().unwrap_or_default();
+                panic!("seed {seed} of {flavour:?}: {what}\n{}", oracle::text::program(&small));
             }
         }
     }

@@ -6,8 +6,8 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_ta::{
-    Abstraction, Error, Goal, GoalKind, Model, ModelError, Observe, Options, Order, Outcome, Report, Subsumption,
-    explore as search,
+    Abstraction, Error, Goal, GoalKind, Model, ModelError, Observe, Options, Order, Outcome, Report,
+    Subsumption, explore as search,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -67,7 +67,8 @@ fn goals(p: &Program) -> Vec<Goal> {
 /// A few formulas over locations, variables and clocks.
 pub fn formulas(p: &Program) -> Vec<Formula> {
     let network = &p.networks[0].automata;
-    let clocks = p.clocks.len() + network.iter().map(|a| p.automata[usize::from(a.0)].clocks.len()).sum::<usize>();
+    let clocks =
+        p.clocks.len() + network.iter().map(|a| p.automata[usize::from(a.0)].clocks.len()).sum::<usize>();
     let mut rng = ChaCha8Rng::seed_from_u64(clocks as u64 + 10 * network.len() as u64);
     let mut below = |n: usize| rng.random_range(0..n);
     let mut all = Vec::new();
@@ -101,8 +102,23 @@ fn reached(graph: &Graph, goal: &GoalKind) -> Result<bool, String> {
         }
         GoalKind::Edge { automaton, edge } => Ok(graph.edges.contains_key(&(*automaton, *edge))),
         GoalKind::Formula(f) => graph.possibly(f),
-        GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => Err("no such goal".to_owned()),
+        GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => {
+            Err("no such goal".to_owned())
+        }
     }
+}
+
+/// How the regions come to a goal.
+fn way(graph: &Graph, goal: &GoalKind) -> String {
+    let first = match goal {
+        GoalKind::Location { automaton, location } => {
+            graph.states.iter().position(|s| s.at[*automaton] == location.0)
+        }
+        GoalKind::Edge { automaton, edge } => graph.edges.get(&(*automaton, *edge)).copied(),
+        GoalKind::Formula(f) => (0..graph.states.len()).find(|&s| graph.holds(s, f) == Ok(true)),
+        GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => None,
+    };
+    first.map_or(String::new(), |s| graph.path(s))
 }
 
 fn asked(p: &Program, goals: &[Goal], options: &Options) -> Result<Report, Error> {
@@ -119,7 +135,13 @@ fn asked(p: &Program, goals: &[Goal], options: &Options) -> Result<Report, Error
     search(&model, goals, options, &|_| true)
 }
 
-fn compared(p: &Program, graph: &Graph, goals: &[Goal], expected: &[bool], options: &Options) -> Result<(), String> {
+fn compared(
+    p: &Program,
+    graph: &Graph,
+    goals: &[Goal],
+    expected: &[bool],
+    options: &Options,
+) -> Result<(), String> {
     let report = match asked(p, goals, options) {
         Err(Error::Model { error: ModelError::Initial, .. }) if !graph.starts => return Ok(()),
         Err(Error::Model { .. }) if !graph.faults.is_empty() => return Ok(()),
@@ -133,7 +155,9 @@ fn compared(p: &Program, graph: &Graph, goals: &[Goal], expected: &[bool], optio
             Outcome::Reached(w) if !expected => {
                 return Err(format!("{goal:?} is not reachable: {}", w.text(p, &p.networks[0])));
             }
-            Outcome::Unreachable if expected => return Err(format!("{goal:?} is reachable")),
+            Outcome::Unreachable if expected => {
+                return Err(format!("{goal:?} is reachable:\n{}", way(graph, &goal.what)));
+            }
             Outcome::Unreachable if fault.is_some() => {
                 return Err(format!("a fault is not told: {fault:?}\n{}", graph.path(graph.faults[0].0)));
             }

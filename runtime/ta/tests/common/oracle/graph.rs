@@ -83,7 +83,8 @@ pub fn explore<'p>(p: &'p Program, network: &Network, limits: Limits) -> Result<
 
 /// The unit of all times, in nanoseconds, and what is told apart.
 fn grain(p: &Program, limits: Limits) -> (i64, Grain) {
-    let (mut unit, mut most, mut set, mut differences) = (0, 0, 0, limits.differences);
+    // Formulas count in seconds.
+    let (mut unit, mut most, mut set, mut differences) = (1_000_000_000, 0, 0, limits.differences);
     let mut time = |t: &Time, most: &mut i64| {
         unit = t.terms.iter().fold(gcd(unit, t.nanos), |u, term| gcd(u, term.factor));
         *most = (*most).max(t.nanos.abs());
@@ -104,7 +105,6 @@ fn grain(p: &Program, limits: Limits) -> (i64, Grain) {
             }
         }
     }
-    let unit = if unit == 0 { 1_000_000_000 } else { unit };
     let most = (most / unit).max(limits.bound);
     // INVARIANT: a clock that is set comes nearer to the others by at most what it is set to.
     let most = if differences { most + set / unit } else { most };
@@ -225,6 +225,11 @@ impl Graph<'_> {
             Formula::Clock(c) => {
                 let of = |c: hrdsl_ir::ta::ClockId| s.clocks[usize::from(c.0)];
                 let minus = c.minus.map_or((0, 0), of);
+                if c.bound.nanos % self.net.unit != 0 || !c.bound.terms.is_empty() {
+                    return Err(Stop::Outside(
+                        "a bound of a query that is no whole number of units".to_owned(),
+                    ));
+                }
                 let bound = c.bound.nanos / self.net.unit;
                 region::holds(self.net.grain, of(c.clock), minus, c.op, bound)
                     .ok_or_else(|| Stop::Outside(format!("the bound {bound} of a query")))
