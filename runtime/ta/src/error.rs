@@ -48,7 +48,7 @@ pub enum ModelError {
     /// An update leaves the range of a variable.
     #[error("{edge}: `{variable}` becomes {value}, outside {lo}..{hi}")]
     Range { edge: Box<EdgeName>, variable: String, value: i64, lo: i64, hi: i64 },
-    /// An argument of a sent event is outside the range of its parameter, or no value of its enumeration.
+    /// An argument of a sent event or of an offer is outside the range of its parameter, or no value of its enumeration.
     #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
     Argument { edge: Box<EdgeName>, event: String, parameter: String, value: Value },
     /// A clock would become less than zero.

@@ -126,6 +126,29 @@ impl Extrapolation {
         })
     }
 
+    /// The comparisons of clocks that zones are split along.
+    pub(crate) fn differences(&self) -> Vec<Constraint> {
+        self.diagonals.as_ref().map_or(Vec::new(), |d| d.constraints.clone())
+    }
+
+    /// The greatest constant of each clock of the network, in any location.
+    pub(crate) fn greatest(&self, dim: usize) -> Vec<i64> {
+        if let Some(d) = &self.diagonals {
+            return d.greatest.clone();
+        }
+        let mut all = vec![0; dim];
+        for &(clock, lu) in self.own.iter().flatten().flatten() {
+            let most = &mut all[usize::from(clock)];
+            *most = lu.lower.max(lu.upper).max(*most);
+        }
+        for row in self.shared.iter().flatten() {
+            for (most, lu) in all.iter_mut().skip(1).zip(row) {
+                *most = lu.lower.max(lu.upper).max(*most);
+            }
+        }
+        all
+    }
+
     /// The clocks that matter in a state, with their bounds.
     pub(crate) fn frame(&self, state: &[i64], abstraction: Abstraction, out: &mut Frame) {
         out.clocks.clear();

@@ -173,6 +173,8 @@ fn state_formula(model: &Model, names: &Names, f: &StateFormula) -> Code {
             Code::VarConst(Cmp::Eq, *automaton as u32, i64::from(location.0))
         }
         StateFormula::Data(e) => model.library.compile(names, e, Ty::Bool),
+        // INVARIANT: `check_goal` lets through none of these.
+        StateFormula::Clock(_) | StateFormula::Deadlock => Code::Const(0),
         StateFormula::CounterIn { counter, lo, hi } => {
             let at = model.counter_at(*counter) as u32;
             let low = Code::VarConst(Cmp::Ge, at, *lo);

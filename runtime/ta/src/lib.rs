@@ -19,6 +19,9 @@
 //! An event is one occurrence: the body of a stimulus is not executed, so a model that speaks of a stimulus's events
 //! sends them itself.
 
+mod abstraction;
+mod answer;
+mod cells;
 mod check;
 mod code;
 mod compile;
@@ -27,24 +30,40 @@ pub mod dbm;
 mod error;
 mod expand;
 mod extrapolation;
+mod extremum;
+mod fastest;
+pub mod federation;
 mod goals;
+mod graph;
+mod liveness;
 mod network;
 mod order;
+mod plain;
 mod player;
 pub mod query;
+mod replay;
+mod schedule;
 mod search;
 mod semantics;
+mod sequence;
 mod slice;
 mod store;
+mod story;
 mod witness;
 mod zone;
 
+pub use answer::{Answer, Manner, Verdict, answer, answers};
 pub use code::Medium;
 pub use error::{EdgeName, Error, ModelError};
 pub use extrapolation::Abstraction;
+pub use extremum::{Extremum, Quantity, RAISES, Reach};
+pub use fastest::fastest;
+pub use federation::Federation;
 pub use network::{Model, Observe, slot_names};
 pub use player::Player;
 pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula};
+pub use schedule::{DAWDLE, Timing};
 pub use search::{Exhausted, Options, Order, Outcome, Progress, Report, Subsumption, check, explore};
 pub use semantics::{Binders, Move};
-pub use witness::{Witness, WitnessStep};
+pub use story::{Over, Part, Scene, Story};
+pub use witness::{Ending, Witness, WitnessStep, retimed};

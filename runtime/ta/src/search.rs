@@ -5,22 +5,16 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the way to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use hrdsl_ir::{
-    Program, Value,
-    expr::EvalError,
-    ta::{LocationId, Network},
-};
+use hrdsl_ir::{Program, ta::Network};
 use rayon::prelude::*;
 
 use crate::{
-    Abstraction, Budget, Counter, Error, Goal, GoalKind, Limit, Model, ModelError, Observe, StateFormula,
-    Witness,
+    Abstraction, Budget, Counter, Error, Goal, Limit, Model, ModelError, Observe, Witness,
     dbm::Number,
     expand::{Batch, Context, Taken, Worker},
     goals::Goals,
     network::Width,
     order::Waiting,
-    query::View,
     slice,
     store::{Layout, NIL, Store},
     witness,
@@ -473,41 +467,6 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
         for (node, via) in vias {
             self.workers[0].retrace(&context, node, via, &mut taken)?;
         }
-        witness::build(self.model, &taken, goal.map(|g| &self.goals[g]))
-    }
-}
-
-/// Whether a state meets a goal; of edges and clocks it cannot tell.
-pub(crate) fn goal_holds(goal: &Goal, view: &dyn View) -> Result<bool, EvalError> {
-    match &goal.what {
-        GoalKind::Edge { .. } | GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Formula(_) => {
-            Ok(false)
-        }
-        GoalKind::Location { automaton, location } => {
-            StateFormula::At { automaton: *automaton, location: *location }.holds(view)
-        }
-        GoalKind::Condition(f) => f.holds(view),
-    }
-}
-
-/// A discrete state of a model, as formulas see it.
-pub(crate) struct StateView<'a, 'p> {
-    pub model: &'a Model<'p>,
-    pub state: &'a [i64],
-}
-
-impl View for StateView<'_, '_> {
-    fn location(&self, automaton: usize) -> Option<LocationId> {
-        self.model.members.get(automaton)?;
-        u16::try_from(self.state[automaton]).ok().map(LocationId)
-    }
-
-    fn slot(&self, slot: u16) -> Option<Value> {
-        let slot = usize::from(slot);
-        if slot < self.model.slots.len() { self.model.slot_value(self.state, slot) } else { None }
-    }
-
-    fn counter(&self, counter: usize) -> i64 {
-        self.state[self.model.counter_at(counter)]
+        witness::build(self.model, taken, goal.map(|g| &self.goals[g]), crate::Timing::default())
     }
 }

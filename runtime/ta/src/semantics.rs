@@ -29,7 +29,7 @@ use crate::{
 pub type Binders = SmallVec<[Value; 2]>;
 
 /// One automaton's part in a transition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Move {
     /// Index in the network.
     pub automaton: usize,
@@ -701,11 +701,6 @@ fn extended(cs: &SmallVec<[Constraint; 4]>, c: Constraint) -> SmallVec<[Constrai
         more.push(negated);
     }
     more
-}
-
-/// The number that a variable keeps for a value.
-pub(crate) fn stored(var: &Var, value: Value) -> Result<i64, EvalError> {
-    var.number(value).ok_or(EvalError::Type)
 }
 
 pub(crate) fn range_fault(edge: Box<EdgeName>, var: &Var, value: i64) -> ModelError {

@@ -1,47 +1,69 @@
-//! Witnesses: a way to a goal with earliest times, believed only after a replay under concrete clocks.
+//! Witnesses: a run that shows something, with concrete times, believed only after a replay under concrete clocks.
 //!
-//! The times of a path's transitions are the least solution of difference constraints over those times alone: a clock's
-//! value is the time since the transition that last reset it. A strict bound counts as one infinitely small step ε more,
-//! so that a time is `a` units and `b` ε. Then ε is made one tick. A tick is a nanosecond, unless the unit of the network
-//! is so small that the path's ε would add up to a unit; then it is the fraction [`Witness::ticks`] of one.
+//! A path of transitions gets its times from a [schedule](crate::schedule): the earliest, the latest or sampled ones.
 
-use std::fmt::Write as _;
+use std::rc::Rc;
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    ta::{LocationId, Network},
+    ta::{ChannelId, LocationId, Network},
 };
 use hrdsl_trace::{Step, Trace, What};
+use serde::Serialize;
 
 use crate::{
-    Error, Goal, GoalKind,
+    Error, Goal, GoalKind, StateFormula,
     code::Medium,
     compile::values,
-    concrete::{self, Final},
+    dbm::Dbm,
     expand::Taken,
+    graph::{Detail, Graph, Stay},
     network::{Constraint, Model},
-    search::goal_holds,
-    semantics::{Effect, Firing, Move, Scratch},
+    replay::{self, Final},
+    schedule::{Schedule, Times, Timing},
+    semantics::Move,
 };
 
-/// A run of the network that leads to a goal.
-#[derive(Clone, Debug, PartialEq)]
+/// A run of the network.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Witness {
     /// The network's name.
     pub network: String,
     /// Ticks in a nanosecond; 1 unless strict bounds are finer than that.
     pub ticks: i64,
     pub steps: Vec<WitnessStep>,
+    /// When what it shows is so, in ticks: with the last transition, or later if time had to pass.
+    pub end: i64,
+    pub ending: Ending,
+}
+
+/// How a run goes on after its last transition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// What was asked for is reached.
+    #[default]
+    Reached,
+    /// The steps from this one on can be repeated for ever; not always with the same delays. Runs in which time does not
+    /// pass beyond a bound (Zeno runs) count.
+    Again(usize),
+    /// Nothing more can happen.
+    Stuck,
+    /// Time can pass for ever, and nothing has to happen.
+    Waits,
 }
 
 /// One transition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WitnessStep {
     /// Since the start, in ticks.
     pub time: i64,
-    /// What was sent; `None`: an internal edge.
+    /// What was sent; `None`: nothing.
     pub event: Option<(EventId, Vec<Value>)>,
-    /// The edges taken: the sender's first, then the receivers', in the network's order.
+    /// The channel that it went over, with the arguments of the offer.
+    pub channel: Option<(ChannelId, Vec<Value>)>,
+    /// The edges taken: the sender's first, then those of who takes part, in the network's order; of a joint channel in the
+    /// order of its parties.
     pub moves: Vec<Move>,
     /// Which automata changed their location: index in the network, from, to.
     pub locations: Vec<(usize, LocationId, LocationId)>,
@@ -70,182 +92,251 @@ impl Witness {
         trace
     }
 
-    /// A readable printing, one line for each transition: when, who did what, which locations and variables changed.
+    /// A readable printing: see [`Story`](crate::Story).
     ///
     /// `network` must be the one that was searched.
     #[must_use]
     pub fn text(&self, program: &Program, network: &Network) -> String {
-        let slots = crate::slot_names(program, network);
-        let member = |m: usize| network.automata.get(m).and_then(|a| program.automata.get(usize::from(a.0)));
-        let mut out = String::new();
-        for step in &self.steps {
-            let who = step.moves.first().and_then(|m| member(m.automaton)).map_or("?", |a| &a.name);
-            let _ = write!(out, "{} s  {who}", decimal(step.time, self.ticks));
-            if let Some((event, args)) = &step.event {
-                let name = program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
-                let args: Vec<String> = args.iter().map(ToString::to_string).collect();
-                let list = if args.is_empty() { String::new() } else { format!("({})", args.join(", ")) };
-                let _ = write!(out, " sends {name}{list}");
-            }
-            let mut facts = Vec::new();
-            for m in &step.moves {
-                let Some(a) = member(m.automaton) else { continue };
-                let name = |l: LocationId| a.locations.get(usize::from(l.0)).map_or("?", |l| &l.name);
-                if let Some(e) = a.edges.get(m.edge) {
-                    facts.push(format!("{} {} -> {}", a.name, name(e.from), name(e.to)));
-                }
-            }
-            for &(slot, from, to) in &step.variables {
-                facts.push(format!("{} {from} -> {to}", slots.get(slot).map_or("?", |s| s)));
-            }
-            let _ = writeln!(out, ": {}", facts.join("; "));
-        }
-        out
+        crate::Story::of(program, network, self).text()
     }
 }
 
-/// Ticks as seconds, exact for whole nanoseconds.
-fn decimal(time: i64, ticks: i64) -> String {
-    let nanos = time.div_euclid(ticks.max(1));
-    let rest = time.rem_euclid(ticks.max(1));
-    let mut text = format!("{}.{:09}", nanos / 1_000_000_000, nanos % 1_000_000_000);
-    if rest == 0 {
-        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
-    } else {
-        let _ = write!(text, " + {rest}/{ticks} ns");
-    }
-    text
+/// A part of a path: a transition, or time that passes into something.
+#[derive(Clone, Debug)]
+pub(crate) enum Stop {
+    /// A transition is taken where `before` holds, and `after` does right after it.
+    Take { taken: Rc<Taken>, before: Vec<Constraint>, after: Vec<Constraint> },
+    /// Some time passes, perhaps none; then these hold.
+    Wait(Vec<Constraint>),
 }
 
-/// A time: units, then infinitely small steps.
-type Time = (i64, i64);
+/// All bounds of a zone.
+pub(crate) fn bounds_of(zone: &Dbm) -> Vec<Constraint> {
+    let pairs = (0..zone.dim()).flat_map(|i| (0..zone.dim()).map(move |j| (i, j)));
+    pairs
+        .filter(|(i, j)| i != j && !zone.at(*i, *j).is_infinite())
+        .map(|(i, j)| Constraint { i: i as u16, j: j as u16, bound: zone.at(i, j) })
+        .collect()
+}
 
-/// `later ≥ earlier + (units, ε)`, of the transitions with these numbers.
-struct AtLeast {
-    later: usize,
-    earlier: usize,
-    by: Time,
+/// The stops of transitions alone.
+pub(crate) fn takes(path: impl IntoIterator<Item = Rc<Taken>>) -> Vec<Stop> {
+    let stop = |taken| Stop::Take { taken, before: Vec::new(), after: Vec::new() };
+    path.into_iter().map(stop).collect()
 }
 
 /// Makes the path concrete, replays it, and looks whether it meets the goal.
-pub(crate) fn build(model: &Model, path: &[Taken], goal: Option<&Goal>) -> Result<Witness, Error> {
-    let Walk { mut steps, constraints, state } = walk(model, path)?;
-    let times = least(steps.len() + 1, &constraints)
-        .ok_or_else(|| Error::Internal("the zones reach a goal that no run reaches".into()))?;
-    let most = times.iter().map(|t| t.1).max().unwrap_or(0);
-    let ticks = most / model.unit + 1;
-    for (step, &(units, small)) in steps.iter_mut().zip(&times[1..]) {
-        let time = i128::from(units) * i128::from(model.unit) * i128::from(ticks) + i128::from(small);
-        step.time = i64::try_from(time)
-            .map_err(|_| Error::Internal("a witness lasts longer than time can be counted".into()))?;
+pub(crate) fn build(
+    model: &Model,
+    path: Vec<Taken>,
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let graph = Graph::new(model, Detail::Tell, &[], 0)?;
+    let stops = takes(path.into_iter().map(Rc::new));
+    match goal.and_then(Goal::formula) {
+        Some(f) if f.is_timed() => reach_in_time(&graph, stops, &f, &[], goal, timing),
+        Some(_) | None => concrete(&graph, &stops, Ending::Reached, goal, timing),
     }
-    let witness = Witness { network: model.name.to_owned(), ticks, steps };
-    believe(model, &witness, &state, goal)?;
+}
+
+/// The path, and then the time that the formula needs, with what must hold then besides.
+pub(crate) fn reach_formula(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    besides: &[Constraint],
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, besides, None, timing)
+}
+
+/// The path, and then the time that a goal's formula needs.
+pub(crate) fn reach_goal(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    goal: &Goal,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, &[], Some(goal), timing)
+}
+
+/// The path and then the time that the formula needs: the first of its zones that can be.
+fn reach_in_time(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    besides: &[Constraint],
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let state = walk(graph, &stops)?.state;
+    let mut all = Dbm::universe(graph.dim());
+    let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
+    stay.invariant.iter().chain(besides).for_each(|c| {
+        crate::federation::keep(&mut all, *c);
+    });
+    let parts = f.part(&graph.here(&state), &all)?.into_zones();
+    let mut best: Option<Witness> = None;
+    for part in parts {
+        let mut stops = stops.clone();
+        stops.push(Stop::Wait(bounds_of(&part)));
+        let w = walk(graph, &stops)?;
+        let Some(times) = w.schedule.solve(graph.model.unit, timing) else { continue };
+        let witness = finish(graph, w, &times, Ending::Reached, goal)?;
+        // The earliest of them, as nanoseconds and their parts.
+        let key = |w: &Witness| (i128::from(w.end) << 32) / i128::from(w.ticks);
+        if best.as_ref().is_none_or(|b| key(&witness) < key(b)) {
+            best = Some(witness);
+        }
+    }
+    best.ok_or_else(|| internal("the zones reach a goal that no run reaches"))
+}
+
+fn internal(what: &str) -> Error {
+    Error::Internal(what.to_owned())
+}
+
+/// Makes a path concrete and replays it.
+pub(crate) fn concrete(
+    graph: &Graph,
+    stops: &[Stop],
+    ending: Ending,
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let w = walk(graph, stops)?;
+    let times = w
+        .schedule
+        .solve(graph.model.unit, timing)
+        .ok_or_else(|| internal("the zones have a path that no run takes"))?;
+    finish(graph, w, &times, ending, goal)
+}
+
+/// Whether time can pass between a stop and the end of the path, and at what times the stops are.
+pub(crate) fn times(graph: &Graph, stops: &[Stop], timing: Timing) -> Result<Option<Times>, Error> {
+    Ok(walk(graph, stops)?.schedule.solve(graph.model.unit, timing))
+}
+
+fn finish(
+    graph: &Graph,
+    w: Walk,
+    times: &Times,
+    ending: Ending,
+    goal: Option<&Goal>,
+) -> Result<Witness, Error> {
+    let mut steps = w.steps;
+    for (step, &at) in steps.iter_mut().zip(&w.at) {
+        step.time = times.at[at];
+    }
+    let end = times.at.last().copied().unwrap_or(0);
+    let witness = Witness { network: graph.model.name.to_owned(), ticks: times.ticks, steps, end, ending };
+    believe(graph.model, &witness, &w.state, goal)?;
     Ok(witness)
 }
 
 fn believe(model: &Model, witness: &Witness, state: &[i64], goal: Option<&Goal>) -> Result<(), Error> {
     let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
-    let end = concrete::replay(model.program, &ids, &model.counters, &model.limits, witness)
+    let end = replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
         .map_err(|m| Error::Internal(format!("a witness does not replay: {m}")))?;
     if end.numbers() != state[..model.limit_at(0)] {
-        return Err(Error::Internal("a witness ends in another state than the search".into()));
+        return Err(internal("a witness ends in another state than the search"));
+    }
+    if let Ending::Again(from) = witness.ending
+        && end.history.get(from) != end.history.last()
+    {
+        return Err(internal("a loop does not end where it begins"));
+    }
+    if witness.ending == Ending::Stuck && !end.meets(&StateFormula::Deadlock)? {
+        return Err(internal("something can happen where nothing should"));
     }
     match goal {
-        Some(goal) if !meets(goal, witness, &end) => {
-            Err(Error::Internal("a witness does not meet its goal".into()))
-        }
+        Some(goal) if !meets(goal, witness, &end)? => Err(internal("a witness does not meet its goal")),
         Some(_) | None => Ok(()),
     }
 }
 
-fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> bool {
-    match &goal.what {
+fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> Result<bool, Error> {
+    let settled = end.settled || !goal.settled;
+    Ok(match &goal.what {
         GoalKind::Edge { automaton, edge }
         | GoalKind::Pair { automaton, second: edge, .. }
         | GoalKind::Use { user: (automaton, edge), .. } => witness
             .steps
             .last()
             .is_some_and(|s| s.moves.iter().any(|m| m.automaton == *automaton && m.edge == *edge)),
-        GoalKind::Formula(_) => true,
-        GoalKind::Location { .. } | GoalKind::Condition(_) => {
-            (end.settled || !goal.settled) && goal_holds(goal, end) == Ok(true)
-        }
-    }
+        GoalKind::Location { .. } | GoalKind::Condition(_) | GoalKind::Formula(_) => match goal.formula() {
+            Some(f) => settled && end.meets(&f)?,
+            None => false,
+        },
+    })
 }
 
 /// A path without times.
 struct Walk {
     steps: Vec<WitnessStep>,
-    /// What the times must keep.
-    constraints: Vec<AtLeast>,
+    /// The number of each step's time.
+    at: Vec<usize>,
+    schedule: Schedule,
     /// The last discrete state.
     state: Vec<i64>,
 }
 
-fn walk(model: &Model, path: &[Taken]) -> Result<Walk, Error> {
-    let (mut scratch, mut stack) = (Scratch::default(), Vec::new());
-    let mut effect = Effect::default();
-    let mut invariant = Vec::new();
-    let mut state = model.initial();
-    let (mut steps, mut constraints) = (Vec::new(), Vec::new());
-    // The transition that last set each clock, and what it had then; all clocks start at 0, the start.
-    let mut resets = vec![(0, 0); model.dim];
-    model.invariant(&mut state, &mut stack, &mut invariant)?;
-    invariant.iter().for_each(|&c| bound(c, 0, &resets, &mut constraints));
-    for (before, taken) in path.iter().enumerate() {
-        let now = before + 1;
-        constraints.push(AtLeast { later: now, earlier: before, by: (0, 0) });
-        if !model.may_delay(&mut state, &mut scratch) {
-            constraints.push(AtLeast { later: before, earlier: now, by: (0, 0) });
-        }
+fn walk(graph: &Graph, stops: &[Stop]) -> Result<Walk, Error> {
+    let state = graph.initial();
+    let schedule = Schedule::new(graph.dim());
+    let mut w = Walk { steps: Vec::new(), at: Vec::new(), schedule, state };
+    let mut stay = allowed(graph, &w.state)?;
+    stay.invariant.iter().for_each(|c| w.schedule.require(*c));
+    for stop in stops {
+        let now = w.schedule.next(stay.waits);
         // An invariant is convex: it holds all the while if it holds at both ends.
-        model.invariant(&mut state, &mut stack, &mut invariant)?;
-        invariant.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
-        taken.guard.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
-        let firing =
-            Firing { parts: &taken.parts, medium: taken.medium, args: &taken.args, guard: &taken.guard };
-        let done = model.effect(&state, &firing, &mut stack, &mut effect);
-        if done.is_err() {
-            return Err(Error::Internal("a path takes a transition that is a fault".into()));
-        }
-        let old = resets.clone();
-        for r in &taken.resets {
-            resets[usize::from(r.clock)] = match r.from {
-                0 => (now, r.by),
-                y => (old[usize::from(y)].0, old[usize::from(y)].1 + r.by),
-            };
-        }
-        let mut target = effect.target.clone();
-        model.invariant(&mut target, &mut stack, &mut invariant)?;
-        invariant.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
-        let event = match taken.medium {
-            Some(medium @ Medium::Event(e)) => Some((e, values(model, medium, &taken.args))),
-            Some(Medium::Channel(_)) | None => None,
+        stay.invariant.iter().for_each(|c| w.schedule.require(*c));
+        let (taken, after) = match stop {
+            Stop::Wait(there) => {
+                there.iter().for_each(|c| w.schedule.require(*c));
+                continue;
+            }
+            Stop::Take { taken, before, after } => {
+                before.iter().for_each(|c| w.schedule.require(*c));
+                (taken, after)
+            }
         };
-        let moves = taken.parts.iter().map(|t| model.moved(t)).collect();
-        steps.push(step(model, &state, &target, event, moves));
-        state = target;
+        let target = graph.target(&w.state, taken);
+        let target = target.map_err(|_| internal("a path takes a transition that is a fault"))?;
+        taken.guard.iter().for_each(|c| w.schedule.require(*c));
+        w.schedule.set(&taken.resets);
+        stay = allowed(graph, &target)?;
+        stay.invariant.iter().chain(after).for_each(|c| w.schedule.require(*c));
+        w.steps.push(step(graph.model, &w.state, &target, taken));
+        w.at.push(now);
+        w.state = target;
     }
-    Ok(Walk { steps, constraints, state })
+    Ok(w)
 }
 
-fn step(
-    model: &Model,
-    before: &[i64],
-    after: &[i64],
-    event: Option<(EventId, Vec<Value>)>,
-    moves: Vec<Move>,
-) -> WitnessStep {
+fn allowed(graph: &Graph, state: &[i64]) -> Result<Stay, Error> {
+    graph.stay(state)?.ok_or_else(|| internal("a path leads through a forbidden state"))
+}
+
+fn step(model: &Model, before: &[i64], after: &[i64], taken: &Taken) -> WitnessStep {
     let location = |n: i64| LocationId(u16::try_from(n).unwrap_or(u16::MAX));
     let changed = |i: &usize| before[*i] != after[*i];
     let locations = (0..model.members.len()).filter(changed);
     let slots = (0..model.slots.len()).filter(|&s| changed(&model.slot_at(s)));
     let value = |state: &[i64], slot: usize| model.slot_value(state, slot);
+    let args = |medium| values(model, medium, &taken.args);
+    let (event, channel) = match taken.medium {
+        None => (None, None),
+        Some(medium @ Medium::Event(e)) => (Some((e, args(medium))), None),
+        Some(medium @ Medium::Channel(c)) => (None, Some((c, args(medium)))),
+    };
     WitnessStep {
         time: 0,
         event,
-        moves,
+        channel,
+        moves: taken.parts.iter().map(|t| model.moved(t)).collect(),
         locations: locations.map(|m| (m, location(before[m]), location(after[m]))).collect(),
         variables: slots
             .filter_map(|s| value(before, s).zip(value(after, s)).map(|(a, b)| (s, a, b)))
@@ -253,65 +344,38 @@ fn step(
     }
 }
 
-/// `x_i - x_j ≺ b` at the transition `now`: `x` is the time since it was set, and what it was set to.
-fn bound(c: Constraint, now: usize, resets: &[(usize, i64)], out: &mut Vec<AtLeast>) {
-    let reset = |x: u16| if x == 0 { (now, 0) } else { resets[usize::from(x)] };
-    let ((later, more), (earlier, less)) = (reset(c.i), reset(c.j));
-    let by = (more - less - c.bound.value(), i64::from(c.bound.is_strict()));
-    out.push(AtLeast { later, earlier, by });
-}
-
-/// The least times that keep all constraints, from 0 for the start; `None`: there are none.
-fn least(count: usize, constraints: &[AtLeast]) -> Option<Vec<Time>> {
-    let mut times = vec![(0, 0); count];
-    for _ in 0..=count {
-        let mut changed = false;
-        for c in constraints {
-            let from: Time = times[c.earlier];
-            let at = (from.0 + c.by.0, from.1 + c.by.1);
-            if at > times[c.later] {
-                if c.later == 0 {
-                    return None;
-                }
-                times[c.later] = at;
-                changed = true;
-            }
+/// The same run with other delays: its path is found again by the moves and, among transitions of the same moves, by the
+/// clocks.
+///
+/// # Errors
+/// If the run is not one of the model.
+pub fn retimed(model: &Model, run: &Witness, goal: &Goal, timing: Timing) -> Result<Witness, Error> {
+    let graph = Graph::new(model, Detail::Tell, &[], 0)?;
+    let mut path: Vec<Taken> = Vec::new();
+    let mut state = graph.initial();
+    // Each clock is zero at a time, in ticks.
+    let scale = i128::from(model.unit) * i128::from(run.ticks);
+    let mut zero = vec![0i128; model.dim];
+    for s in &run.steps {
+        let now = i128::from(s.time);
+        let same = |t: &Taken, s: &WitnessStep| {
+            t.parts.len() == s.moves.len() && t.parts.iter().zip(&s.moves).all(|(t, m)| model.moved(t) == *m)
+        };
+        let value = |x: u16| if x == 0 { 0 } else { now - zero[usize::from(x)] };
+        let keeps = |c: &Constraint| {
+            let (d, b) = (value(c.i) - value(c.j), i128::from(c.bound.value()) * scale);
+            c.bound.is_infinite() || d < b || (d == b && !c.bound.is_strict())
+        };
+        let found =
+            graph.actions(&state).into_iter().find(|a| same(&a.taken, s) && a.taken.guard.iter().all(keeps));
+        let action = found.ok_or_else(|| internal("a run takes a transition that is not there"))?;
+        let before = zero.clone();
+        for set in &action.taken.resets {
+            let from = if set.from == 0 { now } else { before[usize::from(set.from)] };
+            zero[usize::from(set.clock)] = from - i128::from(set.by) * scale;
         }
-        if !changed {
-            return Some(times);
-        }
+        state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
+        path.push((*action.taken).clone());
     }
-    None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn least_times_count_strict_bounds_in_small_steps() {
-        // t1 > 2, t2 > t1, t2 < 3, t3 ≥ t2 + 1
-        let constraints = [
-            AtLeast { later: 1, earlier: 0, by: (2, 1) },
-            AtLeast { later: 2, earlier: 1, by: (0, 1) },
-            AtLeast { later: 0, earlier: 2, by: (-3, 1) },
-            AtLeast { later: 3, earlier: 2, by: (1, 0) },
-        ];
-        assert_eq!(least(4, &constraints), Some(vec![(0, 0), (2, 1), (2, 2), (3, 2)]));
-    }
-
-    #[test]
-    fn contradiction_has_no_times() {
-        let constraints =
-            [AtLeast { later: 1, earlier: 0, by: (2, 0) }, AtLeast { later: 0, earlier: 1, by: (-2, 1) }];
-        assert_eq!(least(2, &constraints), None);
-    }
-
-    #[test]
-    fn times_print_as_seconds() {
-        assert_eq!(decimal(0, 1), "0");
-        assert_eq!(decimal(10_000_000_001, 1), "10.000000001");
-        assert_eq!(decimal(1_500_000_000, 1), "1.5");
-        assert_eq!(decimal(7, 3), "0.000000002 + 1/3 ns");
-    }
+    build(model, path, Some(goal), timing)
 }
