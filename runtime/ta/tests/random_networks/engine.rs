@@ -1,12 +1,12 @@
 //! The one place that knows the engine: asks it in all its modes, and compares its answers with the regions.
 
 use hrdsl_ir::{
-    Program,
-    ta::{ClockConstraint, ClockId, ClockOp, Formula, LocationId, Time},
+    Program, Span,
+    ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, Query, Time},
     value::SECOND,
 };
 use hrdsl_ta::{
-    Abstraction, Error, Goal, GoalKind, Model, ModelError, Observe, Options, Order, Outcome, Report,
+    Abstraction, Error, Goal, GoalKind, Manner, Model, ModelError, Observe, Options, Order, Outcome, Report,
     Subsumption, explore as search,
 };
 use rand::{RngExt, SeedableRng};
@@ -27,6 +27,38 @@ pub fn disagreement(p: &Program) -> Result<Option<String>, String> {
     for (name, options) in modes() {
         if let Err(what) = compared(p, &graph, &goals, &expected, &options) {
             return Ok(Some(format!("{name}: {what}")));
+        }
+    }
+    Ok(if graph.starts && graph.faults.is_empty() { asks(p, &graph)? } else { None })
+}
+
+/// Deadlocks and runs without end: every kind of query about the first formulas.
+fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
+    let formulas = formulas(p);
+    let [f, g, h, ..] = formulas.as_slice() else { return Ok(None) };
+    let at = |automaton, l| Formula::At { automaton, location: LocationId(l) };
+    let left = Formula::Not(Box::new(at(0, 0)));
+    let asked = [
+        (Ask::Possibly(Formula::Deadlock), graph.possibly(&Formula::Deadlock)?),
+        (Ask::PotentiallyAlways(at(0, 0)), graph.always(&at(0, 0))?),
+        (Ask::PotentiallyAlways(f.clone()), graph.always(f)?),
+        (Ask::Eventually(left.clone()), graph.eventually(&left)?),
+        (Ask::Eventually(g.clone()), graph.eventually(g)?),
+        (Ask::LeadsTo(at(0, 1), at(0, 0)), graph.leads_to(&at(0, 1), &at(0, 0))?),
+        (Ask::LeadsTo(g.clone(), h.clone()), graph.leads_to(g, h)?),
+    ];
+    for (ask, expected) in asked {
+        let query = Query {
+            name: "q".into(),
+            title: String::new(),
+            text: String::new(),
+            network: 0,
+            ask,
+            origin: Span::default(),
+        };
+        match answer(p, &p.networks[0], &query, &Manner::default()) {
+            Ok(a) if a.verdict == if expected { Verdict::Holds } else { Verdict::Fails } => {}
+            other => return Ok(Some(format!("{:?} should be {expected}: {other:?}", query.ask))),
         }
     }
     Ok(None)
