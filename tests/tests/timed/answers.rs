@@ -6,6 +6,8 @@ use hrdsl_ir::{
     value::SECOND,
 };
 
+use hrdsl_ta::{Error, Manner, Verdict, answer};
+
 use crate::oracle::{Limits, explore};
 
 /// `holds`, `fails`, `fault`, or why there is no answer.
@@ -34,6 +36,19 @@ pub fn by_regions(p: &Program, query: &Query) -> String {
         Ok(true) => "holds".to_owned(),
         Ok(false) => "fails".to_owned(),
         Err(why) => why,
+    }
+}
+
+/// The same, by the search.
+pub fn by_search(p: &Program, query: &Query) -> String {
+    match answer(p, &p.networks[usize::from(query.network)], query, &Manner::default()) {
+        Ok(found) => match found.verdict {
+            Verdict::Holds => "holds".to_owned(),
+            Verdict::Fails => "fails".to_owned(),
+            Verdict::Open => "open".to_owned(),
+        },
+        Err(Error::Model { .. }) => "fault".to_owned(),
+        Err(Error::Internal(why)) => why,
     }
 }
 

@@ -7,7 +7,7 @@ use hrdsl_ir::{
 };
 use hrdsl_ta::{
     Abstraction, Error, Goal, GoalKind, Manner, Model, ModelError, Observe, Options, Order, Outcome, Report,
-    Subsumption, explore as search,
+    Subsumption, Verdict, answer, explore as search,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
