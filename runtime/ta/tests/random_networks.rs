@@ -18,7 +18,7 @@ mod pinned;
 use dice::{Flavour, network};
 use engine::disagreement;
 
-fn number(name: &str, default: u64) -> u64 {
+pub fn number(name: &str, default: u64) -> u64 {
     #[allow(clippy::disallowed_methods, reason = "how long to look is asked from outside")]
     let given = std::env::var(name).ok();
     given.and_then(|n| n.parse().ok()).unwrap_or(default)

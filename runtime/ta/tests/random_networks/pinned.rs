@@ -12,7 +12,8 @@ use hrdsl_ir::{
 
 use crate::{
     common::{add, automaton, bin, edge, eq, location, n, normal, program, shared, v, var},
-    engine::disagreement,
+    engine::{LIMITS, asks, disagreement},
+    oracle::explore,
 };
 
 fn agrees(p: &Program) {
@@ -107,4 +108,31 @@ fn a_committed_location_forbids_the_fault_of_a_party() {
 fn a_committed_location_forbids_the_fault_of_a_receiver() {
     agrees(&divided(ChannelKind::Broadcast));
     agrees(&divided(ChannelKind::HandShake));
+}
+
+/// A receiver that binds an argument and asks about it, in a network in which nobody sends.
+#[test]
+#[ignore = "queries evaluate the receiver's guard without the argument"]
+fn a_bound_argument_is_not_asked_for_without_a_sender() {
+    let mut p = program();
+    shared(&mut p, "s", 0, 2, 0);
+    let e = crate::common::event(&mut p, "e", &[hrdsl_ir::Type::Int { lo: 0, hi: 2 }]);
+    for name in ["A", "B"] {
+        let mut a = automaton(name, &["x"]);
+        let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+        if name == "B" {
+            edge(l, m).on_args(e, &[ReceiveArg::Bind]).when(bin(BinaryOp::Lt, v(1), n(2))).to(&mut a);
+        }
+        add(&mut p, a);
+    }
+    let graph = explore(&p, &p.networks[0], LIMITS).unwrap();
+    assert_eq!(asks(&p, &graph), Ok(None));
+}
+
+/// A receiver with `x == 0 s` stays away from a broadcast after a difference was compared.
+#[test]
+#[ignore = "the witness lets it stay away where it must take part"]
+fn a_receiver_that_stays_away_has_time_to() {
+    let p = crate::dice::network(569, crate::dice::Flavour::Differences);
+    agrees(&p);
 }
