@@ -112,7 +112,6 @@ fn a_committed_location_forbids_the_fault_of_a_receiver() {
 
 /// A receiver that binds an argument and asks about it, in a network in which nobody sends.
 #[test]
-#[ignore = "queries evaluate the receiver's guard without the argument"]
 fn a_bound_argument_is_not_asked_for_without_a_sender() {
     let mut p = program();
     shared(&mut p, "s", 0, 2, 0);
