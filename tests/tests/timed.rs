@@ -58,7 +58,10 @@ fn checked(block: &Block) -> Vec<String> {
         let line = block.text[..query.origin.start as usize].matches('\n').count();
         let text = block.text.lines().nth(line).unwrap_or_default();
         let expected = text.rsplit_once("// ").map_or("no answer", |(_, answer)| answer.trim());
-        for (by, got) in [("regions", answers::by_regions(&program, query)), ("search", answers::by_search(&program, query))] {
+        for (by, got) in [
+            ("regions", answers::by_regions(&program, query)),
+            ("search", answers::by_search(&program, query)),
+        ] {
             if got != expected {
                 faults.push(format!("{}: {expected} is expected, the {by} say: {got}", text.trim()));
             }

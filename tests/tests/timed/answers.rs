@@ -54,7 +54,9 @@ pub fn by_search(p: &Program, query: &Query) -> String {
 
 fn each_clock(ask: &Ask, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
     match ask {
-        Ask::Possibly(a) | Ask::Invariantly(a) | Ask::PotentiallyAlways(a) | Ask::Eventually(a) => clocks(a, f),
+        Ask::Possibly(a) | Ask::Invariantly(a) | Ask::PotentiallyAlways(a) | Ask::Eventually(a) => {
+            clocks(a, f)
+        }
         Ask::LeadsTo(a, b) => {
             clocks(a, f);
             clocks(b, f);
