@@ -52,6 +52,7 @@ fn every_link_leads_somewhere() {
     files.extend(pages(&root.join("spec")));
     files.extend(pages(&root.join("spec/codes")));
     files.extend(pages(&root.join("spec/agentspeak")));
+    files.extend(pages(&root.join("spec/timed")));
     let (mut faults, mut followed) = (Vec::new(), 0);
     for path in &files {
         let page = fs::read_to_string(path).unwrap();
@@ -88,7 +89,9 @@ fn the_book_has_every_page_once() {
     for target in summary.lines().flat_map(links) {
         *times.entry(target).or_default() += 1;
     }
-    for (folder, before) in [("spec", ""), ("spec/codes", "codes/"), ("spec/agentspeak", "agentspeak/")] {
+    for (folder, before) in
+        [("spec", ""), ("spec/codes", "codes/"), ("spec/agentspeak", "agentspeak/"), ("spec/timed", "timed/")]
+    {
         for page in pages(&root().join(folder)) {
             let name = format!("{before}{}", page.file_name().unwrap().to_string_lossy());
             if name != "SUMMARY.md" {

@@ -477,6 +477,10 @@ impl<'p> Machine<'p> {
         let mut groups: Vec<Vec<Vec<Move>>> = Vec::new();
         for (automaton, a) in self.members.iter().enumerate() {
             for (edge, e) in a.edges.iter().enumerate().filter(|(_, e)| e.from == self.location[automaton]) {
+                // What takes something moves with whoever sends it, and binds the arguments then.
+                if matches!(e.sync, Sync::Receive { .. } | Sync::Accept { .. }) {
+                    continue;
+                }
                 for binders in choices(&e.selects) {
                     let m = Move { automaton, edge, binders };
                     if self.guard(&m)? && self.clock_guard(&m)? {

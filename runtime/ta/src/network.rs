@@ -81,14 +81,17 @@ pub(crate) struct Clocks {
 }
 
 impl Clocks {
-    /// All constraints, with the bounds that they have now.
+    /// All constraints, with the bounds that they have now; with a fault, those that have one.
     pub(crate) fn eval(&self, env: &mut Env, out: &mut Vec<Constraint>) -> Result<(), Fault> {
         out.extend_from_slice(&self.fixed);
+        let mut result = Ok(());
         for m in &self.moving {
-            let n = m.time.eval(env)?;
-            constraints(m.i, m.j, m.op, n, &mut |c| out.push(c));
+            match m.time.eval(env) {
+                Ok(n) => constraints(m.i, m.j, m.op, n, &mut |c| out.push(c)),
+                Err(fault) => result = result.and(Err(fault)),
+            }
         }
-        Ok(())
+        result
     }
 }
 

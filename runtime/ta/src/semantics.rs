@@ -326,7 +326,8 @@ impl<'p> Model<'p> {
             };
             let mut evaluated = Vec::new();
             let moving = held.and_then(|held| {
-                for c in &spot.invariant.moving {
+                // What does not hold protects the bounds from faults.
+                for c in spot.invariant.moving.iter().filter(|_| held) {
                     let n = c.time.eval(&mut env)?;
                     crate::network::constraints(c.i, c.j, c.op, n, &mut |c| evaluated.push(c));
                 }
@@ -399,15 +400,32 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
         let model = self.model;
         let arrow = &model.members[member].edges[edge];
         let before = self.s.guard.len();
+        let mut bounds = Ok(());
         if arrow.guard.moving.is_empty() {
             self.s.guard.extend_from_slice(&arrow.guard.fixed);
         } else {
             self.s.stack.clear();
             self.s.stack.extend_from_slice(binders);
             let mut env = Env::new(&model.library, self.state, &mut self.s.stack);
-            arrow.guard.eval(&mut env, &mut self.s.guard)?;
+            bounds = arrow.guard.eval(&mut env, &mut self.s.guard);
         }
-        Ok(self.s.guard[before..].iter().all(|&c| self.may.may(c)))
+        if !self.s.guard[before..].iter().all(|&c| self.may.may(c)) {
+            return Ok(false);
+        }
+        bounds.map(|()| true)
+    }
+
+    /// Whether the edge is open and its clocks allow it; their constraints are added to the guard. A guard over variables
+    /// that is false protects the bounds of clocks from faults.
+    fn opens(&mut self, member: usize, edge: usize, binders: &[i64]) -> Result<bool, Fault> {
+        let clocks = self.clocks(member, edge, binders);
+        if clocks == Ok(false) || self.data(member, edge, binders)? { clocks } else { Ok(false) }
+    }
+
+    /// Whether committed locations let the parts move.
+    fn is_allowed(&self) -> bool {
+        let state = &*self.state;
+        !self.committed || self.s.parts.iter().any(|t| self.model.is_committed(state, usize::from(t.member)))
     }
 
     /// Whether the edge's guard over variables holds.
@@ -428,10 +446,7 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
     }
 
     fn fire(&mut self, medium: Option<Medium>) -> Flow {
-        let state = &*self.state;
-        let takes = &self.s.parts;
-        let model = self.model;
-        if self.committed && !takes.iter().any(|t| model.is_committed(state, usize::from(t.member))) {
+        if !self.is_allowed() {
             return ControlFlow::Continue(());
         }
         let (parts, args, guard) = (
@@ -476,12 +491,7 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
     fn begin(&mut self, member: usize, edge: usize, binders: &SmallVec<[i64; 4]>) -> Flow {
         let model = self.model;
         self.s.guard.clear();
-        match self.clocks(member, edge, binders) {
-            Ok(true) => {}
-            Ok(false) => return ControlFlow::Continue(()),
-            Err(fault) => return self.fault(member, edge, fault),
-        }
-        match self.data(member, edge, binders) {
+        match self.opens(member, edge, binders) {
             Ok(true) => {}
             Ok(false) => return ControlFlow::Continue(()),
             Err(fault) => return self.fault(member, edge, fault),
@@ -547,11 +557,7 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
         while more {
             let mut binders = chosen.clone();
             binders.extend(pattern.binds.iter().map(|&i| self.s.args[usize::from(i)]));
-            let open = match self.clocks(member, edge, &binders) {
-                Ok(true) => self.data(member, edge, &binders),
-                other => other,
-            };
-            match open {
+            match self.opens(member, edge, &binders) {
                 Ok(true) => {
                     self.s.parts.push(Take { member: member as u16, edge: edge as u16, binders });
                     self.fire(Some(medium))?;
@@ -597,13 +603,9 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
             while more {
                 let mut binders = chosen.clone();
                 binders.extend(binds.iter().map(|&i| self.s.args[usize::from(i)]));
-                let open = self.clocks(member, usize::from(edge), &binders);
+                let open = self.opens(member, usize::from(edge), &binders);
                 let own: SmallVec<[Constraint; 2]> = SmallVec::from_slice(&self.s.guard[guards..]);
                 self.s.guard.truncate(guards);
-                let open = match open {
-                    Ok(true) => self.data(member, usize::from(edge), &binders),
-                    other => other,
-                };
                 let take = Take { member: member as u16, edge, binders };
                 if open != Ok(false) {
                     // To stay away, one of the constraints of each enabled edge must fail.
@@ -639,13 +641,17 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
                     }
                     Response::Absent(cs) => self.s.guard.extend_from_slice(cs),
                     Response::Fault(take, cs, f) => {
+                        self.s.parts.push(take.clone());
                         self.s.guard.extend_from_slice(cs);
                         fault = Some((take.member, take.edge, *f));
                     }
                 }
             }
             match fault {
-                Some((member, edge, f)) => self.fault(usize::from(member), usize::from(edge), f)?,
+                Some((member, edge, f)) if self.is_allowed() => {
+                    self.fault(usize::from(member), usize::from(edge), f)?;
+                }
+                Some(_) => {}
                 None if self.s.parts.is_empty() => {}
                 None => self.fire(medium)?,
             }

@@ -165,7 +165,22 @@ def evaluate(e, names, called=()):
         elements = tuple(evaluate(a, names, called) for a in of[0])
         rest = evaluate(of[1], names, called) if of[1] else ()
         return elements + rest if isinstance(rest, tuple) else wrong()
+    if form == "element":
+        return names[resolved(of, names)]
+    if form == "apply":
+        return names.apply(of[0], [evaluate(a, names, called) for a in of[1]])
     raise NotImplementedError(form)
+
+
+def resolved(place, names):
+    """The variable that the indices of a place choose."""
+    slot = place["slot"]
+    for index in place.get("indices", ()):
+        at = evaluate(index["at"], names)
+        if not 0 <= at < index["count"]:
+            raise Fault(f"index {at} is none of {index['count']}")
+        slot += at * index["stride"]
+    return slot
 
 
 def unary(op, v):

@@ -8,11 +8,13 @@ use std::{
 };
 
 use hrdsl_compiler::{Input, compile};
+use hrdsl_ir::Program;
 use hrdsl_runtime::testgen::{GoalStatus, generate};
 
 use crate::page::root;
 
 const SCENARIO: &str = include_str!("network.hri");
+const CHANNELS: &str = include_str!("network_channels.hri");
 
 /// `edge Robot: w -> v (edge 1)` is `edge Robot 1`: as the reference says it.
 fn short(goal: &str) -> String {
@@ -24,7 +26,19 @@ fn short(goal: &str) -> String {
 
 #[test]
 fn the_reference_reaches_the_same_goals() {
-    let compilation = compile(Input { name: "network.hri", text: SCENARIO }, &[]);
+    let (reached, unreachable) = compared("network.hri", SCENARIO);
+    assert!(reached.len() > 25 && unreachable.len() > 6, "{reached:?}\n{unreachable:?}");
+}
+
+#[test]
+fn the_reference_reaches_the_same_goals_over_channels() {
+    let (reached, unreachable) = compared("network_channels.hri", CHANNELS);
+    assert!(reached.len() > 25 && unreachable.len() > 3, "{reached:?}\n{unreachable:?}");
+}
+
+/// The goals that both reach, and those that neither does.
+fn compared(name: &str, text: &str) -> (BTreeSet<String>, BTreeSet<String>) {
+    let compilation = compile(Input { name, text }, &[]);
     let said: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
     let program = compilation.program.unwrap_or_else(|| panic!("{said:#?}"));
     let generated = generate(&program, &program.suites[0], None, 0).unwrap();
@@ -32,6 +46,15 @@ fn the_reference_reaches_the_same_goals() {
         generated.goals.iter().filter(|g| g.status == status).map(|g| short(&g.goal)).collect()
     };
     let (reached, unreachable) = (of(GoalStatus::Reached), of(GoalStatus::Unreachable));
+    let got = by_the_page(&program);
+    let (more, less): (Vec<_>, Vec<_>) =
+        (reached.difference(&got).collect(), got.difference(&reached).collect());
+    assert!(more.is_empty() && less.is_empty(), "the search alone: {more:?}\nthe reference alone: {less:?}");
+    assert_eq!(reached.len() + unreachable.len(), generated.goals.len());
+    (reached, unreachable)
+}
+
+fn by_the_page(program: &Program) -> BTreeSet<String> {
     let mut child = Command::new("python3")
         .arg(root().join("tests/tests/spec/network.py"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
@@ -42,10 +65,5 @@ fn the_reference_reaches_the_same_goals() {
     let given = serde_json::json!({ "program": program });
     child.stdin.take().unwrap().write_all(given.to_string().as_bytes()).unwrap();
     let got = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
-    let got: BTreeSet<String> = got.lines().map(str::to_owned).collect();
-    let (more, less): (Vec<_>, Vec<_>) =
-        (reached.difference(&got).collect(), got.difference(&reached).collect());
-    assert!(more.is_empty() && less.is_empty(), "the search alone: {more:?}\nthe reference alone: {less:?}");
-    assert!(reached.len() > 25 && unreachable.len() > 6, "{reached:?}\n{unreachable:?}");
-    assert_eq!(reached.len() + unreachable.len(), generated.goals.len());
+    got.lines().map(str::to_owned).collect()
 }

@@ -1,0 +1,137 @@
+//! Networks in which engine and regions once differed.
+
+use hrdsl_ir::{
+    Expr, Program, Span,
+    expr::{BinaryOp, Index, Place},
+    ta::{
+        AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationKind, Party,
+        ReceiveArg, Sync, Time, TimeTerm,
+    },
+    value::SECOND,
+};
+
+use crate::{
+    common::{add, automaton, bin, edge, eq, location, n, normal, program, shared, v, var},
+    engine::{LIMITS, asks, disagreement},
+    oracle::explore,
+};
+
+fn agrees(p: &Program) {
+    assert_eq!(disagreement(p), Ok(None), "{}", crate::oracle::text::program(p));
+}
+
+/// `s` is 0, 1 or 2, `q` has two elements: `q[s]` is a fault, if `s` is 2.
+fn array() -> (Program, Time) {
+    let mut p = program();
+    shared(&mut p, "s", 0, 2, 0);
+    shared(&mut p, "q0", 0, 1, 0);
+    shared(&mut p, "q1", 0, 1, 1);
+    let element = Place { slot: 1, indices: vec![Index { at: v(0), count: 2, stride: 1 }] };
+    let value = Expr::Element(Box::new(element));
+    (p, Time { nanos: SECOND, terms: vec![TimeTerm { factor: SECOND, value }] })
+}
+
+fn at_least(bound: Time) -> ClockConstraint {
+    ClockConstraint { clock: ClockId(0), minus: None, op: ClockOp::Ge, bound }
+}
+
+#[test]
+fn a_false_guard_protects_the_bounds() {
+    let (mut p, bound) = array();
+    let mut a = automaton("A", &["x"]);
+    let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+    edge(l, l).select(var("k", 0, 2, 0)).set(0, v(3)).to(&mut a);
+    let mut guarded = edge(l, m).when(bin(BinaryOp::Lt, v(0), n(2)));
+    guarded.0.clock_guard.push(at_least(bound));
+    guarded.to(&mut a);
+    add(&mut p, a);
+    agrees(&p);
+}
+
+#[test]
+fn a_false_invariant_protects_its_bounds() {
+    let (mut p, bound) = array();
+    let mut a = automaton("A", &["x"]);
+    let limit = ClockConstraint { op: ClockOp::Le, ..at_least(bound) };
+    let l = location(&mut a, "l", LocationKind::Normal, &[limit]);
+    a.locations[0].holds = Some(bin(BinaryOp::Lt, v(0), n(2)));
+    edge(l, l).select(var("k", 0, 2, 0)).set(0, v(3)).to(&mut a);
+    add(&mut p, a);
+    agrees(&p);
+}
+
+/// `C` is committed and sets `s`, which the guard of `B` divides by.
+fn divided(kind: ChannelKind) -> Program {
+    let mut p = program();
+    shared(&mut p, "s", 0, 2, 0);
+    let joint = matches!(kind, ChannelKind::Joint(_));
+    let origin = Span::default();
+    p.channels.push(Channel { name: "c".into(), kind, urgent: false, params: Vec::new(), origin });
+    let channel = ChannelId(0);
+    let accept = || Sync::Accept { channel, args: Vec::<ReceiveArg>::new() };
+    let syncs = if joint {
+        [Sync::Join { channel }, Sync::Join { channel }]
+    } else {
+        [Sync::Offer { channel, args: Vec::new() }, accept()]
+    };
+    for (i, sync) in syncs.into_iter().enumerate() {
+        let mut a = automaton(["A", "B"][i], &["x"]);
+        let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+        let mut e = edge(l, m);
+        if i == 1 {
+            e = e.when(eq(bin(BinaryOp::Div, n(2), v(0)), n(1)));
+        }
+        e.0.sync = sync;
+        e.to(&mut a);
+        add(&mut p, a);
+    }
+    let mut c = automaton("C", &["x"]);
+    let l = location(&mut c, "l", LocationKind::Committed, &[]);
+    let m = normal(&mut c, "m");
+    edge(l, m).set(0, n(2)).to(&mut c);
+    if !joint {
+        let mut hears = edge(l, m).when(eq(v(0), n(1)));
+        hears.0.sync = accept();
+        hears.to(&mut c);
+    }
+    add(&mut p, c);
+    p
+}
+
+#[test]
+fn a_committed_location_forbids_the_fault_of_a_party() {
+    let party = |i| Party { automaton: AutomatonId(i), optional: false };
+    agrees(&divided(ChannelKind::Joint(vec![party(0), party(1)])));
+}
+
+#[test]
+fn a_committed_location_forbids_the_fault_of_a_receiver() {
+    agrees(&divided(ChannelKind::Broadcast));
+    agrees(&divided(ChannelKind::HandShake));
+}
+
+/// A receiver that binds an argument and asks about it, in a network in which nobody sends.
+#[test]
+fn a_bound_argument_is_not_asked_for_without_a_sender() {
+    let mut p = program();
+    shared(&mut p, "s", 0, 2, 0);
+    let e = crate::common::event(&mut p, "e", &[hrdsl_ir::Type::Int { lo: 0, hi: 2 }]);
+    for name in ["A", "B"] {
+        let mut a = automaton(name, &["x"]);
+        let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+        if name == "B" {
+            edge(l, m).on_args(e, &[ReceiveArg::Bind]).when(bin(BinaryOp::Lt, v(1), n(2))).to(&mut a);
+        }
+        add(&mut p, a);
+    }
+    let graph = explore(&p, &p.networks[0], LIMITS).unwrap();
+    assert_eq!(asks(&p, &graph), Ok(None));
+}
+
+/// A receiver with `x == 0 s` stays away from a broadcast after a difference was compared.
+#[test]
+#[ignore = "the witness lets it stay away where it must take part"]
+fn a_receiver_that_stays_away_has_time_to() {
+    let p = crate::dice::network(569, crate::dice::Flavour::Differences);
+    agrees(&p);
+}

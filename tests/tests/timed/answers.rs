@@ -1,0 +1,75 @@
+//! The answers to a query: by clock regions, and by the search.
+
+use hrdsl_ir::{
+    Program,
+    ta::{Ask, Formula, Query},
+    value::SECOND,
+};
+
+use hrdsl_ta::{Error, Manner, Verdict, answer};
+
+use crate::oracle::{Limits, explore};
+
+/// `holds`, `fails`, `fault`, or why there is no answer.
+pub fn by_regions(p: &Program, query: &Query) -> String {
+    let mut limits = Limits { states: 100_000, bound: 10, differences: false };
+    each_clock(&query.ask, &mut |c| {
+        limits.bound = limits.bound.max(c.bound.nanos.abs() / SECOND);
+        limits.differences |= c.minus.is_some();
+    });
+    let graph = match explore(p, &p.networks[usize::from(query.network)], limits) {
+        Ok(graph) => graph,
+        Err(why) => return why,
+    };
+    if !graph.starts || !graph.faults.is_empty() {
+        return "fault".to_owned();
+    }
+    let answer = match &query.ask {
+        Ask::Possibly(f) => graph.possibly(f),
+        Ask::Invariantly(f) => graph.possibly(&Formula::Not(Box::new(f.clone()))).map(|b| !b),
+        Ask::PotentiallyAlways(f) => graph.always(f),
+        Ask::Eventually(f) => graph.eventually(f),
+        Ask::LeadsTo(f, g) => graph.leads_to(f, g),
+        Ask::Sup { .. } | Ask::Inf { .. } => Err("no answer to this here".to_owned()),
+    };
+    match answer {
+        Ok(true) => "holds".to_owned(),
+        Ok(false) => "fails".to_owned(),
+        Err(why) => why,
+    }
+}
+
+/// The same, by the search.
+pub fn by_search(p: &Program, query: &Query) -> String {
+    match answer(p, &p.networks[usize::from(query.network)], query, &Manner::default()) {
+        Ok(found) => match found.verdict {
+            Verdict::Holds => "holds".to_owned(),
+            Verdict::Fails => "fails".to_owned(),
+            Verdict::Open => "open".to_owned(),
+        },
+        Err(Error::Model { .. }) => "fault".to_owned(),
+        Err(Error::Internal(why)) => why,
+    }
+}
+
+fn each_clock(ask: &Ask, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
+    match ask {
+        Ask::Possibly(a) | Ask::Invariantly(a) | Ask::PotentiallyAlways(a) | Ask::Eventually(a) => {
+            clocks(a, f)
+        }
+        Ask::LeadsTo(a, b) => {
+            clocks(a, f);
+            clocks(b, f);
+        }
+        Ask::Sup { when, .. } | Ask::Inf { when, .. } => clocks(when, f),
+    }
+}
+
+fn clocks(formula: &Formula, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
+    match formula {
+        Formula::Clock(c) => f(c),
+        Formula::Not(a) => clocks(a, f),
+        Formula::And(all) | Formula::Or(all) => all.iter().for_each(|a| clocks(a, f)),
+        Formula::At { .. } | Formula::Data(_) | Formula::Deadlock => {}
+    }
+}
