@@ -29,6 +29,8 @@ mod concrete;
 pub mod dbm;
 mod error;
 mod expand;
+#[cfg(test)]
+mod explicit;
 mod extrapolation;
 mod extremum;
 mod fastest;
