@@ -326,3 +326,17 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn most_networks_are_sound_and_some_locations_cannot_be_reached() {
+    let (mut sound, mut yes, mut no) = (0, 0, 0);
+    for seed in 0..200 {
+        let p = network(&mut ChaCha8Rng::seed_from_u64(seed));
+        if let Some(all) = runs(&p, Manner::default()) {
+            sound += 1;
+            yes += all.iter().filter(|r| r.0).count();
+            no += all.iter().filter(|r| !r.0).count();
+        }
+    }
+    assert!(sound > 100 && yes > 400 && no > 60, "{sound} {yes} {no}");
+}
