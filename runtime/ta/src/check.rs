@@ -23,7 +23,7 @@ pub(crate) fn automaton(program: &Program, id: AutomatonId) -> Result<&Automaton
     let what = if sizes.iter().any(|n| *n >= usize::from(u16::MAX)) {
         Some("has too many variables or clocks".to_owned())
     } else {
-        fault(program, automaton)
+        fault(program, id, automaton)
     };
     match what {
         None => Ok(automaton),
@@ -31,7 +31,7 @@ pub(crate) fn automaton(program: &Program, id: AutomatonId) -> Result<&Automaton
     }
 }
 
-fn fault(program: &Program, a: &Automaton) -> Option<String> {
+fn fault(program: &Program, id: AutomatonId, a: &Automaton) -> Option<String> {
     let locations = a.locations.len();
     let known = |l: LocationId| usize::from(l.0) < locations;
     if !known(a.initial) {
@@ -44,7 +44,7 @@ fn fault(program: &Program, a: &Automaton) -> Option<String> {
     if let Some(v) = program.shared.iter().chain(&a.vars).chain(selects).find(|v| !range_has_values(v)) {
         return Some(format!("the range of `{}` is not that of its enumeration", v.name));
     }
-    let spot = Spot { program, automaton: a };
+    let spot = Spot { program, automaton: a, id: Some(id) };
     if a.locations.iter().any(|l| l.invariant.iter().any(|c| !spot.clocks_exist(c))) {
         return Some("an invariant has an unknown clock".into());
     }
@@ -105,6 +105,8 @@ fn sent(sync: &Sync) -> &[Expr] {
 struct Spot<'p> {
     program: &'p Program,
     automaton: &'p Automaton,
+    /// Whose functions are known, besides those without owner.
+    id: Option<AutomatonId>,
 }
 
 impl Spot<'_> {
@@ -152,8 +154,7 @@ impl Spot<'_> {
         self.program.channels.get(usize::from(channel.0)).is_some_and(|c| {
             let is_joint = match &c.kind {
                 ChannelKind::Joint(parties) => {
-                    parties.iter().all(|p| usize::from(p.automaton.0) < self.program.automata.len())
-                        && c.params.is_empty()
+                    parties.iter().any(|p| Some(p.automaton) == self.id) && c.params.is_empty()
                 }
                 ChannelKind::HandShake | ChannelKind::Broadcast => false,
             };
@@ -162,7 +163,8 @@ impl Spot<'_> {
     }
 
     fn call_exists(&self, function: usize, args: usize) -> bool {
-        self.program.functions.get(function).is_some_and(|f| f.params.len() == args)
+        let known = |f: &Function| f.params.len() == args && (f.owner.is_none() || f.owner == self.id);
+        self.program.functions.get(function).is_some_and(known)
     }
 
     fn functions_exist(&self, e: &Expr) -> bool {
@@ -191,7 +193,7 @@ impl Spot<'_> {
         let vars = f.params.iter().chain(&f.locals).chain(&f.result);
         vars.into_iter().all(range_has_values)
             && f.locals.iter().all(range_is_sound)
-            && f.body.iter().all(|s| self.statement_exists(s, count))
+            && f.body.iter().all(|s| Spot { id: f.owner, ..*self }.statement_exists(s, count))
     }
 
     fn statement_exists(&self, s: &Statement, count: usize) -> bool {

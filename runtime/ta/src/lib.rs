@@ -54,12 +54,12 @@ mod story;
 mod witness;
 mod zone;
 
-pub use answer::{Answer, Manner, Verdict, answer, answers};
+pub use answer::{Answer, Manner, SHORTEST, Verdict, answer, answers};
 pub use code::Medium;
 pub use error::{EdgeName, Error, ModelError};
 pub use extrapolation::Abstraction;
 pub use extremum::{Extremum, Quantity, RAISES, Reach};
-pub use fastest::fastest;
+pub use fastest::{fastest, shortest};
 pub use federation::Federation;
 pub use network::{Model, Observe, slot_names};
 pub use player::Player;
