@@ -303,9 +303,9 @@ impl Asker<'_> {
         })
     }
 
-    fn hunt<'f>(
+    fn hunt(
         &self,
-        formulas: &[&'f StateFormula],
+        formulas: &[&StateFormula],
         search: impl FnOnce(&mut Hunt<'_, '_, '_>) -> Result<Found, Error>,
     ) -> Result<Hunted, Error> {
         if formulas.iter().any(|f| f.asks_deadlock()) {
