@@ -13,7 +13,7 @@ use crate::{
     Budget, Ending, Error, Exhausted, Extremum, Goal, GoalKind, Model, ModelError, Observe, Options, Outcome,
     StateFormula, Timing, Witness,
     extremum::{Side, extrema},
-    fastest::fastest,
+    fastest::{fastest, shortest},
     graph::{Detail, Graph},
     liveness::{Found, Hunt, Trap},
     plain::Plain,
@@ -21,6 +21,10 @@ use crate::{
     story::seconds,
     witness,
 };
+
+/// Up to so many symbolic states a shortest run is looked for again in a search that forgets none: a search that drives out
+/// states that others cover finds one that is nearly so.
+pub const SHORTEST: usize = 50_000;
 
 /// How questions are answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -233,6 +237,12 @@ impl Asker<'_> {
         {
             return Ok(run);
         }
+        if self.manner.witness == WitnessKind::Shortest && found.steps.len() > 1 {
+            let few = Budget { states: self.manner.budget.states.min(SHORTEST), ..self.manner.budget };
+            if let Some(run) = shortest(self.model, goal, few, timing)? {
+                return Ok(run);
+            }
+        }
         if timing.delays == Delays::Earliest {
             return Ok(found);
         }
@@ -293,9 +303,9 @@ impl Asker<'_> {
         })
     }
 
-    fn hunt<'f>(
+    fn hunt(
         &self,
-        formulas: &[&'f StateFormula],
+        formulas: &[&StateFormula],
         search: impl FnOnce(&mut Hunt<'_, '_, '_>) -> Result<Found, Error>,
     ) -> Result<Hunted, Error> {
         if formulas.iter().any(|f| f.asks_deadlock()) {

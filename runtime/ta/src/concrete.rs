@@ -4,7 +4,7 @@
 //! good reason; and it plays a single automaton in a harness ([`Player`](crate::Player)). What functions mean it takes from
 //! [`hrdsl_ir::exec`], as everybody does.
 
-use std::sync::Arc;
+use std::{ops::ControlFlow, sync::Arc};
 
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
@@ -134,6 +134,14 @@ impl<'p> Machine<'p> {
             Some(zero) => *zero,
             None => self.own_zero[member][at - self.shared_zero.len()],
         }
+    }
+
+    /// Clocks beyond a value become that value.
+    #[cfg(test)]
+    pub(crate) fn cap(&mut self, most: i128) {
+        let least = self.now - most;
+        let all = self.shared_zero.iter_mut().chain(self.own_zero.iter_mut().flatten());
+        all.for_each(|zero| *zero = (*zero).max(least));
     }
 
     /// The values of the network's clocks now, in ticks: the shared ones, then each automaton's.
@@ -474,6 +482,17 @@ impl<'p> Machine<'p> {
     /// # Errors
     /// If the model is at fault.
     pub(crate) fn can_move(&self) -> Result<bool, ModelError> {
+        Ok(self.each_next(&mut |_| ControlFlow::Break(()))?.is_break())
+    }
+
+    /// Shows what each transition that is possible right now leads to, until it breaks off.
+    ///
+    /// # Errors
+    /// If the model is at fault.
+    pub(crate) fn each_next(
+        &self,
+        f: &mut dyn FnMut(Machine<'p>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, ModelError> {
         let mut groups: Vec<Vec<Vec<Move>>> = Vec::new();
         for (automaton, a) in self.members.iter().enumerate() {
             for (edge, e) in a.edges.iter().enumerate().filter(|(_, e)| e.from == self.location[automaton]) {
@@ -483,18 +502,18 @@ impl<'p> Machine<'p> {
                 }
                 for binders in choices(&e.selects) {
                     let m = Move { automaton, edge, binders };
-                    if self.guard(&m)? && self.clock_guard(&m)? {
+                    if starts(&e.sync) && self.guard(&m)? && self.clock_guard(&m)? {
                         self.partners(&m, &mut groups)?;
                     }
                 }
             }
         }
         for group in groups {
-            if self.some_way(&group)? {
-                return Ok(true);
+            if self.each_way(&group, f)?.is_break() {
+                return Ok(ControlFlow::Break(()));
             }
         }
-        Ok(false)
+        Ok(ControlFlow::Continue(()))
     }
 
     /// The transitions that an open edge starts: for each, what each automaton that takes part may do.
@@ -549,12 +568,16 @@ impl<'p> Machine<'p> {
         Ok(all.first().is_some_and(|ways| ways.contains(first)).then_some(all))
     }
 
-    /// Whether one choice of a move for each automaton is a transition.
-    fn some_way(&self, group: &[Vec<Move>]) -> Result<bool, ModelError> {
+    /// Each choice of a move for each automaton.
+    fn each_way(
+        &self,
+        group: &[Vec<Move>],
+        f: &mut dyn FnMut(Machine<'p>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, ModelError> {
         let takes_committed =
             group.iter().any(|ways| self.kind(ways[0].automaton) == LocationKind::Committed);
         if self.any_committed() && !takes_committed {
-            return Ok(false);
+            return Ok(ControlFlow::Continue(()));
         }
         let mut at = vec![0; group.len()];
         loop {
@@ -562,11 +585,11 @@ impl<'p> Machine<'p> {
             for (ways, &i) in group.iter().zip(&at) {
                 next.take(&ways[i])?;
             }
-            if next.broken_invariant()?.is_none() {
-                return Ok(true);
+            if next.broken_invariant()?.is_none() && f(next).is_break() {
+                return Ok(ControlFlow::Break(()));
             }
             let Some(turn) = (0..at.len()).rev().find(|&i| at[i] + 1 < group[i].len()) else {
-                return Ok(false);
+                return Ok(ControlFlow::Continue(()));
             };
             at[turn] += 1;
             at[turn + 1..].fill(0);
@@ -624,6 +647,14 @@ impl<'p> Machine<'p> {
             let at = self.zero_at(member, c.clock) + bound;
             times.extend([at - 1, at, at + 1]);
         }
+    }
+}
+
+/// Whether such an edge can begin a transition.
+fn starts(sync: &Sync) -> bool {
+    match sync {
+        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => true,
+        Sync::Receive { .. } | Sync::Accept { .. } => false,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Fastest witnesses: a run to a goal that ends as early as any.
+//! Fastest witnesses: a run to a goal that ends as early as any; and shortest ones, with as few transitions as any.
 //!
 //! A best-first search of the zone graph with one more clock, which is never set and so tells how much time has passed. The
 //! node with the least time that is possible goes first; no transition makes it less, so the first goal that is taken off is
@@ -25,6 +25,7 @@ type Cost = (i64, bool);
 struct Node {
     state: Rc<[i64]>,
     zone: Dbm,
+    steps: i64,
     parent: Option<(usize, Rc<Taken>)>,
 }
 
@@ -38,6 +39,7 @@ enum Turn {
 struct Race<'g, 'm, 'p> {
     graph: Graph<'m, 'p>,
     goal: &'g Goal,
+    aim: Aim,
     formula: Option<StateFormula>,
     nodes: Vec<Node>,
     of: FxHashMap<Rc<[i64]>, Vec<usize>>,
@@ -60,11 +62,50 @@ pub fn fastest(
         return Err(ModelError::Question(what.into()).into());
     }
     let formula = goal.formula();
+    run(model, goal, formula, Aim::Time, budget, timing)
+}
+
+/// A run that meets the goal with as few transitions as any; `None`: as for [`fastest`].
+///
+/// A breadth-first search that drives states out where others cover them may come upon a longer run first.
+///
+/// # Errors
+/// If the model is at fault, or the engine contradicts itself.
+pub fn shortest(
+    model: &Model,
+    goal: &Goal,
+    budget: Budget,
+    timing: Timing,
+) -> Result<Option<Box<Witness>>, Error> {
+    match goal.what {
+        GoalKind::Pair { .. } | GoalKind::Use { .. } => Ok(None),
+        GoalKind::Edge { .. } | GoalKind::Location { .. } | GoalKind::Condition(_) | GoalKind::Formula(_) => {
+            run(model, goal, goal.formula(), Aim::Steps, budget, timing)
+        }
+    }
+}
+
+/// What is to be little.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Aim {
+    Time,
+    Steps,
+}
+
+fn run(
+    model: &Model,
+    goal: &Goal,
+    formula: Option<StateFormula>,
+    aim: Aim,
+    budget: Budget,
+    timing: Timing,
+) -> Result<Option<Box<Witness>>, Error> {
     let timed: Vec<&StateFormula> = formula.iter().collect();
-    let graph = Graph::new(model, Detail::Reach, &timed, 1)?;
+    let graph = Graph::new(model, Detail::Reach, &timed, usize::from(aim == Aim::Time))?;
     let mut race = Race {
         graph,
         goal,
+        aim,
         formula: formula.clone(),
         nodes: Vec::new(),
         of: FxHashMap::default(),
@@ -73,7 +114,7 @@ pub fn fastest(
     };
     let Some(path) = race.run(budget)? else { return Ok(None) };
     let own = Graph::new(model, Detail::Tell, &[], 0)?;
-    let timing = Timing { prompt: true, ..timing };
+    let timing = Timing { prompt: timing.prompt || aim == Aim::Time, ..timing };
     let stops = takes(path);
     let witness = match formula {
         Some(f) if f.is_timed() => reach_goal(&own, stops, &f, goal, timing)?,
@@ -146,10 +187,11 @@ impl Race<'_, '_, '_> {
             if !covered {
                 known.push(at);
             }
-            let cost = self.cost(&zone);
+            let steps = parent.as_ref().map_or(0, |(p, _)| self.nodes[*p].steps + 1);
+            let cost = self.cost(&zone, steps);
             self.bytes += zone.heap_bytes() + size_of_val(&*state) + size_of::<Node>();
-            let goal = if met { Some(cost) } else { self.goal_cost(&state, &zone)? };
-            self.nodes.push(Node { state: state.clone(), zone, parent: parent.clone() });
+            let goal = if met { Some(cost) } else { self.goal_cost(&state, &zone, steps)? };
+            self.nodes.push(Node { state: state.clone(), zone, steps, parent: parent.clone() });
             if let Some(cost) = goal {
                 self.queue.push(Reverse((cost, Turn::Met(at))));
             }
@@ -160,20 +202,23 @@ impl Race<'_, '_, '_> {
         Ok(())
     }
 
-    /// The least time of a zone.
-    fn cost(&self, zone: &Dbm) -> Cost {
+    /// The least time of a zone, or the transitions so far.
+    fn cost(&self, zone: &Dbm, steps: i64) -> Cost {
+        if self.aim == Aim::Steps {
+            return (steps, false);
+        }
         let b = zone.at(0, self.graph.dim() - 1);
         (-b.value(), b.is_strict())
     }
 
-    fn goal_cost(&self, state: &[i64], zone: &Dbm) -> Result<Option<Cost>, Error> {
+    fn goal_cost(&self, state: &[i64], zone: &Dbm, steps: i64) -> Result<Option<Cost>, Error> {
         let Some(formula) = &self.formula else { return Ok(None) };
         if self.goal.settled && self.graph.model.any_committed(state) {
             return Ok(None);
         }
         let here = self.graph.here(state);
         let parts = formula.part(&here, zone)?;
-        Ok(parts.zones().iter().map(|z| self.cost(z)).min())
+        Ok(parts.zones().iter().map(|z| self.cost(z, steps)).min())
     }
 
     fn path(&self, mut at: usize) -> Vec<Rc<Taken>> {

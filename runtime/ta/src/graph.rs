@@ -50,6 +50,9 @@ impl Stay {
     }
 }
 
+/// A state, what staying there means, and the clocks on entering it.
+pub(crate) type Followed<'a> = (&'a [i64], Stay, Dbm);
+
 /// What a walk keeps of zones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Detail {
@@ -214,7 +217,7 @@ impl<'m, 'p> Graph<'m, 'p> {
         &self,
         action: &'a Action,
         zone: &Dbm,
-    ) -> Result<Option<(&'a [i64], Stay, Dbm)>, ModelError> {
+    ) -> Result<Option<Followed<'a>>, ModelError> {
         let mut zone = zone.clone();
         if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
             return Ok(None);

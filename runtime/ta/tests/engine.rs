@@ -128,8 +128,8 @@ fn a_witness_reads_well() {
     let report = search(&p, &[goal], &[], &[]).unwrap();
     assert_eq!(
         reached(&report.goals[0]).text(&p, &p.networks[0]),
-        "2 s  Decider sends decided(true): Decider think -> think; Tally listen -> brief; Tally.yes 0 -> 1\n\
-         2 s  Tally: Tally brief -> listen\n"
+        "2 s  Decider  decided(true)  stays in think, Tally: listen -> brief   [Tally.yes: 0 -> 1; Decider.x = 0]\n\
+         2 s  Tally                   brief -> listen\n"
     );
 }
 
@@ -298,7 +298,7 @@ fn symbols_are_chosen_sent_received_and_reached() {
     let (normal, fast) = (symbol("normal"), symbol("fast"));
     assert_eq!(w.steps[1].variables, [(0, normal, fast), (1, normal, fast)]);
     let text = w.text(&p, &p.networks[0]);
-    assert!(text.contains("Robot.feed normal -> fast"), "{text}");
+    assert!(text.contains("Robot.feed: normal -> fast"), "{text}");
     assert_eq!(report.goals[1], Outcome::Unreachable);
     let last = reached(&report.goals[2]).steps.last().cloned().unwrap();
     assert_eq!(last.event, Some((halt, vec![symbol("fast")])));

@@ -170,3 +170,71 @@ fn an_automaton_that_is_not_there_is_an_error() {
     assert_eq!(player.next_wake(), None);
     assert!(matches!(player.run(0, &mut Vec::new()), Err(ModelError::Malformed { .. })));
 }
+
+#[test]
+fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
+    use hrdsl_ir::{
+        Expr, Span,
+        ta::{Channel, ChannelId, ChannelKind, ClockId, Party, Sync, Time, TimeTerm, Update},
+    };
+    let mut p = program();
+    p.clocks.push("g".into());
+    let kinds = [
+        ChannelKind::HandShake,
+        ChannelKind::Joint(vec![Party { automaton: AutomatonId(0), optional: true }]),
+        ChannelKind::Broadcast,
+    ];
+    p.channels = kinds
+        .map(|kind| Channel {
+            name: "c".into(),
+            kind,
+            urgent: false,
+            params: Vec::new(),
+            origin: Span::default(),
+        })
+        .into();
+    let done = event(&mut p, "done", &[]);
+    // Clock 0 is the shared one.
+    let mut a = automaton("A", &["x"]);
+    a.vars.push(var("n", 0, 5, 2));
+    let l: Vec<LocationId> = ["a", "b", "c", "d"].map(|name| normal(&mut a, name)).into();
+    let channel = |c: u16, e: common::E, offer: bool| {
+        let mut e = e;
+        let channel = ChannelId(c);
+        e.0.sync = if offer { Sync::Offer { channel, args: Vec::new() } } else { Sync::Join { channel } };
+        e
+    };
+    channel(0, edge(l[0], l[3]), true).to(&mut a);
+    channel(1, edge(l[0], l[3]), false).to(&mut a);
+    let mut offer = channel(2, edge(l[0], l[1]), true).clock(0, ClockOp::Ge, 0);
+    // g >= n * 1 s; then x = g + 1 s.
+    offer.0.clock_guard[0].bound =
+        Time { nanos: 0, terms: vec![TimeTerm { factor: SECOND, value: Expr::Var(0) }] };
+    offer.0.updates.push(Update::Reset {
+        clock: ClockId(1),
+        from: Some(ClockId(0)),
+        to: Time::constant(SECOND),
+    });
+    offer.to(&mut a);
+    edge(l[1], l[2]).clock(1, ClockOp::Ge, 7).send(done).to(&mut a);
+    add(&mut p, a);
+    let mut player = Player::new(&p, AutomatonId(0));
+    assert_eq!(player.next_wake(), Some(2 * SECOND));
+    // x is 3 s at 2 s, so it is 7 s at 6 s.
+    assert_eq!(play(&mut player, 100 * SECOND), [(6 * SECOND, done, vec![])]);
+}
+
+#[test]
+fn an_invariant_over_variables_forbids_an_edge() {
+    let mut p = program();
+    let mut a = automaton("A", &[]);
+    a.vars.push(var("n", 0, 3, 0));
+    let (start, end) = (normal(&mut a, "a"), normal(&mut a, "b"));
+    a.locations[1].holds = Some(bin(BinaryOp::Gt, v(0), n(1)));
+    edge(start, end).set(0, n(1)).to(&mut a);
+    edge(start, end).set(0, n(2)).to(&mut a);
+    add(&mut p, a);
+    let mut player = Player::new(&p, AutomatonId(0));
+    player.run(0, &mut Vec::new()).unwrap();
+    assert_eq!((player.location(), player.variable(0)), (Some(end), Some(Value::Int(2))));
+}

@@ -391,3 +391,62 @@ sequenceDiagram
     assert_eq!(json["scenes"][0]["parts"][1]["to"], "d");
     assert_eq!(json["ending"], "reached");
 }
+
+/// Two shake hands over `go(1)` in an urgent way; a third joins both over `all`.
+fn channels() -> (Program, [LocationId; 2]) {
+    use hrdsl_ir::ta::{AutomatonId, Channel, ChannelId, ChannelKind, Party, ReceiveArg, Sync};
+    let mut p = program();
+    let party = |n| Party { automaton: AutomatonId(n), optional: false };
+    let kinds = [ChannelKind::HandShake, ChannelKind::Joint(vec![party(0), party(1)])];
+    for (name, kind) in ["go", "all"].into_iter().zip(kinds) {
+        let params = if name == "go" { vec![common::var("k", 0, 3, 0)] } else { Vec::new() };
+        let urgent = name == "go";
+        p.channels.push(Channel { name: name.into(), kind, urgent, params, origin: Span::default() });
+    }
+    let mut ids = [LocationId(0); 2];
+    for (i, name) in ["A", "B"].into_iter().enumerate() {
+        let mut m = automaton(name, &["x"]);
+        let (a, b) = (normal(&mut m, "a"), normal(&mut m, "b"));
+        ids = [a, b];
+        let mut shake = edge(a, b).reset(0);
+        let channel = ChannelId(0);
+        shake.0.sync = if i == 0 {
+            Sync::Offer { channel, args: vec![n(1)] }
+        } else {
+            Sync::Accept { channel, args: vec![ReceiveArg::Bind] }
+        };
+        shake.to(&mut m);
+        let mut join = edge(b, a).clock(0, ClockOp::Gt, 2);
+        join.0.sync = Sync::Join { channel: ChannelId(1) };
+        join.to(&mut m);
+        add(&mut p, m);
+    }
+    (p, ids)
+}
+
+#[test]
+fn channels_urge_and_are_told() {
+    let (p, [a, b]) = channels();
+    // Time never passes in a: the hand-shake is possible.
+    let in_a = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 3)]);
+    let fresh = Formula::And(vec![at(0, b), x(0, ClockOp::Gt, 2)]);
+    assert_eq!(ask(&p, Ask::Possibly(Formula::And(vec![at(0, a), not(at(1, a))]))).verdict, Verdict::Fails);
+    assert_eq!(ask(&p, Ask::Eventually(at(0, b))).verdict, Verdict::Holds);
+    assert_eq!(ask(&p, Ask::LeadsTo(at(0, a), at(1, b))).verdict, Verdict::Holds);
+    // The clock keeps what it had when it came back, but no time is added.
+    assert_eq!(ask(&p, Ask::Possibly(in_a)).verdict, Verdict::Holds);
+    let run = ask(&p, Ask::Possibly(fresh)).run.unwrap();
+    assert_eq!((run.steps.len(), run.end), (1, 2 * SECOND + 1));
+    let again = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)]);
+    let run = ask(&p, Ask::Possibly(again)).run.unwrap();
+    let story = hrdsl_ta::Story::of(&p, &p.networks[0], &run);
+    let told = "          0 s  A  go(1)  a -> b, B: a -> b   [A.x = 0; B.x = 0]
+2.000000001 s  A  all    b -> a, B: b -> a
+";
+    assert_eq!(story.text(), told);
+    assert!(story.mermaid().contains("  a0->>a1: go(1)\n"));
+    // Waiting in b for ever is possible: nothing forces the joint channel.
+    let no = ask(&p, Ask::LeadsTo(at(0, b), at(0, a)));
+    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert!(no.why.starts_with("after the first, time can pass for ever in `A.b` and `B.b`"), "{}", no.why);
+}
