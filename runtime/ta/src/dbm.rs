@@ -342,6 +342,9 @@ impl<N: Number> Dbm<N> {
         if self.is_empty() {
             return false;
         }
+        if bounds.iter().all(|&(j, b)| self.entry(j, 0) <= b) {
+            return true;
+        }
         if bounds.iter().any(|&(j, b)| b.plus(self.entry(0, j)) < N::LE_ZERO) {
             self.make_empty();
             return false;

@@ -329,10 +329,14 @@ impl<'m, 'p> Analysis<'m, 'p> {
     fn compare(&mut self, m: usize, location: usize, c: Constraint) {
         // Constants below zero compare with nothing that a clock can be: zero stands for them.
         let at = |a: &Self, clock| a.column(m, clock);
-        if c.j == 0 && let Some(x) = at(self, c.i) {
+        if c.j == 0
+            && let Some(x) = at(self, c.i)
+        {
             let own = &mut self.bounds[m][location][x];
             own.upper = own.upper.max(c.bound.value().max(0));
-        } else if c.i == 0 && let Some(x) = at(self, c.j) {
+        } else if c.i == 0
+            && let Some(x) = at(self, c.j)
+        {
             let own = &mut self.bounds[m][location][x];
             own.lower = own.lower.max((-c.bound.value()).max(0));
         }

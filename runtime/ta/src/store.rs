@@ -6,10 +6,7 @@ use std::hash::Hasher;
 use hashbrown::HashTable;
 use rustc_hash::FxHasher;
 
-use crate::{
-    dbm::Number,
-    network::Model,
-};
+use crate::{dbm::Number, network::Model};
 
 /// No node, no state, no zone.
 pub(crate) const NIL: u32 = u32::MAX;
@@ -157,9 +154,7 @@ impl<N: Number> Store<N> {
         self.words.extend_from_slice(packed);
         self.heads.push(NIL);
         let (w, words) = (self.layout.words, &self.words);
-        self.numbers.insert_unique(hash, n, |&n| {
-            hash_words(&words[n as usize * w..(n as usize + 1) * w])
-        });
+        self.numbers.insert_unique(hash, n, |&n| hash_words(&words[n as usize * w..(n as usize + 1) * w]));
         n
     }
 
@@ -174,9 +169,8 @@ impl<N: Number> Store<N> {
         let place = self.zones.len() as u32;
         self.zones.extend_from_slice(zone);
         let zones = &self.zones;
-        self.places.insert_unique(hash, (place, len), |&(a, l)| {
-            hash_zone(&zones[a as usize..(a + l) as usize])
-        });
+        self.places
+            .insert_unique(hash, (place, len), |&(a, l)| hash_zone(&zones[a as usize..(a + l) as usize]));
         place
     }
 

@@ -111,7 +111,8 @@ fn verdicts_depend_on_nothing() {
         for order in [Order::Breadth, Order::Depth, Order::RandomDepth, Order::Topological] {
             for keep_committed in [false, true] {
                 for subsumption in [Subsumption::Simulation, Subsumption::Inclusion, Subsumption::Equality] {
-                    let options = Options { order, keep_committed, subsumption, seed: 7, ..Options::default() };
+                    let options =
+                        Options { order, keep_committed, subsumption, seed: 7, ..Options::default() };
                     let one = search(&p, &goals, &options);
                     assert_eq!(reached(&one), reached(&reference), "{options:?}");
                     let two = search(&p, &goals, &Options { threads: 2, ..options });
