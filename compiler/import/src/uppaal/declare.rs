@@ -369,13 +369,12 @@ fn limited(dims: &[Range], span: Span) -> Result<(), Fault> {
     }
 }
 
-/// `int a[2][3]` is `(lo..hi)[3][2]`: the dimensions of a type are read from its end.
 pub fn type_text(scalar: &Scalar, dims: &[Range]) -> String {
     if dims.is_empty() {
         return scalar.text.clone();
     }
     let of = if scalar.is_bool { scalar.text.clone() } else { format!("({})", scalar.text) };
-    dims.iter().rev().fold(of, |text, d| format!("{text}[{}]", d.count()))
+    dims.iter().fold(of, |text, d| format!("{text}[{}]", d.count()))
 }
 
 pub fn var_line(name: &str, scalar: &Scalar, dims: &[Range], init: &str) -> String {

@@ -108,6 +108,10 @@ impl Cx<'_> {
         };
         let (a, b) = (a.of_type(of_bools), b.of_type(of_bools));
         let value = a.value.zip(b.value).map(|(a, b)| fold(op, a, b, span)).transpose()?;
+        if value.is_none() && matches!(op, BinaryOp::And | BinaryOp::Or) {
+            let both = [a, b].into_iter();
+            return Ok(if op == BinaryOp::And { all(both) } else { any(both) });
+        }
         let is_bool = level <= Level::Comparison;
         let text = match op {
             BinaryOp::Min | BinaryOp::Max => format!("{sign}({}, {})", a.text, b.text),

@@ -237,7 +237,11 @@ impl Parser {
         }
         self.supported()?;
         // `const N 5;` of the old language has no type.
-        let untyped = constant && matches!((self.peek(), self.ahead(1)), (Tok::Word(_), Tok::Int(_)));
+        let untyped = constant
+            && matches!(
+                (self.peek(), self.ahead(1)),
+                (Tok::Word(_), Tok::Int(_) | Tok::Mark("=" | ":=" | "-"))
+            );
         let base = if untyped { Base::Int(None) } else { self.base()? };
         Ok(Type { constant, urgent, broadcast, base, span: span.to(self.last()) })
     }
