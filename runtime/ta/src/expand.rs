@@ -18,6 +18,9 @@ use crate::{
     zone::{Stepper, Successor},
 };
 
+/// Committed states that one expansion goes through without storing them. Of more, each would be expanded again and again.
+const AT_ONCE: usize = 4;
+
 /// What an expansion may look at.
 pub(crate) struct Context<'a, N> {
     pub store: &'a Store<N>,
@@ -244,13 +247,13 @@ impl<'m, 'p, N: Number> Worker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (m, locals, count) = (&mut self.m, &mut self.locals, &mut self.count);
         let mut fault = None;
-        let before = &current.state.clone();
+        let before = &if visit.c.open.is_empty() { Vec::new() } else { current.state.clone() };
         let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
             let number = *via;
             *via += 1;
             batch.transitions += 1;
             visit.taken(before, &s, number, batch);
-            if visit.keep || !visit.model.any_committed(s.state) {
+            if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
                 if until.is_none()
                     && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
                 {
@@ -616,12 +619,17 @@ impl<N: Number> Visit<'_, '_, '_, N> {
         zone.store(&mut batch.zones);
         if let Some(discrete) = known {
             let flat = &batch.zones[place..];
-            demands(subsumption, frame, zone, &mut m.bounds, flat);
+            // Simulation was looked at before.
+            let looked =
+                subsumption == Subsumption::Simulation && self.model.extrapolation.diagonals.is_none();
+            if !looked {
+                demands(subsumption, frame, zone, &mut m.bounds, flat);
+            }
             let mut at = self.c.store.head(discrete);
             while at != NIL {
                 let node = &self.c.store.nodes[at as usize];
                 let old = self.c.store.zone(node, dim);
-                if subsumes(subsumption, old, &m.bounds) {
+                if !looked && subsumes(subsumption, old, &m.bounds) {
                     batch.zones.truncate(place);
                     batch.covered.truncate(first);
                     return;

@@ -239,7 +239,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: Store::new(Layout::new(model, &matters)),
+            store: Store::new(Layout::new(model.ranges(), &matters)),
             waiting: Waiting::new(model, options.order, options.seed),
             workers: (0..options.threads.max(1)).map(|_| Worker::new(model, options.abstraction)).collect(),
             batches: Vec::new(),
