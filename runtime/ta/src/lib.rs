@@ -67,7 +67,7 @@ pub use fastest::{fastest, shortest};
 pub use federation::Federation;
 pub use network::{Model, Observe, slot_names};
 pub use player::Player;
-pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula};
+pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula, clock_names};
 pub use schedule::{DAWDLE, Timing};
 pub use search::{Exhausted, Options, Order, Outcome, Progress, Report, Subsumption, check, explore};
 pub use semantics::{Binders, Move};

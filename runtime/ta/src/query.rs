@@ -1,7 +1,7 @@
 //! Questions about a network: goals, counters of events, and restrictions of the environment.
 
 use hrdsl_ir::{
-    EventId, EventPattern, Expr, Nanos, Value,
+    EventId, EventPattern, Expr, Nanos, Program, Value,
     expr::{EvalError, Scope},
     ta::{self as ir, ClockConstraint, ClockId, ClockOp, FunctionId, LocationId, Time},
 };
@@ -338,6 +338,15 @@ fn clock_part(c: &ClockConstraint, at: &dyn Symbolic, zone: &Dbm) -> Result<Fede
         }
     }
     Ok(Federation::of(part))
+}
+
+/// The network's clocks by name, in the order in which [`StateFormula::Clock`] numbers them: the shared clocks, then each
+/// automaton's own as `Automaton.clock`.
+#[must_use]
+pub fn clock_names(program: &Program, network: &ir::Network) -> Vec<String> {
+    let members = network.automata.iter().filter_map(|id| program.automata.get(usize::from(id.0)));
+    let own = members.flat_map(|a| a.clocks.iter().map(|c| format!("{}.{c}", a.name)));
+    program.clocks.iter().cloned().chain(own).collect()
 }
 
 /// Whether one of the patterns matches.
