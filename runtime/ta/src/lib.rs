@@ -1,9 +1,10 @@
 //! hrdsl-ta: a model checker for networks of timed automata, and a player of single ones.
 //!
 //! # Steps
-//! 1. [`Model::new`] compiles a [`Network`](hrdsl_ir::ta::Network) with what it [observes](Observe): one discrete vector, one
-//!    set of clocks, constants in their greatest common unit.
-//! 2. [`explore`] searches its zone graph for many [`Goal`]s at once; [`check`] does both steps.
+//! 1. [`Model::new`] compiles a [`Network`](hrdsl_ir::ta::Network) with what [`Observe`] asks for: expressions to trees over
+//!    whole numbers, one discrete vector, one set of clocks, constants in their greatest common unit.
+//! 2. [`explore`] searches its zone graph for many [`Goal`]s at once, as [`Options`] say; [`check`] does both steps, breadth
+//!    first.
 //! 3. Each goal ends as an [`Outcome`]: reached with a [`Witness`], proved unreachable, or open.
 //! 4. A witness gets concrete times (the earliest, the latest or sampled ones) and is replayed by an interpreter of its own
 //!    before it is believed. A [`Story`] tells it to people.
@@ -11,14 +12,20 @@
 //! [`answers`] does all that for queries, and decides those that reachability does not: `A<>`, `E[]`, `-->`, `deadlock`, `sup`
 //! and `inf`. A [`Player`] runs one automaton in virtual time with the same interpreter.
 //!
+//! # Parts of the search
+//! - `compile` makes the `network`; `code` evaluates; `semantics` enumerates what may happen; `zone` makes it symbolic, with
+//!   matrices ([`dbm`]) of the clocks that matter, as narrow as the constants allow; `extrapolation` keeps them finite.
+//! - `expand` makes the successors of one state, `search` goes in rounds over the waiting ones (`order`), `store` keeps what
+//!   is new, `slice` says which variables matter, `goals` looks at what is asked.
+//!
 //! # Semantics
-//! UPPAAL's. A sender of an event, or of a broadcast channel, never waits: each other automaton with an enabled edge for it
-//! takes part, by any one of them. A hand-shake is of two, a joint channel of all its parties (of optional ones if they can).
-//! Guards are evaluated before any update; updates run the sender's first, then those of who takes part, in the network's
-//! order (of a joint channel in the order of its parties). Invariants must hold after the updates, or the transition is not
-//! possible. No time passes while an automaton is in an urgent or committed location, or a transition over an urgent channel
-//! is possible; from a committed location, the next transition must involve an automaton in one. A variable that leaves its
-//! range is a fault of the model, not a guard.
+//! UPPAAL's, and joint channels after TChecker's synchronisation vectors. Guards are evaluated before any update. Who sends
+//! or offers updates first, then the others in the network's order; the parties of a joint channel in its order. A sender of
+//! an event or broadcast never waits: each other automaton with an enabled receiving edge takes part, by any one of them.
+//! Invariants must hold after the updates, or the transition is not possible. No time passes while an automaton is in an
+//! urgent or committed location, or a transition over an urgent channel is possible; from a committed one, the next
+//! transition must involve an automaton in a committed location. A variable that leaves its range is a fault of the model,
+//! not a guard.
 //!
 //! An event is one occurrence: the body of a stimulus is not executed, so a model that speaks of a stimulus's events
 //! sends them itself.

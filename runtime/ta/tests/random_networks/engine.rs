@@ -198,7 +198,7 @@ fn compared(
         }
     }
     if options.threads > 1 {
-        let alone = asked(p, goals, &Options { threads: 1, ..options.clone() });
+        let alone = asked(p, goals, &Options { threads: 1, ..*options });
         if alone.as_ref() != Ok(&report) {
             return Err("one thread gives another report".to_owned());
         }
