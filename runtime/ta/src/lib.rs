@@ -28,6 +28,7 @@ mod error;
 mod expand;
 mod extrapolation;
 mod goals;
+pub mod local;
 mod network;
 mod order;
 mod player;
