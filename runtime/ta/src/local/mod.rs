@@ -50,7 +50,7 @@ mod search;
 mod space;
 mod zone;
 
-use crate::{Budget, Error, Goal, Model, Progress, Report};
+use crate::{Budget, Error, Goal, Model, Order, Progress, Report};
 
 /// Why local time does not serve a network. The standard search does.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -92,6 +92,9 @@ pub enum Failure {
 /// How to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
+    pub order: Order,
+    /// Of an order that draws.
+    pub seed: u64,
     pub budget: Budget,
     /// Shared variables and clocks become processes of their own, so that transitions that use the same do not commute.
     /// Otherwise networks that share any are refused.
@@ -100,7 +103,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), media: true }
+        Self { order: Order::default(), seed: 0, budget: Budget::default(), media: true }
     }
 }
 

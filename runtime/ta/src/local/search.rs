@@ -1,9 +1,6 @@
-//! Breadth-first search of the local zone graph, with subsumption on the synchronised part of zones.
+//! Search of the local zone graph, with subsumption on the synchronised part of zones.
 
-use std::{collections::VecDeque, ops::ControlFlow, rc::Rc};
-
-use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
+use std::{ops::ControlFlow, rc::Rc};
 
 use super::{
     Failure, Options, order,
@@ -14,36 +11,18 @@ use crate::{
     Error, Exhausted, Goal, Model, ModelError, Outcome, Progress, Report, Witness,
     dbm::{Dbm, Number},
     goals::{Goals, Look},
+    order::{Waiting, level, levels},
     semantics::{Firing, Found, Scratch},
     slice,
-    store::Layout,
+    store::{Layout, NIL, Store, hash_words},
     witness,
 };
-
-const ROOT: u32 = u32::MAX;
-
-/// A symbolic state.
-struct Node {
-    discrete: u32,
-    parent: u32,
-    /// Which of the parent's successors it is.
-    number: u32,
-    /// Its zone as far as all processes have one time; `None`: another simulates it.
-    together: Option<Box<[Bound]>>,
-    /// Its zone, until its successors are computed.
-    zone: Option<LocalZone>,
-}
 
 /// A way to a goal: a node, then perhaps one successor more.
 #[derive(Clone, Copy)]
 struct Path {
     node: u32,
     last: Option<u32>,
-}
-
-struct Discrete {
-    packed: Rc<[u64]>,
-    nodes: SmallVec<[u32; 4]>,
 }
 
 struct Search<'m, 'p> {
@@ -53,18 +32,20 @@ struct Search<'m, 'p> {
     hits: Vec<Option<Path>>,
     open: Vec<bool>,
     left: usize,
-    layout: Layout,
-    nodes: Vec<Node>,
-    discrete: Vec<Discrete>,
-    numbers: FxHashMap<Rc<[u64]>, u32>,
-    waiting: VecDeque<u32>,
+    /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
+    store: Store<Bound>,
+    /// By node: its zone, until its successors are computed.
+    zones: Vec<Option<LocalZone>>,
+    waiting: Waiting,
+    levels: Vec<Vec<u32>>,
     packed: Vec<u64>,
     met: Vec<usize>,
+    driven_out: Vec<u32>,
     /// Zones to use again.
     pool: Vec<LocalZone>,
+    /// Of the zones that wait.
     bytes: usize,
     peak: usize,
-    stored: usize,
     visited: usize,
     transitions: usize,
 }
@@ -76,7 +57,7 @@ pub(super) fn explore(
     options: &Options,
     go_on: &dyn Fn(&Progress) -> bool,
 ) -> Result<Report, Failure> {
-    let mut search = Search::new(Space::new(model, options.media)?, goals)?;
+    let mut search = Search::new(Space::new(model, options.media)?, goals, options)?;
     let exhausted = search.run(options, go_on)?;
     let mut outcomes = Vec::new();
     for (goal, hit) in goals.iter().zip(&search.hits) {
@@ -88,19 +69,20 @@ pub(super) fn explore(
     }
     Ok(Report {
         goals: outcomes,
-        states_stored: search.stored,
+        states_stored: search.store.stored,
         states_visited: search.visited,
-        discrete_states: search.discrete.len(),
+        discrete_states: search.store.discrete_states(),
         transitions: search.transitions,
         peak_bytes: search.peak,
-        complete: exhausted.is_none() && search.waiting.is_empty(),
+        complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes),
     })
 }
 
 impl<'m, 'p> Search<'m, 'p> {
-    fn new(space: Space<'m, 'p>, goals: &'m [Goal]) -> Result<Self, Failure> {
-        let compiled = Goals::new(space.model, goals).map_err(Error::from)?;
-        let layout = Layout::new(space.model, &slice::relevant(space.model, &compiled));
+    fn new(space: Space<'m, 'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Failure> {
+        let model = space.model;
+        let compiled = Goals::new(model, goals).map_err(Error::from)?;
+        let layout = Layout::new(model, &slice::relevant(model, &compiled));
         Ok(Self {
             space,
             goals,
@@ -108,17 +90,16 @@ impl<'m, 'p> Search<'m, 'p> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            layout,
-            nodes: Vec::new(),
-            discrete: Vec::new(),
-            numbers: FxHashMap::default(),
-            waiting: VecDeque::new(),
+            store: Store::new(layout),
+            zones: Vec::new(),
+            waiting: Waiting::new(model, options.order, options.seed),
+            levels: levels(model),
             packed: Vec::new(),
             met: Vec::new(),
+            driven_out: Vec::new(),
             pool: Vec::new(),
             bytes: 0,
             peak: 0,
-            stored: 0,
             visited: 0,
             transitions: 0,
         })
@@ -131,41 +112,47 @@ impl<'m, 'p> Search<'m, 'p> {
     ) -> Result<Option<Exhausted>, Failure> {
         let (mut w, mut scratch) = (Work::default(), Scratch::default());
         self.space.start(&mut w)?;
-        self.insert(&mut w, ROOT, 0)?;
-        let mut state = Vec::new();
-        while let Some(id) = self.waiting.pop_front() {
-            let node = &mut self.nodes[id as usize];
-            let Some(zone) = node.zone.take() else { continue };
-            let used_up = if !self.goals.is_empty() && self.left == 0 {
-                None
-            } else if self.nodes.len() >= options.budget.states.min(ROOT as usize) {
-                Some(Exhausted::States)
-            } else if self.bytes >= options.budget.bytes {
-                Some(Exhausted::Memory)
-            } else if self.visited.is_multiple_of(ROUND) && !go_on(&self.progress()) {
-                Some(Exhausted::Stopped)
-            } else {
-                self.layout
-                    .unpack(&self.discrete[self.nodes[id as usize].discrete as usize].packed, &mut state);
+        self.insert(&mut w, NIL, 0)?;
+        let (mut state, mut round, mut ask) = (Vec::new(), Vec::new(), 0);
+        loop {
+            self.waiting.settle(&self.store.nodes);
+            if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes) {
+                return Ok(None);
+            }
+            let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
+            self.peak = self.peak.max(bytes);
+            if self.store.nodes.len() >= options.budget.states || !self.store.has_room(self.space.room()) {
+                return Ok(Some(Exhausted::States));
+            }
+            if bytes >= options.budget.bytes {
+                return Ok(Some(Exhausted::Memory));
+            }
+            if self.visited >= ask {
+                ask = self.visited + ROUND;
+                if !go_on(&self.progress(bytes)) {
+                    return Ok(Some(Exhausted::Stopped));
+                }
+            }
+            self.waiting.take(&self.store.nodes, FEW, &mut round);
+            for &id in &round {
+                // Another of the round may have driven it out.
+                let Some(zone) = self.zones[id as usize].take() else { continue };
+                let node = self.store.nodes[id as usize];
+                self.store.layout.unpack(self.store.packed(node.discrete), &mut state);
                 self.bytes -= zone.heap_bytes();
                 self.visited += 1;
                 self.expand(id, &mut state, &zone, &mut w, &mut scratch)?;
                 self.pool.push(zone);
-                continue;
-            };
-            // So that the report does not claim to be complete.
-            self.waiting.push_front(id);
-            return Ok(used_up);
+            }
         }
-        Ok(None)
     }
 
-    fn progress(&self) -> Progress {
+    fn progress(&self, bytes: usize) -> Progress {
         Progress {
-            stored: self.stored,
+            stored: self.store.stored,
             visited: self.visited,
             waiting: self.waiting.len(),
-            bytes: self.bytes,
+            bytes,
             open: self.left,
         }
     }
@@ -228,64 +215,61 @@ impl<'m, 'p> Search<'m, 'p> {
 
     /// Stores the symbolic state in `w`, unless a stored one simulates it.
     fn insert(&mut self, w: &mut Work, parent: u32, number: u32) -> Result<(), Failure> {
-        self.layout.pack(&w.effect.target, &mut self.packed);
-        let (discrete, new) = match self.numbers.get(self.packed.as_slice()) {
-            Some(&n) => (n, false),
-            None => (self.number(), true),
+        self.store.layout.pack(&w.effect.target, &mut self.packed);
+        let hash = hash_words(&self.packed);
+        let known = self.store.find(hash, &self.packed);
+        let mut lost = false;
+        let discrete = match known {
+            None => self.store.add_discrete(hash, &self.packed),
+            Some(discrete) => {
+                if self.compare(discrete, w) {
+                    return Ok(());
+                }
+                lost = self.drive_out(discrete);
+                discrete
+            }
         };
-        if self.is_covered(discrete, w) {
-            return Ok(());
-        }
-        self.drive_out(discrete, w);
-        // INVARIANT: the budget keeps the number of nodes below the root's mark.
-        let id = self.nodes.len() as u32;
-        self.look(w, new, id)?;
-        let together: Box<[Bound]> = w.together.as_slice().into();
+        let id = self.store.add(parent, number, discrete, &w.together);
+        self.look(w, known.is_none(), id)?;
         let zone = std::mem::replace(&mut w.zone, self.pool.pop().unwrap_or_default());
-        self.bytes += zone.heap_bytes() + size_of_val(&*together) + size_of::<Node>() + size_of::<u32>();
-        self.peak = self.peak.max(self.bytes);
-        self.stored += 1;
-        self.nodes.push(Node { discrete, parent, number, together: Some(together), zone: Some(zone) });
-        self.discrete[discrete as usize].nodes.push(id);
-        self.waiting.push_back(id);
+        self.bytes += zone.heap_bytes();
+        self.zones.push(Some(zone));
+        self.waiting.push(id, lost, level(&self.levels, &w.effect.target));
         Ok(())
     }
 
-    fn is_covered(&self, discrete: u32, w: &Work) -> bool {
-        let simulates = |n: &u32| match &self.nodes[*n as usize].together {
-            Some(old) => zone::is_simulated(&w.together, old, &w.lu),
-            None => false,
-        };
-        self.discrete[discrete as usize].nodes.iter().rev().any(simulates)
-    }
-
-    /// Forgets the states that the new one simulates; those that wait need not be explored.
-    fn drive_out(&mut self, discrete: u32, w: &Work) {
-        let (nodes, pool) = (&mut self.nodes, &mut self.pool);
-        let (bytes, stored) = (&mut self.bytes, &mut self.stored);
-        self.discrete[discrete as usize].nodes.retain(|n| {
-            let old = &mut nodes[*n as usize];
-            let keep = old.together.as_ref().is_some_and(|old| !zone::is_simulated(old, &w.together, &w.lu));
-            if !keep && let Some(gone) = old.together.take() {
-                *stored -= 1;
-                *bytes -= size_of_val(&*gone);
-                if let Some(zone) = old.zone.take() {
-                    *bytes -= zone.heap_bytes();
-                    pool.push(zone);
-                }
+    /// Whether a stored state simulates that in `w`; otherwise those that it simulates are in `driven_out`.
+    fn compare(&mut self, discrete: u32, w: &Work) -> bool {
+        self.driven_out.clear();
+        let mut at = self.store.head(discrete);
+        while at != NIL {
+            let node = &self.store.nodes[at as usize];
+            let old = self.store.zone(node, w.lu.len() + 1);
+            if zone::is_simulated(&w.together, old, &w.lu) {
+                return true;
             }
-            keep
-        });
+            if zone::is_simulated(old, &w.together, &w.lu) {
+                self.driven_out.push(at);
+            }
+            at = node.next;
+        }
+        false
     }
 
-    /// Gives the packed state its number.
-    fn number(&mut self) -> u32 {
-        let n = self.discrete.len() as u32;
-        let packed: Rc<[u64]> = Rc::from(self.packed.as_slice());
-        self.bytes += size_of_val(&*packed) + 2 * size_of::<Discrete>();
-        self.numbers.insert(packed.clone(), n);
-        self.discrete.push(Discrete { packed, nodes: SmallVec::new() });
-        n
+    /// Forgets the states that the new one simulates; those that wait need not be explored. Whether there are any.
+    fn drive_out(&mut self, discrete: u32) -> bool {
+        for &n in &self.driven_out {
+            self.waiting.covered(n);
+            self.store.cover(n);
+            if let Some(zone) = self.zones[n as usize].take() {
+                self.bytes -= zone.heap_bytes();
+                self.pool.push(zone);
+            }
+        }
+        if !self.driven_out.is_empty() {
+            self.store.unlink(discrete);
+        }
+        !self.driven_out.is_empty()
     }
 
     /// Looks at the goals that a state meets: all have one time in it.
@@ -327,10 +311,10 @@ impl<'m, 'p> Search<'m, 'p> {
 
     fn witness(&self, path: &Path, goal: Option<&Goal>) -> Result<Witness, Error> {
         let mut numbers: Vec<u32> = path.last.into_iter().collect();
-        let mut at = path.node;
-        while self.nodes[at as usize].parent != ROOT {
-            numbers.push(self.nodes[at as usize].number);
-            at = self.nodes[at as usize].parent;
+        let mut at = self.store.nodes[path.node as usize];
+        while at.parent != NIL {
+            numbers.push(at.via);
+            at = self.store.nodes[at.parent as usize];
         }
         numbers.reverse();
         let taken = order::by_time(&self.space, &numbers, path.last.is_some())?;
@@ -340,6 +324,8 @@ impl<'m, 'p> Search<'m, 'p> {
 
 /// After how many states the caller is asked whether to go on.
 const ROUND: usize = 1024;
+/// States that are taken at once: orders other than breadth first take a quarter of it.
+const FEW: usize = 4;
 
 /// The synchronised part of a zone as others look at it.
 fn matrix(together: &[Bound], dim: usize) -> Dbm<i64> {

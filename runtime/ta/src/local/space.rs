@@ -73,6 +73,11 @@ impl<'m, 'p> Space<'m, 'p> {
         self.model.clocks()
     }
 
+    /// The most entries that a synchronised zone has.
+    pub(super) fn room(&self) -> usize {
+        self.model.dim * self.model.dim
+    }
+
     /// The start, with the time that passes there.
     pub(super) fn start(&self, w: &mut Work) -> Result<(), Failure> {
         w.effect.target = self.model.initial();
