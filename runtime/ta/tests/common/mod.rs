@@ -4,11 +4,11 @@
 pub mod families;
 
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Span, Type,
-    expr::{BinaryOp, Place},
+    Actor, ActorId, ArgPattern, Event, EventId, Expr, Param, Program, Role, Span, Type, Value,
+    expr::{BinaryOp, Index, Place},
     ta::{
-        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
-        Network, ReceiveArg, Sync, Time, Update, Var,
+        Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
+        Location, LocationId, LocationKind, Network, ReceiveArg, Sync, Time, Update, Var,
     },
     value::SECOND,
 };
@@ -42,6 +42,27 @@ pub fn event(p: &mut Program, name: &str, params: &[Type]) -> EventId {
         origin: Span::default(),
     });
     EventId(p.events.len() as u16 - 1)
+}
+
+/// A channel with integer parameters of these ranges.
+pub fn channel(p: &mut Program, name: &str, kind: ChannelKind, params: &[(i64, i64)]) -> ChannelId {
+    p.channels.push(Channel {
+        name: name.into(),
+        kind,
+        urgent: false,
+        params: params.iter().map(|&(lo, hi)| var("p", lo, hi, lo)).collect(),
+        origin: Span::default(),
+    });
+    ChannelId(p.channels.len() as u16 - 1)
+}
+
+/// An element of an array of `count` variables that begins at `slot`.
+pub fn place(slot: u16, at: Expr, count: i64) -> Place {
+    Place { slot, indices: vec![Index { at, count: count as u16, stride: 1 }] }
+}
+
+pub fn element(slot: u16, at: Expr, count: i64) -> Expr {
+    Expr::Element(Box::new(place(slot, at, count)))
 }
 
 /// An automaton without locations and edges, of one clock for each name.
@@ -133,6 +154,29 @@ impl E {
     }
     pub fn on_args(mut self, event: EventId, args: &[ReceiveArg]) -> Self {
         self.0.sync = Sync::Receive { event, args: args.to_vec() };
+        self
+    }
+    pub fn offer(mut self, channel: ChannelId, args: &[Expr]) -> Self {
+        self.0.sync = Sync::Offer { channel, args: args.to_vec() };
+        self
+    }
+    /// Accepts exactly these arguments.
+    pub fn accept(mut self, channel: ChannelId, args: &[i64]) -> Self {
+        let is = |n: &i64| ReceiveArg::Match(ArgPattern::Is(Value::Int(*n)));
+        self.0.sync = Sync::Accept { channel, args: args.iter().map(is).collect() };
+        self
+    }
+    /// Accepts any argument and binds it.
+    pub fn bind(mut self, channel: ChannelId) -> Self {
+        self.0.sync = Sync::Accept { channel, args: vec![ReceiveArg::Bind] };
+        self
+    }
+    pub fn join(mut self, channel: ChannelId) -> Self {
+        self.0.sync = Sync::Join { channel };
+        self
+    }
+    pub fn put(mut self, place: Place, value: Expr) -> Self {
+        self.0.updates.push(Update::Assign { place, value });
         self
     }
     pub fn set(mut self, slot: u16, value: Expr) -> Self {
