@@ -4,7 +4,8 @@ use hrdsl_ir::{
     Program,
     expr::BinaryOp::{Add, Gt, Le as AtMost, Lt, Rem, Sub},
     ta::{
-        AutomatonId, ChannelKind::{HandShake, Joint},
+        AutomatonId,
+        ChannelKind::{HandShake, Joint},
         ClockOp::{Eq, Ge, Gt as After, Le, Lt as Before},
         LocationKind::{Committed, Normal},
         Party,
@@ -12,7 +13,8 @@ use hrdsl_ir::{
 };
 
 use super::{
-    E, add, and, automaton, bin, channel, clock, edge, element, eq, location, n, normal, place, program, shared, v,
+    E, add, and, automaton, bin, channel, clock, edge, element, eq, location, n, normal, place, program,
+    shared, v,
 };
 
 /// Fischer's mutual exclusion, K = 10.
