@@ -4,9 +4,12 @@ mod common;
 mod local_nets;
 
 use common::families;
-use hrdsl_ir::{Program, ta::LocationId};
+use hrdsl_ir::{
+    Program,
+    ta::{ClockOp, Formula, LocationId},
+};
 use hrdsl_ta::{
-    Goal, GoalKind, Model, Observe, Outcome, Report, StateFormula, explore,
+    Error, Goal, GoalKind, Model, Observe, Outcome, Report, StateFormula, explore,
     local::{self, Failure, NotApplicable, Options},
 };
 use local_nets::{Draft, Member};
@@ -52,13 +55,14 @@ fn families_have_no_more_states_than_with_global_time() {
     }
 }
 
-/// Every location, every edge, every pair of locations of two automata.
+/// Every location, every edge, every pair of locations of two automata, and some values of clocks.
 fn goals(p: &Program) -> Vec<Goal> {
     let mut goals = Vec::new();
     let mut goal = |what| goals.push(Goal { what, settled: false });
     let locations = |a: usize| (0..p.automata[a].locations.len() as u16).map(LocationId);
-    for automaton in 0..p.automata.len() {
-        (0..p.automata[automaton].edges.len()).for_each(|edge| goal(GoalKind::Edge { automaton, edge }));
+    let mut clocks = p.clocks.len() as u16;
+    for (automaton, a) in p.automata.iter().enumerate() {
+        (0..a.edges.len()).for_each(|edge| goal(GoalKind::Edge { automaton, edge }));
         locations(automaton).for_each(|location| goal(GoalKind::Location { automaton, location }));
         for (other, l) in (0..automaton).flat_map(|o| locations(o).map(move |l| (o, l))) {
             for location in locations(automaton) {
@@ -67,16 +71,41 @@ fn goals(p: &Program) -> Vec<Goal> {
                 goal(GoalKind::Condition(StateFormula::And(vec![here, there])));
             }
         }
+        if !a.clocks.is_empty() {
+            formulas(automaton as u16, clocks).into_iter().for_each(|f| goal(GoalKind::Formula(f)));
+        }
+        clocks += a.clocks.len() as u16;
     }
     goals
 }
 
+/// In a location, with a clock between bounds.
+fn formulas(automaton: u16, x: u16) -> Vec<Formula> {
+    let at = |l: u16| Formula::At { automaton, location: LocationId(l) };
+    let clock = |op, n| Formula::Clock(common::clock(x, op, n));
+    let between = |l, a, b| Formula::And(vec![at(l), clock(ClockOp::Ge, a), clock(ClockOp::Lt, b)]);
+    vec![
+        between(0, 2, 3),
+        between(1, 0, 1),
+        Formula::And(vec![at(1), Formula::Not(Box::new(clock(ClockOp::Le, 4)))]),
+    ]
+}
+
 /// Both searches answer all goals alike. Witnesses were replayed before they are here.
 fn agree(p: &Program) {
-    let (model, goals) = (model(p), goals(p));
-    let local = local::explore(&model, &goals, &Options::default(), &|_| true).unwrap();
+    let goals = goals(p);
+    let formula = |g: &Goal| if let GoalKind::Formula(f) = &g.what { Some(f.clone()) } else { None };
+    let formulas = goals.iter().filter_map(formula).collect();
+    let observe = Observe { formulas, ..Observe::default() };
+    let model = Model::new(p, &p.networks[0], &observe).unwrap();
     let plain = hrdsl_ta::Options { reduce: true, ..hrdsl_ta::Options::reference() };
-    let global = explore(&model, &goals, &plain, &|_| true).unwrap();
+    let global = explore(&model, &goals, &plain, &|_| true);
+    let local = local::explore(&model, &goals, &Options::default(), &|_| true);
+    let (local, global) = match (local, global) {
+        (Ok(local), Ok(global)) => (local, global),
+        (Err(Failure::Search(Error::Model { .. })), Err(Error::Model { .. })) => return,
+        (local, global) => panic!("{local:?} with local time, {global:?} with global time"),
+    };
     for ((goal, a), b) in goals.iter().zip(&local.goals).zip(&global.goals) {
         let same = matches!(
             (a, b),
@@ -102,14 +131,23 @@ fn families_have_the_same_answers() {
 }
 
 fn draft() -> impl Strategy<Value = Draft> {
-    let guard = proptest::option::of((0..2u16, 0..5u8, 0..4i64));
+    let clock = || 0..12u16;
+    let guard = proptest::option::of((clock(), 0..5u8, 0..4i64));
+    let copied = prop_oneof![4 => Just(None), 1 => clock().prop_map(Some)];
+    let reset = proptest::option::of((clock(), copied, prop_oneof![4 => Just(0), 1 => 0..3i64]));
     let shared = prop_oneof![
         4 => Just((None, None)),
         1 => (proptest::option::of(0..3i64), proptest::option::of(0..3i64)),
     ];
     let ends = (0..3u16, 0..3u16);
-    (ends, 0..13u8, guard, proptest::option::of(0..2u16), shared)
-        .prop_map(|((from, to), sync, guard, reset, shared)| Draft { from, to, sync, guard, reset, shared })
+    (ends, 0..13u8, guard, reset, shared).prop_map(|((from, to), sync, guard, reset, shared)| Draft {
+        from,
+        to,
+        sync,
+        guard,
+        reset,
+        shared,
+    })
 }
 
 fn member() -> impl Strategy<Value = Member> {

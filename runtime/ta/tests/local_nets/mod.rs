@@ -3,12 +3,13 @@
 use hrdsl_ir::{
     EventId, Program,
     ta::{
-        Automaton, AutomatonId, ChannelId, ChannelKind,
+        Automaton, AutomatonId, ChannelId, ChannelKind, ClockId,
         ClockOp::{self, Ge, Gt, Le, Lt},
         Edge, LocationId,
         LocationKind::{Committed, Normal, Urgent},
-        Party,
+        Party, Time, Update,
     },
+    value::SECOND,
 };
 
 use super::common::{add, automaton, channel, clock, edge, eq, event, location, n, program, shared, v};
@@ -19,8 +20,10 @@ pub struct Draft {
     pub from: u16,
     pub to: u16,
     pub sync: u8,
+    /// Clock, comparison, constant. Clock 0 is the shared one, seldom.
     pub guard: Option<(u16, u8, i64)>,
-    pub reset: Option<u16>,
+    /// Clock, the clock that it becomes, what is added.
+    pub reset: Option<(u16, Option<u16>, i64)>,
     /// Asks the shared variable, then sets it.
     pub shared: (Option<i64>, Option<i64>),
 }
@@ -43,6 +46,7 @@ pub fn random(members: &[Member], optional: [bool; 3]) -> Program {
     let all = channel(&mut p, "all", ChannelKind::Joint(parties.collect()), &[]);
     let tell = event(&mut p, "tell", &[]);
     shared(&mut p, "s", 0, 2, 0);
+    p.clocks.push("g".into());
     for (i, m) in members.iter().enumerate() {
         let names: Vec<String> = (0..m.clocks).map(|c| format!("x{c}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -53,7 +57,7 @@ pub fn random(members: &[Member], optional: [bool; 3]) -> Program {
                 1 => Urgent,
                 2.. => Normal,
             };
-            let bound = bound.filter(|_| m.clocks > 0).map(|(c, k)| clock(c % m.clocks, Le, k));
+            let bound = bound.filter(|_| m.clocks > 0).map(|(c, k)| clock(1 + c % m.clocks, Le, k));
             location(&mut a, &format!("l{l}"), kind, bound.as_slice());
         }
         for draft in &m.edges {
@@ -82,12 +86,15 @@ fn random_edge(
         8 => e.on(tell),
         4 | 9.. => e,
     };
-    if let Some((c, op, k)) = draft.guard.filter(|_| m.clocks > 0) {
+    // The shared clock is 0; own ones follow.
+    let named = |c: u16| if c == 0 || m.clocks == 0 { 0 } else { 1 + c % m.clocks };
+    if let Some((c, op, k)) = draft.guard.filter(|g| g.0 == 0 || m.clocks > 0) {
         let op = [Lt, Le, ClockOp::Eq, Ge, Gt][usize::from(op) % 5];
-        e = e.clock(c % m.clocks, op, k);
+        e = e.clock(named(c), op, k);
     }
-    if let Some(c) = draft.reset.filter(|_| m.clocks > 0) {
-        e = e.reset(c % m.clocks);
+    if let Some((c, from, by)) = draft.reset.filter(|r| r.0 == 0 || m.clocks > 0) {
+        let (clock, from) = (ClockId(named(c)), from.map(|y| ClockId(named(y))));
+        e.0.updates.push(Update::Reset { clock, from, to: Time::constant(by * SECOND) });
     }
     if let Some(k) = draft.shared.0 {
         e = e.when(eq(v(0), n(k)));
