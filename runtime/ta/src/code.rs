@@ -766,7 +766,9 @@ impl Library {
         let hint = if let Ty::Enum(e) = want { Some(e) } else { None };
         match self.typed(names, e, hint) {
             Some((code, ty)) if ty == want => code,
-            Some((code, Ty::Enum(from))) if hint.is_some() && self.total(from, hint) => convert(code, from, hint),
+            Some((code, Ty::Enum(from))) if hint.is_some() && self.total(from, hint) => {
+                convert(code, from, hint)
+            }
             Some(_) | None => {
                 Code::Generic(Box::new(Generic { expr: e.clone(), want, scope: names.clone() }))
             }
@@ -827,13 +829,7 @@ impl Library {
     }
 
     /// Both of one type.
-    fn both(
-        &self,
-        names: &Names,
-        a: &Expr,
-        b: &Expr,
-        hint: Option<Enumeration>,
-    ) -> Option<(Code, Code, Ty)> {
+    fn both(&self, names: &Names, a: &Expr, b: &Expr, hint: Option<Enumeration>) -> Option<(Code, Code, Ty)> {
         let of = |e, hint| self.typed(names, e, hint);
         let kind = |t: Ty| if let Ty::Enum(e) = t { Some(e) } else { None };
         let ((a, x), (b, y)) = match of(a, hint) {
@@ -902,9 +898,11 @@ impl Library {
         let base = names.vars.get(usize::from(place.slot))?.0;
         let index = |i: &Index| Some((self.compile(names, &i.at, Ty::Int), i.count, i.stride));
         let indices = place.indices.iter().map(index).collect::<Option<Vec<_>>>()?;
-        let last: usize = place.indices.iter().map(|i| usize::from(i.count.max(1) - 1) * usize::from(i.stride)).sum();
+        let last: usize =
+            place.indices.iter().map(|i| usize::from(i.count.max(1) - 1) * usize::from(i.stride)).sum();
         names.vars.get(usize::from(place.slot) + last)?;
-        if indices.iter().all(|(at, count, _)| at.constant().is_some_and(|n| n >= 0 && n < i64::from(*count))) {
+        if indices.iter().all(|(at, count, _)| at.constant().is_some_and(|n| n >= 0 && n < i64::from(*count)))
+        {
             let offset: i64 =
                 indices.iter().map(|(at, _, stride)| at.constant().unwrap_or(0) * i64::from(*stride)).sum();
             let base = match base {
@@ -954,9 +952,7 @@ fn fold(code: Code) -> Code {
         Code::Not(a) => a.constant().map(|n| i64::from(n == 0)),
         Code::Neg(a) => a.constant().and_then(i64::checked_neg),
         Code::Abs(a) => a.constant().and_then(i64::checked_abs),
-        Code::Arith(op, ab) => {
-            ab.0.constant().zip(ab.1.constant()).and_then(|(a, b)| op.of(a, b).ok())
-        }
+        Code::Arith(op, ab) => ab.0.constant().zip(ab.1.constant()).and_then(|(a, b)| op.of(a, b).ok()),
         _ => None,
     };
     value.map_or(code, Code::Const)

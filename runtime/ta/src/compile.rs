@@ -1,5 +1,6 @@
 //! From a program's network to a [`Model`]: names become places in the state, patterns become numbers, times become units.
 
+use hrdsl_ir::expr::Place;
 use hrdsl_ir::{
     ArgPattern, EventPattern, Expr, Nanos, Program, Type, Value,
     ta::{
@@ -8,7 +9,6 @@ use hrdsl_ir::{
     },
     value::SECOND,
 };
-use hrdsl_ir::expr::Place;
 
 use crate::{
     ModelError, check,
@@ -34,11 +34,7 @@ struct Compiler<'p> {
 
 type Result<T> = std::result::Result<T, ModelError>;
 
-pub(crate) fn model<'p>(
-    program: &'p Program,
-    network: &'p Network,
-    observe: &Observe,
-) -> Result<Model<'p>> {
+pub(crate) fn model<'p>(program: &'p Program, network: &'p Network, observe: &Observe) -> Result<Model<'p>> {
     let automata: Vec<&Automaton> =
         network.automata.iter().map(|&id| check::automaton(program, id)).collect::<Result<_>>()?;
     if observe.counters.iter().any(|c| c.cap < 0) || observe.limits.iter().any(|l| l.at_most < 0) {
@@ -180,7 +176,11 @@ impl<'p> Compiler<'p> {
     // ── Functions ──
 
     fn functions(&mut self, network: &Network, members: &[Member]) -> Result<()> {
-        let shared: Vec<(At, Ty)> = self.program.shared.iter().enumerate()
+        let shared: Vec<(At, Ty)> = self
+            .program
+            .shared
+            .iter()
+            .enumerate()
             .map(|(i, v)| (At::State((members.len() + i) as u32), Ty::of(v)))
             .collect();
         let mut todo: Vec<(&Function, Names)> = Vec::new();
@@ -214,7 +214,13 @@ impl<'p> Compiler<'p> {
         Ok(())
     }
 
-    fn body(&self, names: &Names, f: &Function, first: usize, body: &[Statement]) -> Option<Box<[Instruction]>> {
+    fn body(
+        &self,
+        names: &Names,
+        f: &Function,
+        first: usize,
+        body: &[Statement],
+    ) -> Option<Box<[Instruction]>> {
         body.iter().map(|s| self.statement(names, f, first, s)).collect()
     }
 
@@ -339,7 +345,9 @@ impl<'p> Compiler<'p> {
         names.vars.extend(binders.iter().enumerate().map(|(i, &ty)| (At::Local(i as u32), ty)));
         let sync = match &edge.sync {
             Sync::Send { event, args } => self.signal(automaton, &names, Medium::Event(*event), args)?,
-            Sync::Offer { channel, args } => self.signal(automaton, &names, Medium::Channel(*channel), args)?,
+            Sync::Offer { channel, args } => {
+                self.signal(automaton, &names, Medium::Channel(*channel), args)?
+            }
             Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => sync,
         };
         let guard = self.clocks(automaton, &names, first, &locals, &edge.clock_guard)?;
@@ -378,7 +386,8 @@ impl<'p> Compiler<'p> {
         let lib = &self.library;
         let mut all = Vec::new();
         let mut note = |i: u32| all.push(i);
-        let times = |t: &Times, note: &mut dyn FnMut(u32)| t.terms.iter().for_each(|t| t.1.each_var(lib, note));
+        let times =
+            |t: &Times, note: &mut dyn FnMut(u32)| t.terms.iter().for_each(|t| t.1.each_var(lib, note));
         arrow.data.iter().for_each(|c| c.each_var(lib, &mut note));
         arrow.guard.moving.iter().for_each(|m| times(&m.time, &mut note));
         if let Part::Out(signal) = &arrow.sync {
@@ -408,7 +417,13 @@ impl<'p> Compiler<'p> {
         (if n < shared { n + 1 } else { first + n - shared }) as u16
     }
 
-    fn times(&self, automaton: &Automaton, names: &Names, locals: &[(i64, i64)], time: &Time) -> Result<Times> {
+    fn times(
+        &self,
+        automaton: &Automaton,
+        names: &Names,
+        locals: &[(i64, i64)],
+        time: &Time,
+    ) -> Result<Times> {
         let far = || ModelError::Constants { automaton: automaton.name.clone() };
         let mut terms = Vec::new();
         let mut units = time.nanos / self.unit;
@@ -501,7 +516,13 @@ impl<'p> Compiler<'p> {
         Pattern { medium, broadcast: self.broadcast(medium), wants, binds }
     }
 
-    fn signal(&mut self, automaton: &Automaton, names: &Names, medium: Medium, args: &[Expr]) -> Result<Part> {
+    fn signal(
+        &mut self,
+        automaton: &Automaton,
+        names: &Names,
+        medium: Medium,
+        args: &[Expr],
+    ) -> Result<Part> {
         let unknown = || malformed(&automaton.name, "an edge sends something unknown");
         let params = self.params(medium).ok_or_else(unknown)?;
         let mut all = Vec::new();
@@ -691,7 +712,9 @@ fn width(members: &[Member], formulas: &Clocks, dim: usize, library: &Library) -
     } else if reach < 1 << 61 {
         Ok(Width::Bits64)
     } else {
-        Err(ModelError::Constants { automaton: members.first().map_or(String::new(), |m| m.automaton.name.clone()) })
+        Err(ModelError::Constants {
+            automaton: members.first().map_or(String::new(), |m| m.automaton.name.clone()),
+        })
     }
 }
 

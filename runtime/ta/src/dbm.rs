@@ -342,6 +342,9 @@ impl<N: Number> Dbm<N> {
         if self.is_empty() {
             return false;
         }
+        if bounds.iter().all(|&(j, b)| self.entry(j, 0) <= b) {
+            return true;
+        }
         if bounds.iter().any(|&(j, b)| b.plus(self.entry(0, j)) < N::LE_ZERO) {
             self.make_empty();
             return false;
@@ -588,6 +591,63 @@ mod tests {
             let mut w = zone(&c);
             w.intersect(&y);
             prop_assert!(y.includes(&w) && x.includes(&w));
+        }
+
+        #[test]
+        fn narrow_entries_do_as_wide_ones(cs in constraints(), x in 1..DIM, above in prop::collection::vec((1..DIM, -2i64..9), 0..4)) {
+            let wide = |z: &Dbm<i64>| (0..DIM).map(|i| (0..DIM).map(|j| z.at(i, j)).collect::<Vec<_>>()).collect::<Vec<_>>();
+            let narrow = |z: &Dbm<i16>| (0..DIM).map(|i| (0..DIM).map(|j| z.at(i, j)).collect::<Vec<_>>()).collect::<Vec<_>>();
+            let (mut a, mut b) = (Dbm::<i64>::universe(DIM), Dbm::<i16>::universe(DIM));
+            for &(i, j, c) in &cs {
+                prop_assert_eq!(a.constrain(i, j, c), b.constrain(i, j, c));
+            }
+            a.reset(x);
+            b.reset(x);
+            a.up();
+            b.up();
+            // All at once is as one after the other.
+            let mut one = a.clone();
+            let each = above.iter().all(|&(j, c)| one.constrain(j, 0, Bound::le(c)));
+            let wides: Vec<(usize, i64)> = above.iter().map(|&(j, c)| (j, i64::of(Bound::le(c)))).collect();
+            let narrows: Vec<(usize, i16)> = above.iter().map(|&(j, c)| (j, i16::of(Bound::le(c)))).collect();
+            let empty = a.is_empty();
+            prop_assert_eq!(a.constrain_above(&wides), each && !empty);
+            prop_assert_eq!(b.constrain_above(&narrows), each && !empty);
+            prop_assert_eq!(a.is_empty(), b.is_empty());
+            if !a.is_empty() {
+                prop_assert_eq!(&one, &a);
+                prop_assert_eq!(wide(&a), narrow(&b));
+                let mut flat = Vec::new();
+                b.store(&mut flat);
+                let mut back = Dbm::<i16>::zero(1);
+                back.load(DIM, &flat);
+                prop_assert_eq!(back, b);
+            }
+        }
+
+        #[test]
+        fn gathering_is_to_set_clocks_and_forget_others(cs in constraints(), from in prop::collection::vec((0u16..DIM as u16, 0i64..3), 1..4), p in point()) {
+            let z = zone(&cs);
+            prop_assume!(!z.is_empty());
+            let from: Vec<(u16, i64)> = std::iter::once((0, 0)).chain(from).collect();
+            let mut after = Dbm::<i64>::zero(1);
+            after.gather(&z, &from);
+            let mut closed = after.clone();
+            prop_assert!(closed.close());
+            prop_assert_eq!(&closed, &after);
+            // What a point becomes is there.
+            if z.contains(&p, 4) {
+                let image: Vec<i64> = from.iter().map(|&(x, by)| p[usize::from(x)] + 4 * by).collect();
+                prop_assert!(after.contains(&image, 4));
+            }
+            // And each bound is the least: that of the clocks it comes from.
+            for (i, &(x, a)) in from.iter().enumerate() {
+                for (j, &(y, b)) in from.iter().enumerate() {
+                    let old = z.at(usize::from(x), usize::from(y));
+                    let new = if old.is_infinite() { old } else { old.plus(Bound::le(a - b)) };
+                    prop_assert_eq!(after.at(i, j), new);
+                }
+            }
         }
     }
 }

@@ -18,6 +18,9 @@ use crate::{
     zone::{Stepper, Successor},
 };
 
+/// Committed states that one expansion goes through without storing them. Of more, each would be expanded again and again.
+const AT_ONCE: usize = 4;
+
 /// What an expansion may look at.
 pub(crate) struct Context<'a, N> {
     pub store: &'a Store<N>,
@@ -244,16 +247,15 @@ impl<'m, 'p, N: Number> Worker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (m, locals, count) = (&mut self.m, &mut self.locals, &mut self.count);
         let mut fault = None;
-        let before = &current.state.clone();
+        let before = &if visit.c.open.is_empty() { Vec::new() } else { current.state.clone() };
         let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
             let number = *via;
             *via += 1;
             batch.transitions += 1;
             visit.taken(before, &s, number, batch);
-            if visit.keep || !visit.model.any_committed(s.state) {
+            if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
                 if until.is_none()
-                    && let Err(error) =
-                        visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
+                    && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
                 {
                     fault = Some(error);
                     return ControlFlow::Break(());
@@ -398,9 +400,11 @@ fn covers<N: Number>(subsumption: Subsumption, frame: &Frame, new: &[N], old: &[
             let rows = new.chunks_exact(dim).zip(old.chunks_exact(dim)).zip(&frame.bounds);
             rows.clone().all(|((new_row, old_row), lu)| {
                 lu.lower == NONE
-                    || new_row.iter().zip(old_row).enumerate().all(|(x, (a, b))| {
-                        a >= b || !breaks(frame, old, x, *a, lu.lower)
-                    })
+                    || new_row
+                        .iter()
+                        .zip(old_row)
+                        .enumerate()
+                        .all(|(x, (a, b))| a >= b || !breaks(frame, old, x, *a, lu.lower))
             })
         }
     }
@@ -564,7 +568,8 @@ impl<N: Number> Visit<'_, '_, '_, N> {
                 return Ok(());
             }
         }
-        let path = Path { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
+        let path =
+            Path { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
         if self.c.open.iter().any(|o| *o) {
             let settled = !self.model.any_committed(state);
             m.met.clear();
@@ -614,12 +619,17 @@ impl<N: Number> Visit<'_, '_, '_, N> {
         zone.store(&mut batch.zones);
         if let Some(discrete) = known {
             let flat = &batch.zones[place..];
-            demands(subsumption, frame, zone, &mut m.bounds, flat);
+            // Simulation was looked at before.
+            let looked =
+                subsumption == Subsumption::Simulation && self.model.extrapolation.diagonals.is_none();
+            if !looked {
+                demands(subsumption, frame, zone, &mut m.bounds, flat);
+            }
             let mut at = self.c.store.head(discrete);
             while at != NIL {
                 let node = &self.c.store.nodes[at as usize];
                 let old = self.c.store.zone(node, dim);
-                if subsumes(subsumption, old, &m.bounds) {
+                if !looked && subsumes(subsumption, old, &m.bounds) {
                     batch.zones.truncate(place);
                     batch.covered.truncate(first);
                     return;

@@ -329,10 +329,14 @@ impl<'m, 'p> Analysis<'m, 'p> {
     fn compare(&mut self, m: usize, location: usize, c: Constraint) {
         // Constants below zero compare with nothing that a clock can be: zero stands for them.
         let at = |a: &Self, clock| a.column(m, clock);
-        if c.j == 0 && let Some(x) = at(self, c.i) {
+        if c.j == 0
+            && let Some(x) = at(self, c.i)
+        {
             let own = &mut self.bounds[m][location][x];
             own.upper = own.upper.max(c.bound.value().max(0));
-        } else if c.i == 0 && let Some(x) = at(self, c.j) {
+        } else if c.i == 0
+            && let Some(x) = at(self, c.j)
+        {
             let own = &mut self.bounds[m][location][x];
             own.lower = own.lower.max((-c.bound.value()).max(0));
         }
@@ -523,5 +527,90 @@ impl Diagonals {
             }
         }
         wide
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::dbm::dominates;
+
+    const DIM: usize = 3;
+
+    fn bound() -> impl Strategy<Value = Bound> {
+        prop_oneof![(-3i64..4).prop_map(Bound::le), (-3i64..4).prop_map(Bound::lt)]
+    }
+
+    fn zone() -> impl Strategy<Value = Dbm<i16>> {
+        prop::collection::vec((0..DIM, 0..DIM, bound()), 0..5).prop_map(|cs| {
+            let mut z = Dbm::universe(DIM);
+            for (i, j, b) in cs {
+                if i != j {
+                    z.constrain(i, j, b);
+                }
+            }
+            z
+        })
+    }
+
+    fn frame() -> impl Strategy<Value = Frame> {
+        let one = || prop_oneof![Just(NONE), 0i64..4];
+        prop::collection::vec((one(), one()), DIM - 1).prop_map(|all| {
+            let own = all.into_iter().map(|(lower, upper)| Lu { lower, upper });
+            let bounds = std::iter::once(Lu { lower: 0, upper: 0 }).chain(own).collect();
+            Frame { clocks: (0..DIM as u16).collect(), bounds }
+        })
+    }
+
+    /// In sixths.
+    fn simulated(frame: &Frame, v: &[i64], by: &[i64]) -> bool {
+        (1..DIM).all(|x| {
+            let above = |n: i64, bound: i64| bound == NONE || n > 6 * bound;
+            let lu = frame.bounds[x];
+            v[x] == by[x]
+                || (by[x] < v[x] && above(by[x], lu.lower))
+                || (v[x] < by[x] && above(v[x], lu.upper))
+        })
+    }
+
+    fn grid(step: usize, most: i64) -> impl Iterator<Item = [i64; DIM]> {
+        let line = move || (0..=6 * most).step_by(step);
+        line().flat_map(move |a| line().map(move |b| [0, a, b]))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(96))]
+
+        /// Clocks in thirds meet all orders of two fractions; sixths lie between them.
+        #[test]
+        fn simulation_is_as_it_is_defined(small in zone(), great in zone(), frame in frame()) {
+            prop_assume!(!small.is_empty() && !great.is_empty());
+            let mut demands = Vec::new();
+            thresholds(&frame, &small, &mut demands);
+            let mut flat = Vec::new();
+            great.store(&mut flat);
+            let targets: Vec<_> = grid(1, 9).filter(|p| great.contains(p, 6)).collect();
+            let defined = grid(2, 6).filter(|p| small.contains(p, 6)).all(|v| {
+                targets.iter().any(|by| simulated(&frame, &v, by))
+            });
+            prop_assert_eq!(dominates(&flat, &demands), defined);
+        }
+
+        #[test]
+        fn extrapolation_keeps_what_it_had_and_is_simulated(z in zone(), frame in frame()) {
+            prop_assume!(!z.is_empty());
+            let mut wide = z.clone();
+            extra_lu(&frame, &mut wide, &mut Vec::new());
+            prop_assert!(wide.includes(&z));
+            let mut closed = wide.clone();
+            prop_assert!(closed.close());
+            prop_assert_eq!(&closed, &wide);
+            let (mut demands, mut flat) = (Vec::new(), Vec::new());
+            thresholds(&frame, &wide, &mut demands);
+            z.store(&mut flat);
+            prop_assert!(dominates(&flat, &demands));
+        }
     }
 }

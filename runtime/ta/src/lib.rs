@@ -40,8 +40,8 @@ mod store;
 mod witness;
 mod zone;
 
-pub use error::{EdgeName, Error, ModelError};
 pub use code::Medium;
+pub use error::{EdgeName, Error, ModelError};
 pub use extrapolation::Abstraction;
 pub use network::{Model, Observe, slot_names};
 pub use player::Player;

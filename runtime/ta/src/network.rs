@@ -354,7 +354,8 @@ impl<'p> Model<'p> {
 
     /// Whether a goal speaks of things that exist and that the counters can tell.
     pub(crate) fn check_goal(&self, goal: &Goal) -> Result<(), ModelError> {
-        let edge = |member: usize, edge: usize| self.members.get(member).is_some_and(|m| edge < m.edges.len());
+        let edge =
+            |member: usize, edge: usize| self.members.get(member).is_some_and(|m| edge < m.edges.len());
         let sound = match &goal.what {
             GoalKind::Edge { automaton, edge: e } => edge(*automaton, *e),
             GoalKind::Pair { automaton, first, second } => {

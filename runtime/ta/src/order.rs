@@ -1,6 +1,9 @@
 //! The waiting states of a search, and which are taken first.
 
-use std::{cmp::Reverse, collections::{BinaryHeap, VecDeque}};
+use std::{
+    cmp::Reverse,
+    collections::{BinaryHeap, VecDeque},
+};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -11,8 +14,14 @@ use crate::{Model, Order, store::Node};
 pub(crate) struct Waiting {
     order: Order,
     queue: VecDeque<u32>,
-    /// Rank, then the earlier in the topological order, then the newer: the greatest goes first.
+    /// Of a rank: that, then the earlier in the topological order, then the newer: the greatest goes first.
     heap: BinaryHeap<(u32, Reverse<u32>, u32)>,
+    /// Without a rank, by place in the topological order.
+    levels: Vec<Vec<u32>>,
+    /// All levels below this are empty.
+    lowest: usize,
+    /// How many are in `levels`.
+    level_count: usize,
     /// The greatest rank given so far.
     rank: u32,
     /// Nodes that were taken, as bits, if the order wants to know.
@@ -30,6 +39,9 @@ impl Waiting {
             order,
             queue: VecDeque::new(),
             heap: BinaryHeap::new(),
+            levels: Vec::new(),
+            lowest: 0,
+            level_count: 0,
             rank: 0,
             taken: Vec::new(),
             fresh: Vec::new(),
@@ -39,11 +51,11 @@ impl Waiting {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.queue.len() + self.heap.len() + self.fresh.len()
+        self.queue.len() + self.heap.len() + self.level_count + self.fresh.len()
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.queue.capacity() * 4 + self.heap.capacity() * 12 + self.taken.len() * 8
+        (self.queue.capacity() + self.level_count) * 4 + self.heap.capacity() * 12 + self.taken.len() * 8
     }
 
     /// Whether nothing waits; states that were driven out are forgotten.
@@ -64,9 +76,46 @@ impl Waiting {
                 while self.heap.peek().is_some_and(|n| gone(n.2)) {
                     self.heap.pop();
                 }
+                if self.heap.is_empty() {
+                    while let Some(node) = self.lowest_level() {
+                        if !gone(node) {
+                            self.put(node);
+                            break;
+                        }
+                    }
+                }
             }
         }
-        self.queue.is_empty() && self.heap.is_empty()
+        self.queue.is_empty() && self.heap.is_empty() && self.level_count == 0
+    }
+
+    /// The newest of the first level that has any.
+    fn lowest_level(&mut self) -> Option<u32> {
+        while let Some(level) = self.levels.get_mut(self.lowest) {
+            if let Some(node) = level.pop() {
+                self.level_count -= 1;
+                return Some(node);
+            }
+            self.lowest += 1;
+        }
+        None
+    }
+
+    /// Gives back what [`lowest_level`](Self::lowest_level) took.
+    fn put(&mut self, node: u32) {
+        if let Some(level) = self.levels.get_mut(self.lowest) {
+            level.push(node);
+            self.level_count += 1;
+        }
+    }
+
+    fn wait_at(&mut self, node: u32, level: usize) {
+        if self.levels.len() <= level {
+            self.levels.resize_with(level + 1, Vec::new);
+        }
+        self.levels[level].push(node);
+        self.level_count += 1;
+        self.lowest = self.lowest.min(level);
     }
 
     /// A state waits. `covers`: it drove out others.
@@ -78,9 +127,10 @@ impl Waiting {
                 let ahead = covers && std::mem::take(&mut self.overtaken);
                 if ahead {
                     self.rank += 1;
+                    self.heap.push((self.rank, Reverse(level), node));
+                } else {
+                    self.wait_at(node, level as usize);
                 }
-                let rank = if ahead { self.rank } else { 0 };
-                self.heap.push((rank, Reverse(level), node));
             }
         }
     }
@@ -121,7 +171,7 @@ impl Waiting {
             let next = match self.order {
                 Order::Breadth => self.queue.pop_front(),
                 Order::Depth | Order::RandomDepth => self.queue.pop_back(),
-                Order::Topological => self.heap.pop().map(|n| n.2),
+                Order::Topological => self.heap.pop().map(|n| n.2).or_else(|| self.lowest_level()),
             };
             let Some(node) = next else { return };
             if nodes[node as usize].covered {

@@ -5,7 +5,11 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the way to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use hrdsl_ir::{Program, Value, expr::EvalError, ta::{LocationId, Network}};
+use hrdsl_ir::{
+    Program, Value,
+    expr::EvalError,
+    ta::{LocationId, Network},
+};
 use rayon::prelude::*;
 
 use crate::{
@@ -221,11 +225,8 @@ const CHUNK: usize = 16;
 impl<'m, 'p, N: Number> Search<'m, 'p, N> {
     fn new(model: &'m Model<'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Error> {
         let compiled = Goals::new(model, goals)?;
-        let matters = if options.reduce {
-            slice::relevant(model, &compiled)
-        } else {
-            vec![true; model.size()]
-        };
+        let matters =
+            if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
         let mut options = *options;
         // With differences of clocks a simulation by bounds of single clocks is none.
         if model.extrapolation.diagonals.is_some() && options.subsumption == Subsumption::Simulation {
@@ -244,7 +245,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: Store::new(Layout::new(model, &matters)),
+            store: Store::new(Layout::new(model.ranges(), &matters)),
             waiting: Waiting::new(model, options.order, options.seed),
             workers: (0..options.threads.max(1)).map(|_| Worker::new(model, options.abstraction)).collect(),
             batches: Vec::new(),
@@ -323,12 +324,8 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
     /// The initial state.
     fn begin(&mut self) -> Result<(), Error> {
         let mut batch = Batch::default();
-        let context = Context {
-            store: &self.store,
-            goals: &self.compiled,
-            open: &self.open,
-            options: &self.options,
-        };
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
         self.workers[0].begin(&context, &mut batch).map_err(Error::from)?;
         self.batches = vec![batch];
         self.merge(&[])?;
@@ -339,12 +336,8 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
     fn expand(&mut self, round: &[u32]) {
         let chunks = round.len().div_ceil(CHUNK);
         self.batches.resize_with(self.batches.len().max(chunks), Batch::default);
-        let context = Context {
-            store: &self.store,
-            goals: &self.compiled,
-            open: &self.open,
-            options: &self.options,
-        };
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
         let work = |worker: &mut Worker<'m, 'p, N>, nodes: &[u32], batch: &mut Batch<N>| {
             batch.clear();
             for &node in nodes {
@@ -421,13 +414,15 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             }
             let packed = batch.packed(item, self.store.layout.words);
             let zone = batch.zone(item);
-            let known = if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
+            let known =
+                if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
             let mut lost = false;
             let discrete = match known {
                 None => self.store.add_discrete(item.hash, packed),
                 Some(d) => {
                     // What was there before the round was looked at already.
-                    let Some(covers) = worker.compare(&self.store, self.options.subsumption, d, first, zone, item.dim)
+                    let Some(covers) =
+                        worker.compare(&self.store, self.options.subsumption, d, first, zone, item.dim)
                     else {
                         continue;
                     };
@@ -471,12 +466,8 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             at = node.parent;
         }
         vias.reverse();
-        let context = Context {
-            store: &self.store,
-            goals: &self.compiled,
-            open: &self.open,
-            options: &self.options,
-        };
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
         let mut taken: Vec<Taken> = Vec::new();
         // A way through committed states that are not stored begins at the initial state itself.
         for (node, via) in vias {
@@ -489,7 +480,9 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
 /// Whether a state meets a goal; of edges and clocks it cannot tell.
 pub(crate) fn goal_holds(goal: &Goal, view: &dyn View) -> Result<bool, EvalError> {
     match &goal.what {
-        GoalKind::Edge { .. } | GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Formula(_) => Ok(false),
+        GoalKind::Edge { .. } | GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Formula(_) => {
+            Ok(false)
+        }
         GoalKind::Location { automaton, location } => {
             StateFormula::At { automaton: *automaton, location: *location }.holds(view)
         }

@@ -60,7 +60,12 @@ pub(crate) struct Firing<'a> {
 pub(crate) enum Found<'a> {
     Firing(Firing<'a>),
     /// Something of the edge has no value, if these constraints hold.
-    Fault { member: u16, edge: u16, fault: Fault, guard: &'a [Constraint] },
+    Fault {
+        member: u16,
+        edge: u16,
+        fault: Fault,
+        guard: &'a [Constraint],
+    },
 }
 
 /// What one automaton may do about something that others do.
@@ -362,14 +367,8 @@ impl<'p> Model<'p> {
             return false;
         }
         // A guard of a broadcast's receiver does not matter, nor does a fault: it is met when the transition is.
-        let mut e = Enumeration {
-            model: self,
-            state,
-            committed: false,
-            may: &Always,
-            found: &mut hurry,
-            s: scratch,
-        };
+        let mut e =
+            Enumeration { model: self, state, committed: false, may: &Always, found: &mut hurry, s: scratch };
         for m in 0..self.members.len() {
             for &edge in &self.place(e.state, m).urgent {
                 if e.active(m, usize::from(edge)).is_break() {
@@ -435,8 +434,11 @@ impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
         if self.committed && !takes.iter().any(|t| model.is_committed(state, usize::from(t.member))) {
             return ControlFlow::Continue(());
         }
-        let (parts, args, guard) =
-            (std::mem::take(&mut self.s.parts), std::mem::take(&mut self.s.args), std::mem::take(&mut self.s.guard));
+        let (parts, args, guard) = (
+            std::mem::take(&mut self.s.parts),
+            std::mem::take(&mut self.s.args),
+            std::mem::take(&mut self.s.guard),
+        );
         let flow = (self.found)(Found::Firing(Firing { parts: &parts, medium, args: &args, guard: &guard }));
         (self.s.parts, self.s.args, self.s.guard) = (parts, args, guard);
         flow

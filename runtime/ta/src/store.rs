@@ -6,10 +6,7 @@ use std::hash::Hasher;
 use hashbrown::HashTable;
 use rustc_hash::FxHasher;
 
-use crate::{
-    dbm::Number,
-    network::Model,
-};
+use crate::dbm::Number;
 
 /// No node, no state, no zone.
 pub(crate) const NIL: u32 = u32::MAX;
@@ -31,9 +28,9 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// Places each number in as few bits as its range needs, none across two words; what does not matter is left out.
-    pub(crate) fn new(model: &Model, matters: &[bool]) -> Self {
+    pub(crate) fn new(ranges: &[(i64, i64)], matters: &[bool]) -> Self {
         let (mut word, mut used, mut fields) = (0, 0, Vec::new());
-        for (&(lo, hi), &matters) in model.ranges().iter().zip(matters) {
+        for (&(lo, hi), &matters) in ranges.iter().zip(matters) {
             let width = if matters { 64 - (hi.wrapping_sub(lo) as u64).leading_zeros() } else { 0 };
             if used + width > 64 {
                 (word, used) = (word + 1, 0);
@@ -157,9 +154,7 @@ impl<N: Number> Store<N> {
         self.words.extend_from_slice(packed);
         self.heads.push(NIL);
         let (w, words) = (self.layout.words, &self.words);
-        self.numbers.insert_unique(hash, n, |&n| {
-            hash_words(&words[n as usize * w..(n as usize + 1) * w])
-        });
+        self.numbers.insert_unique(hash, n, |&n| hash_words(&words[n as usize * w..(n as usize + 1) * w]));
         n
     }
 
@@ -174,9 +169,8 @@ impl<N: Number> Store<N> {
         let place = self.zones.len() as u32;
         self.zones.extend_from_slice(zone);
         let zones = &self.zones;
-        self.places.insert_unique(hash, (place, len), |&(a, l)| {
-            hash_zone(&zones[a as usize..(a + l) as usize])
-        });
+        self.places
+            .insert_unique(hash, (place, len), |&(a, l)| hash_zone(&zones[a as usize..(a + l) as usize]));
         place
     }
 
@@ -219,5 +213,64 @@ impl<N: Number> Store<N> {
             node.covered = true;
             self.stored -= 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn range() -> impl Strategy<Value = (i64, i64)> {
+        prop_oneof![
+            (-5i64..5, 0i64..300).prop_map(|(lo, n)| (lo, lo + n)),
+            Just((0, 0)),
+            Just((i64::MIN, i64::MAX)),
+            (any::<i64>(), any::<i64>()).prop_map(|(a, b)| (a.min(b), a.max(b))),
+        ]
+    }
+
+    /// A range, a number in it, and whether it matters.
+    fn number() -> impl Strategy<Value = ((i64, i64), i64, bool)> {
+        (range(), any::<u64>(), any::<bool>()).prop_map(|((lo, hi), n, matters)| {
+            let size = (hi.wrapping_sub(lo) as u64).wrapping_add(1);
+            let offset = if size == 0 { n } else { n % size };
+            ((lo, hi), lo.wrapping_add(offset as i64), matters)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_matters_comes_back(numbers in prop::collection::vec(number(), 1..20)) {
+            let ranges: Vec<_> = numbers.iter().map(|n| n.0).collect();
+            let state: Vec<_> = numbers.iter().map(|n| n.1).collect();
+            let matters: Vec<_> = numbers.iter().map(|n| n.2).collect();
+            let layout = Layout::new(&ranges, &matters);
+            let (mut packed, mut back) = (Vec::new(), Vec::new());
+            layout.pack(&state, &mut packed);
+            prop_assert_eq!(packed.len(), layout.words);
+            layout.unpack(&packed, &mut back);
+            for (((lo, _), n, matters), b) in numbers.iter().zip(&back) {
+                prop_assert_eq!(if *matters { *n } else { *lo }, *b);
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_loses_what_is_covered() {
+        let mut store = Store::<i16>::new(Layout::new(&[(0, 3)], &[true]));
+        let d = store.add_discrete(hash_words(&[2]), &[2]);
+        let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k])).collect();
+        store.cover(ids[3]);
+        store.cover(ids[1]);
+        store.unlink(d);
+        assert_eq!(store.stored, 2);
+        assert_eq!(store.head(d), ids[2]);
+        assert_eq!(store.nodes[ids[2] as usize].next, ids[0]);
+        assert_eq!(store.nodes[ids[0] as usize].next, NIL);
+        // The same zone is kept once.
+        let again = store.add(NIL, 0, d, &[2]);
+        assert_eq!(store.nodes[again as usize].zone, store.nodes[ids[2] as usize].zone);
     }
 }

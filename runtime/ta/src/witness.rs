@@ -15,9 +15,9 @@ use hrdsl_trace::{Step, Trace, What};
 
 use crate::{
     Error, Goal, GoalKind,
-    concrete::{self, Final},
     code::Medium,
     compile::values,
+    concrete::{self, Final},
     expand::Taken,
     network::{Constraint, Model},
     search::goal_holds,

@@ -30,6 +30,7 @@ pub(crate) struct Stepper<'m, 'p, N> {
     pub model: &'m Model<'p>,
     pub abstraction: Abstraction,
     scratch: Scratch,
+    before: Vec<i64>,
     w: Work<N>,
 }
 
@@ -93,7 +94,7 @@ impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
             beyond: Vec::new(),
             index: Vec::new(),
         };
-        Self { model, abstraction, scratch: Scratch::default(), w }
+        Self { model, abstraction, scratch: Scratch::default(), before: Vec::new(), w }
     }
 
     /// The symbolic state at the start, not extrapolated.
@@ -160,7 +161,9 @@ impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
         let mut index = std::mem::take(&mut self.w.index);
         set_index(&mut index, frame, model.dim);
         // The enumeration holds the state itself.
-        let before = state.to_vec();
+        let mut before = std::mem::take(&mut self.before);
+        before.clear();
+        before.extend_from_slice(state);
         let (w, scratch) = (&mut self.w, &mut self.scratch);
         let mut number = 0;
         let mut fault = None;
@@ -187,6 +190,7 @@ impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
         };
         let _ = model.enumerate(state, &Meets { zone, index: &index }, scratch, &mut found);
         self.w.index = index;
+        self.before = before;
         fault.map_or(Ok(()), Err)
     }
 }
@@ -203,9 +207,13 @@ impl<N: Number> Work<N> {
         found: &Found,
     ) -> Result<bool, ModelError> {
         let (Found::Firing(Firing { guard, .. }) | Found::Fault { guard, .. }) = found;
-        self.guarded.copy_from(zone);
-        if !guard.iter().all(|&c| constrain(&mut self.guarded, index, c)) {
-            return Ok(false);
+        // Without a guard the zone is as it was: no copy is needed.
+        let guarded = !guard.is_empty();
+        if guarded {
+            self.guarded.copy_from(zone);
+            if !guard.iter().all(|&c| constrain(&mut self.guarded, index, c)) {
+                return Ok(false);
+            }
         }
         let firing = match found {
             Found::Firing(firing) => firing,
@@ -218,15 +226,16 @@ impl<N: Number> Work<N> {
         if !effect.map_err(named)? {
             return Ok(false);
         }
+        let source = if guarded { &self.guarded } else { zone };
         for Below { reset, member, edge } in &self.effect.below {
             let x = index[usize::from(reset.from)];
-            if x == GONE || self.guarded.meets(usize::from(x), 0, Bound::lt(-reset.by)) {
+            if x == GONE || source.meets(usize::from(x), 0, Bound::lt(-reset.by)) {
                 let fault = crate::code::Fault::Negative { clock: reset.clock };
                 return Err(named((*member, *edge, fault)));
             }
         }
         model.extrapolation.frame(&self.effect.target, abstraction, &mut self.frame);
-        self.transfer(index);
+        self.transfer(index, if guarded { None } else { Some(zone) });
         if !model.invariant(&mut self.effect.target, &mut self.stack, &mut self.invariant)? {
             return Ok(false);
         }
@@ -234,7 +243,7 @@ impl<N: Number> Work<N> {
     }
 
     /// The zone of the clocks that matter after the transition.
-    fn transfer(&mut self, index: &[u16]) {
+    fn transfer(&mut self, index: &[u16], unguarded: Option<&Dbm<N>>) {
         self.from.clear();
         let mut lost = false;
         for &clock in &self.frame.clocks {
@@ -244,18 +253,18 @@ impl<N: Number> Work<N> {
             self.from.push((index[usize::from(x)], by));
         }
         if lost {
-            return self.transfer_some();
+            return self.transfer_some(unguarded);
         }
-        self.zone.gather(&self.guarded, &self.from);
+        self.zone.gather(unguarded.unwrap_or(&self.guarded), &self.from);
     }
 
     /// As [`transfer`](Self::transfer), where nothing is known of some of the clocks.
-    fn transfer_some(&mut self) {
+    fn transfer_some(&mut self, unguarded: Option<&Dbm<N>>) {
         let unknown: Vec<usize> = (0..self.from.len()).filter(|&i| self.from[i].0 == GONE).collect();
         for &i in &unknown {
             self.from[i] = (0, 0);
         }
-        self.zone.gather(&self.guarded, &self.from);
+        self.zone.gather(unguarded.unwrap_or(&self.guarded), &self.from);
         for &x in &unknown {
             for k in 0..self.zone.dim() {
                 let above = self.zone.entry(k, 0);

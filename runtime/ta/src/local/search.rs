@@ -82,7 +82,7 @@ impl<'m, 'p> Search<'m, 'p> {
     fn new(space: Space<'m, 'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Failure> {
         let model = space.model;
         let compiled = Goals::new(model, goals).map_err(Error::from)?;
-        let layout = Layout::new(model, &slice::relevant(model, &compiled));
+        let layout = Layout::new(model.ranges(), &slice::relevant(model, &compiled));
         Ok(Self {
             space,
             goals,

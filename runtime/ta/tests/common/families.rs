@@ -13,7 +13,7 @@ use hrdsl_ir::{
 };
 
 use super::{
-    E, add, and, automaton, bin, channel, clock, edge, element, eq, location, n, normal, place, program,
+    E, add, automaton, bin, channel, clock, edge, element, eq, event, location, n, normal, place, program,
     shared, v,
 };
 
@@ -255,16 +255,14 @@ pub fn parallel(count: i64) -> Program {
 }
 
 /// A line of work in the manner of models that count time in an integer: a ticking clock, a robot, a person, a belt, a
-/// sensor and a supervisor. Time is a variable of `0..=horizon`, so that there are very many discrete states.
+/// sensor and a supervisor, of 50 locations together. Time is a variable of `0..=horizon`, so that there are very many
+/// discrete states.
 pub fn manufacture(horizon: i64) -> Program {
     let mut p = program();
     let time = shared(&mut p, "time", 0, horizon, 0);
     let parts = shared(&mut p, "parts", 0, 7, 0);
     let ready = shared(&mut p, "ready", 0, 1, 0);
-    let safe = shared(&mut p, "safe", 0, 1, 1);
-    let last = shared(&mut p, "last", 0, horizon, 0);
-    let [request, give, look, stop, resume] =
-        ["request", "give", "look", "stop", "resume"].map(|name| channel(&mut p, name, HandShake, &[]));
+    let [give, look, stop] = ["give", "look", "stop"].map(|name| event(&mut p, name, &[]));
     let mut tick = automaton("Tick", &["x"]);
     let run = location(&mut tick, "run", Normal, &[clock(0, Le, 1)]);
     let over = normal(&mut tick, "over");
@@ -272,30 +270,36 @@ pub fn manufacture(horizon: i64) -> Program {
     beat.set(time, bin(Add, v(time), n(1))).to(&mut tick);
     edge(run, over).clock(0, Ge, 1).when(eq(v(time), n(horizon))).to(&mut tick);
     add(&mut p, tick);
-    let since = |k: i64| bin(Gt, v(time), bin(Add, v(last), n(k)));
-    for (name, places, open, ends) in [
-        ("Robot", 12, give, look),
-        ("Person", 10, request, stop),
-        ("Belt", 9, look, give),
-        ("Sensor", 8, stop, resume),
-        ("Supervisor", 9, resume, request),
-    ] {
+    let every = |k: i64, m: i64| eq(bin(Rem, v(time), n(m)), n(k % m));
+    for (name, places, change, calls) in
+        [("Robot", 12, Add, [(1, give), (3, look)].as_slice()), ("Person", 10, Sub, &[(1, stop)])]
+    {
         let mut a = automaton(name, &[]);
         let at: Vec<_> = (0..places).map(|k| normal(&mut a, &format!("l{k}"))).collect();
-        for k in 0..places as usize {
-            let next = at[(k + 1) % places as usize];
-            let e = edge(at[k], next);
-            let e = match k {
-                1 => e.offer(open, &[]),
-                3 => e.accept(ends, &[]),
-                4 => e.when(since(2)).set(last, v(time)),
-                5 => e.when(eq(v(safe), n(1))).set(ready, bin(Sub, n(1), v(ready))),
-                6 => e.when(bin(Lt, v(parts), n(7))).set(parts, bin(Add, v(parts), n(1))),
-                7 => e.when(bin(Gt, v(parts), n(0))).set(parts, bin(Sub, v(parts), n(1))),
-                _ => e.when(since(k as i64 % 3)),
+        for k in 0..places {
+            let e = edge(at[k as usize], at[((k + 1) % places) as usize]);
+            let e = match (calls.iter().find(|c| c.0 == k), k) {
+                (Some((_, event)), _) => e.send(*event),
+                (None, 5) => e.when(every(k, 2)).set(ready, bin(Sub, n(1), v(ready))),
+                (None, 6) => {
+                    let room = if change == Add { bin(Lt, v(parts), n(7)) } else { bin(Gt, v(parts), n(0)) };
+                    e.when(room).set(parts, bin(change, v(parts), n(1)))
+                }
+                (None, _) => e.when(every(k, 3)),
             };
             e.to(&mut a);
         }
+        add(&mut p, a);
+    }
+    for (name, places, open) in [("Belt", 9, give), ("Sensor", 8, look), ("Supervisor", 9, stop)] {
+        let mut a = automaton(name, &[]);
+        let first = normal(&mut a, "l0");
+        let rest: Vec<_> = (1..places).map(|k| location(&mut a, &format!("l{k}"), Committed, &[])).collect();
+        edge(first, rest[0]).on(open).to(&mut a);
+        for pair in rest.windows(2) {
+            edge(pair[0], pair[1]).to(&mut a);
+        }
+        edge(rest[rest.len() - 1], first).to(&mut a);
         add(&mut p, a);
     }
     p
