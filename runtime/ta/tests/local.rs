@@ -55,12 +55,11 @@ fn families_have_no_more_states_than_with_global_time() {
     }
 }
 
-/// Every location, every edge, every pair of locations of two automata, and some values of clocks.
+/// Every location, every edge, every pair of locations of two automata.
 fn goals(p: &Program) -> Vec<Goal> {
     let mut goals = Vec::new();
     let mut goal = |what| goals.push(Goal { what, settled: false });
     let locations = |a: usize| (0..p.automata[a].locations.len() as u16).map(LocationId);
-    let mut clocks = p.clocks.len() as u16;
     for (automaton, a) in p.automata.iter().enumerate() {
         (0..a.edges.len()).for_each(|edge| goal(GoalKind::Edge { automaton, edge }));
         locations(automaton).for_each(|location| goal(GoalKind::Location { automaton, location }));
@@ -71,33 +70,14 @@ fn goals(p: &Program) -> Vec<Goal> {
                 goal(GoalKind::Condition(StateFormula::And(vec![here, there])));
             }
         }
-        if !a.clocks.is_empty() {
-            formulas(automaton as u16, clocks).into_iter().for_each(|f| goal(GoalKind::Formula(f)));
-        }
-        clocks += a.clocks.len() as u16;
     }
     goals
-}
-
-/// In a location, with a clock between bounds.
-fn formulas(automaton: u16, x: u16) -> Vec<Formula> {
-    let at = |l: u16| Formula::At { automaton, location: LocationId(l) };
-    let clock = |op, n| Formula::Clock(common::clock(x, op, n));
-    let between = |l, a, b| Formula::And(vec![at(l), clock(ClockOp::Ge, a), clock(ClockOp::Lt, b)]);
-    vec![
-        between(0, 2, 3),
-        between(1, 0, 1),
-        Formula::And(vec![at(1), Formula::Not(Box::new(clock(ClockOp::Le, 4)))]),
-    ]
 }
 
 /// Both searches answer all goals alike. Witnesses were replayed before they are here.
 fn agree(p: &Program) {
     let goals = goals(p);
-    let formula = |g: &Goal| if let GoalKind::Formula(f) = &g.what { Some(f.clone()) } else { None };
-    let formulas = goals.iter().filter_map(formula).collect();
-    let observe = Observe { formulas, ..Observe::default() };
-    let model = Model::new(p, &p.networks[0], &observe).unwrap();
+    let model = model(p);
     let plain = hrdsl_ta::Options { reduce: true, ..hrdsl_ta::Options::reference() };
     let global = explore(&model, &goals, &plain, &|_| true);
     let local = local::explore(&model, &goals, &Options::default(), &|_| true);
@@ -228,6 +208,9 @@ fn what_local_time_does_not_serve_is_refused() {
     p.automata[0].edges[0] = edge(a, a).offer(hurry, &[]).0;
     assert_eq!(refusal(&p), "channel `hurry` is urgent");
     p.channels[0].urgent = false;
+    let high = Goal { what: GoalKind::Formula(Formula::Clock(common::clock(0, ClockOp::Ge, 1))), settled: false };
+    let refused = local::explore(&model(&p), &[high], &Options::default(), &|_| true);
+    assert_eq!(refused, Err(Failure::NotApplicable(NotApplicable::ClockGoal)));
     let mut apart = common::clock(0, ClockOp::Le, 3);
     apart.minus = Some(hrdsl_ir::ta::ClockId(1));
     p.automata[1].edges[0].clock_guard.push(apart);

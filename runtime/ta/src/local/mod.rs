@@ -42,6 +42,8 @@
 //! - *Counters and limits* count without regard to order, so that they involve nobody.
 //! - *Urgent channels* forbid time to pass as long as some automata are somewhere: refused.
 //! - *Differences of clocks* in guards or invariants: aLU is not sound with them: refused.
+//! - *Goals over clocks*: refused. Where zones say that they hold, they do; but the order of the witness is found from the
+//!   path alone, and another order of it may be needed to meet them.
 //! - *Faults* of a transition are met if all others can reach its time, then by a run of the network up to that time.
 
 mod access;
@@ -69,6 +71,9 @@ pub enum NotApplicable {
     /// Automata share it, and the options say that no medium may stand for it.
     #[error("automata share `{0}`")]
     Shared(String),
+    /// The order of its witness would have to depend on the clocks at its end.
+    #[error("a goal speaks of clocks")]
+    ClockGoal,
     /// The constants, or the sums of them on some path, are too large for the matrices.
     #[error("the time constants are too far apart")]
     Constants,

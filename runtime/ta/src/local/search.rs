@@ -3,14 +3,13 @@
 use std::{ops::ControlFlow, rc::Rc};
 
 use super::{
-    Failure, Options, order,
+    Failure, NotApplicable, Options, order,
     space::{Meets, Space, Work},
     zone::{self, Bound, LocalZone},
 };
 use crate::{
     Error, Exhausted, Goal, Model, ModelError, Outcome, Progress, Report, Witness,
-    dbm::{Dbm, Number},
-    goals::{Goals, Look},
+    goals::Goals,
     order::{Waiting, level, levels},
     semantics::{Firing, Found, Scratch},
     slice,
@@ -82,6 +81,9 @@ impl<'m, 'p> Search<'m, 'p> {
     fn new(space: Space<'m, 'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Failure> {
         let model = space.model;
         let compiled = Goals::new(model, goals).map_err(Error::from)?;
+        if !compiled.symbolic.is_empty() {
+            return Err(NotApplicable::ClockGoal.into());
+        }
         let layout = Layout::new(model.ranges(), &slice::relevant(model, &compiled));
         Ok(Self {
             space,
@@ -285,11 +287,6 @@ impl<'m, 'p> Search<'m, 'p> {
             let states = self.compiled.states(state, &mut w.stack, model, settled, &self.open, &mut self.met);
             states.map_err(Error::from)?;
         }
-        if !self.compiled.symbolic.is_empty() {
-            let zone = matrix(&w.together, w.frame.dim());
-            let mut look = Look { model, state, stack: &mut w.stack, frame: &w.frame, zone: &zone };
-            self.compiled.zones(&mut look, settled, &self.open, &mut self.met).map_err(Error::from)?;
-        }
         self.hit(Path { node, last: None });
         Ok(())
     }
@@ -326,17 +323,3 @@ impl<'m, 'p> Search<'m, 'p> {
 const ROUND: usize = 1024;
 /// States that are taken at once: orders other than breadth first take a quarter of it.
 const FEW: usize = 4;
-
-/// The synchronised part of a zone as others look at it.
-fn matrix(together: &[Bound], dim: usize) -> Dbm<i64> {
-    let mut flat = Vec::with_capacity(dim * dim);
-    for i in 0..dim {
-        flat.extend((0..dim).map(|j| match together[j * dim + i] {
-            zone::INF => <i64 as Number>::INFINITY,
-            b => i64::from(b),
-        }));
-    }
-    let mut out = Dbm::zero(dim);
-    out.load(dim, &flat);
-    out
-}
