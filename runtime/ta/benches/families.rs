@@ -1,7 +1,7 @@
 //! Exhaustive exploration of the standard families, next to the figures of TChecker (covreach, one core).
 //!
 //! `cargo bench -p hrdsl-ta --bench families -- [NAME] [--threads N] [--reference] [--order breadth|depth|topological]
-//! [--keep]`
+//! [--keep] [--size N]`
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -73,13 +73,14 @@ fn main() {
         Some("topological") => options.order = Order::Topological,
         Some(_) | None => {}
     }
+    let wanted = after("--size").and_then(|n| n.parse::<i64>().ok());
     let only = args.first().filter(|a| !a.starts_with("--"));
     println!(
         "{:<16} {:>4} {:>9} {:>9} {:>9} {:>9} {:>7} {:>8}   TChecker: stored, s, MB",
         "family", "size", "stored", "visited", "discrete", "steps", "CPU s", "MB"
     );
     for (name, size, make, stored, time, memory) in ROWS {
-        if only.is_some_and(|o| !name.starts_with(o.as_str())) {
+        if only.is_some_and(|o| !name.starts_with(o.as_str())) || wanted.is_some_and(|w| w != size) {
             continue;
         }
         let p = make(size);

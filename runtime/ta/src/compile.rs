@@ -42,7 +42,7 @@ pub(crate) fn model<'p>(program: &'p Program, network: &'p Network, observe: &Ob
     }
     let slots: Vec<&Var> = program.shared.iter().chain(automata.iter().flat_map(|a| &a.vars)).collect();
     let library = Library { ranges: ranges(&automata, &slots, observe), ..Library::default() };
-    let unit = unit(program, &automata, &observe.formulas);
+    let unit = unit(&automata, &observe.formulas);
     let mut compiler = Compiler { program, network, unit, library };
     let mut members = compiler.members(network, &automata)?;
     compiler.functions(network, &members)?;
@@ -76,7 +76,6 @@ pub(crate) fn model<'p>(program: &'p Program, network: &'p Network, observe: &Ob
         unit,
         joints: joints(program, network),
         watch,
-        urgent: program.channels.iter().map(|c| c.urgent).collect(),
         extrapolation,
         width: width?,
         pairs: observe.pairs,
@@ -103,14 +102,13 @@ fn ranges(automata: &[&Automaton], slots: &[&Var], observe: &Observe) -> Vec<(i6
 }
 
 /// The greatest common divisor of all constants; a second if there are none.
-fn unit(program: &Program, automata: &[&Automaton], formulas: &[Formula]) -> Nanos {
+fn unit(automata: &[&Automaton], formulas: &[Formula]) -> Nanos {
     fn gcd(mut a: u64, mut b: u64) -> u64 {
         while b != 0 {
             (a, b) = (b, a % b);
         }
         a
     }
-    let _ = program;
     let mut times: Vec<&Time> = Vec::new();
     for a in automata {
         times.extend(a.locations.iter().flat_map(|l| &l.invariant).map(|c| &c.bound));

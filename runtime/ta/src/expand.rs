@@ -458,7 +458,10 @@ impl<N: Number> Visit<'_, '_, '_, N> {
         batch: &mut Batch<N>,
     ) -> Result<(), ModelError> {
         let path = Path { node: self.node, via: Some(via) };
-        self.look(m, s.state, s.frame, s.zone, path, false, batch)?;
+        m.met.clear();
+        self.c.goals.states(s.state, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
+        self.look_at_zone(m, s.state, s.frame, s.zone, false)?;
+        batch.hits.extend(m.met.iter().map(|&goal| Hit { goal, path }));
         self.split(m, s.frame, s.zone);
         let pieces = std::mem::take(&mut m.pieces);
         for piece in &pieces {
@@ -509,24 +512,7 @@ impl<N: Number> Visit<'_, '_, '_, N> {
         }
     }
 
-    /// Looks at the goals that a state meets.
-    fn look(
-        &self,
-        m: &mut Memory<N>,
-        state: &mut [i64],
-        frame: &Frame,
-        zone: &Dbm<N>,
-        path: Path,
-        settled: bool,
-        batch: &mut Batch<N>,
-    ) -> Result<(), ModelError> {
-        m.met.clear();
-        self.c.goals.states(state, &mut m.stack, self.model, settled, self.c.open, &mut m.met)?;
-        self.look_at_zone(m, state, frame, zone, settled)?;
-        batch.hits.extend(m.met.iter().map(|&goal| Hit { goal, path }));
-        Ok(())
-    }
-
+    /// Adds the goals over clocks that a state meets to `m.met`.
     fn look_at_zone(
         &self,
         m: &mut Memory<N>,

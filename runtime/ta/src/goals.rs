@@ -271,8 +271,7 @@ impl<N: Number> Look<'_, '_, N> {
             (Symbolic::Clock(c), _) => self.clock(c, yes, all, zone)?,
             (Symbolic::Not(a), _) => {
                 all.push((a, !yes));
-                let found = self.some(all, zone)?;
-                found
+                self.some(all, zone)?
             }
             (Symbolic::And(parts), true) | (Symbolic::Or(parts), false) => {
                 let before = all.clone();

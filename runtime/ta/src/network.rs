@@ -112,6 +112,7 @@ pub(crate) fn constraints(i: u16, j: u16, op: ClockOp, n: i64, out: &mut dyn FnM
 pub(crate) struct Member<'p> {
     pub automaton: &'p hrdsl_ir::ta::Automaton,
     /// The slot of its first own variable.
+    #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub base: usize,
     /// The number of its first own clock in the network.
     pub first_clock: usize,
@@ -253,6 +254,7 @@ pub struct Model<'p> {
     pub(crate) members: Vec<Member<'p>>,
     pub(crate) slots: Vec<&'p Var>,
     /// How many of the slots are shared.
+    #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub(crate) shared: usize,
     pub(crate) counters: Vec<Counter>,
     pub(crate) limits: Vec<Limit>,
@@ -264,8 +266,6 @@ pub struct Model<'p> {
     pub(crate) joints: Vec<Joint>,
     /// By event.
     pub(crate) watch: Vec<Watch>,
-    /// By channel: whether it is urgent.
-    pub(crate) urgent: Vec<bool>,
     pub(crate) extrapolation: Extrapolation,
     pub(crate) width: Width,
     pub(crate) pairs: bool,

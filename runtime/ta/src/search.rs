@@ -5,11 +5,9 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the way to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use hrdsl_ir::{
-    Program, Value,
-    expr::EvalError,
-    ta::{LocationId, Network},
-};
+use std::sync::{Mutex, PoisonError};
+
+use hrdsl_ir::{Program, expr::EvalError, ta::Network};
 use rayon::prelude::*;
 
 use crate::{
@@ -310,7 +308,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             }
             self.waiting.take(&self.store.nodes, ROUND, &mut round);
             self.expand(&round);
-            if let Some(what) = self.merge(&round)? {
+            if let Some(what) = self.merge()? {
                 return Ok(Some(what));
             }
         }
@@ -328,7 +326,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
         self.workers[0].begin(&context, &mut batch).map_err(Error::from)?;
         self.batches = vec![batch];
-        self.merge(&[])?;
+        self.merge()?;
         Ok(())
     }
 
@@ -351,15 +349,15 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
         }
         match &self.pool {
             Some(pool) if chunks > 1 => {
-                let workers = &mut self.workers;
-                let share = chunks.div_ceil(workers.len());
-                let batches = self.batches[..chunks].par_chunks_mut(share);
-                let nodes = round.par_chunks(share * CHUNK);
+                // Whoever is free takes the next chunk: which worker does it makes no difference.
+                let workers: Vec<Mutex<&mut Worker<'m, 'p, N>>> =
+                    self.workers.iter_mut().map(Mutex::new).collect();
+                let batches = self.batches[..chunks].par_iter_mut().with_max_len(1);
                 pool.install(|| {
-                    workers.par_iter_mut().zip(batches).zip(nodes).for_each(|((worker, batches), nodes)| {
-                        for (batch, nodes) in batches.iter_mut().zip(nodes.chunks(CHUNK)) {
-                            work(worker, nodes, batch);
-                        }
+                    batches.zip(round.par_chunks(CHUNK)).for_each(|(batch, nodes)| {
+                        let me = rayon::current_thread_index().unwrap_or(0) % workers.len();
+                        let mut worker = workers[me].lock().unwrap_or_else(PoisonError::into_inner);
+                        work(&mut worker, nodes, batch);
                     });
                 });
             }
@@ -372,7 +370,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
     }
 
     /// Stores what a round led to, in order.
-    fn merge(&mut self, round: &[u32]) -> Result<Option<Exhausted>, Error> {
+    fn merge(&mut self) -> Result<Option<Exhausted>, Error> {
         self.measure();
         let first = self.store.nodes.len() as u32;
         let mut batches = std::mem::take(&mut self.batches);
@@ -401,7 +399,6 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
         }
         self.batches = batches;
         self.waiting.settle(&self.store.nodes);
-        let _ = round;
         Ok(end)
     }
 
@@ -487,27 +484,5 @@ pub(crate) fn goal_holds(goal: &Goal, view: &dyn View) -> Result<bool, EvalError
             StateFormula::At { automaton: *automaton, location: *location }.holds(view)
         }
         GoalKind::Condition(f) => f.holds(view),
-    }
-}
-
-/// A discrete state of a model, as formulas see it.
-pub(crate) struct StateView<'a, 'p> {
-    pub model: &'a Model<'p>,
-    pub state: &'a [i64],
-}
-
-impl View for StateView<'_, '_> {
-    fn location(&self, automaton: usize) -> Option<LocationId> {
-        self.model.members.get(automaton)?;
-        u16::try_from(self.state[automaton]).ok().map(LocationId)
-    }
-
-    fn slot(&self, slot: u16) -> Option<Value> {
-        let slot = usize::from(slot);
-        if slot < self.model.slots.len() { self.model.slot_value(self.state, slot) } else { None }
-    }
-
-    fn counter(&self, counter: usize) -> i64 {
-        self.state[self.model.counter_at(counter)]
     }
 }

@@ -109,7 +109,6 @@ pub(crate) struct Scratch {
     parts: Vec<Take>,
     args: Vec<i64>,
     guard: Vec<Constraint>,
-    written: Vec<u32>,
 }
 
 /// All combinations of the selects' values, the first select slowest.

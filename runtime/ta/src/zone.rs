@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use crate::{
     ModelError,
     dbm::{Bound, Dbm, Number},
-    extrapolation::{Abstraction, Frame, extra_lu},
+    extrapolation::{Abstraction, Frame},
     network::{Constraint, Model},
     semantics::{Below, Effect, Firing, Found, May, Reset, Scratch},
 };
@@ -44,7 +44,6 @@ struct Work<N> {
     invariant: Vec<Constraint>,
     above: Vec<(usize, N)>,
     from: Vec<(u16, i64)>,
-    beyond: Vec<bool>,
     /// The index in the zone before the transition, by clock of the network.
     index: Vec<u16>,
 }
@@ -91,7 +90,6 @@ impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
             invariant: Vec::new(),
             above: Vec::new(),
             from: Vec::new(),
-            beyond: Vec::new(),
             index: Vec::new(),
         };
         Self { model, abstraction, scratch: Scratch::default(), before: Vec::new(), w }
@@ -124,23 +122,6 @@ impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
     /// The clocks that matter in a state, with their bounds.
     pub(crate) fn frame(&self, state: &[i64], out: &mut Frame) {
         self.model.extrapolation.frame(state, self.abstraction, out);
-    }
-
-    /// Extrapolates a zone of a discrete state with this frame. Not with constraints on differences of clocks: see
-    /// [`pieces`](Self::pieces).
-    pub(crate) fn extrapolate(&mut self, frame: &Frame, zone: &mut Dbm<N>) {
-        extra_lu(frame, zone, &mut self.w.beyond);
-    }
-
-    /// Extrapolates a zone into one piece or, with constraints on differences of clocks, several.
-    pub(crate) fn pieces(&mut self, frame: &Frame, zone: &mut Dbm<N>, out: &mut dyn FnMut(&Dbm<N>)) {
-        match &self.model.extrapolation.diagonals {
-            None => {
-                extra_lu(frame, zone, &mut self.w.beyond);
-                out(zone);
-            }
-            Some(d) => d.apply(zone, out),
-        }
     }
 
     /// Calls `f` with each symbolic successor, in order, until it breaks off.
