@@ -49,6 +49,7 @@ pub mod federation;
 mod goals;
 mod graph;
 mod liveness;
+pub mod local;
 mod network;
 mod order;
 mod plain;

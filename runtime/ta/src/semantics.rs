@@ -341,7 +341,7 @@ impl<'p> Model<'p> {
         Ok(true)
     }
 
-    fn invariant_fault(&self, member: usize, location: usize, fault: Fault) -> ModelError {
+    pub(crate) fn invariant_fault(&self, member: usize, location: usize, fault: Fault) -> ModelError {
         let a = self.members[member].automaton;
         let error = match fault {
             Fault::Eval(error) => error,

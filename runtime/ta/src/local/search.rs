@@ -1,0 +1,325 @@
+//! Search of the local zone graph, with subsumption on the synchronised part of zones.
+
+use std::{ops::ControlFlow, rc::Rc};
+
+use super::{
+    Failure, NotApplicable, Options, order,
+    space::{Meets, Space, Work},
+    zone::{self, Bound, LocalZone},
+};
+use crate::{
+    Error, Exhausted, Goal, Model, ModelError, Outcome, Progress, Report, Witness,
+    goals::Goals,
+    order::{Waiting, level, levels},
+    semantics::{Firing, Found, Scratch},
+    slice,
+    store::{Layout, NIL, Store, hash_words},
+    witness,
+};
+
+/// A way to a goal: a node, then perhaps one successor more.
+#[derive(Clone, Copy)]
+struct Path {
+    node: u32,
+    last: Option<u32>,
+}
+
+struct Search<'m, 'p> {
+    space: Space<'m, 'p>,
+    goals: &'m [Goal],
+    compiled: Goals,
+    hits: Vec<Option<Path>>,
+    open: Vec<bool>,
+    left: usize,
+    /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
+    store: Store<Bound>,
+    /// By node: its zone, until its successors are computed.
+    zones: Vec<Option<LocalZone>>,
+    waiting: Waiting,
+    levels: Vec<Vec<u32>>,
+    packed: Vec<u64>,
+    met: Vec<usize>,
+    driven_out: Vec<u32>,
+    /// Zones to use again.
+    pool: Vec<LocalZone>,
+    /// Of the zones that wait.
+    bytes: usize,
+    peak: usize,
+    visited: usize,
+    transitions: usize,
+}
+
+/// Searches a network that local time serves.
+pub(super) fn explore(
+    model: &Model,
+    goals: &[Goal],
+    options: &Options,
+    go_on: &dyn Fn(&Progress) -> bool,
+) -> Result<Report, Failure> {
+    let mut search = Search::new(Space::new(model, options.media)?, goals, options)?;
+    let exhausted = search.run(options, go_on)?;
+    let mut outcomes = Vec::new();
+    for (goal, hit) in goals.iter().zip(&search.hits) {
+        outcomes.push(match (hit, exhausted) {
+            (Some(path), _) => Outcome::Reached(Box::new(search.witness(path, Some(goal))?)),
+            (None, Some(what)) => Outcome::Open(what),
+            (None, None) => Outcome::Unreachable,
+        });
+    }
+    Ok(Report {
+        goals: outcomes,
+        states_stored: search.store.stored,
+        states_visited: search.visited,
+        discrete_states: search.store.discrete_states(),
+        transitions: search.transitions,
+        peak_bytes: search.peak,
+        complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes),
+    })
+}
+
+impl<'m, 'p> Search<'m, 'p> {
+    fn new(space: Space<'m, 'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Failure> {
+        let model = space.model;
+        let compiled = Goals::new(model, goals).map_err(Error::from)?;
+        if !compiled.symbolic.is_empty() {
+            return Err(NotApplicable::ClockGoal.into());
+        }
+        let layout = Layout::new(model.ranges(), &slice::relevant(model, &compiled));
+        Ok(Self {
+            space,
+            goals,
+            compiled,
+            hits: vec![None; goals.len()],
+            open: vec![true; goals.len()],
+            left: goals.len(),
+            store: Store::new(layout),
+            zones: Vec::new(),
+            waiting: Waiting::new(model, options.order, options.seed),
+            levels: levels(model),
+            packed: Vec::new(),
+            met: Vec::new(),
+            driven_out: Vec::new(),
+            pool: Vec::new(),
+            bytes: 0,
+            peak: 0,
+            visited: 0,
+            transitions: 0,
+        })
+    }
+
+    fn run(
+        &mut self,
+        options: &Options,
+        go_on: &dyn Fn(&Progress) -> bool,
+    ) -> Result<Option<Exhausted>, Failure> {
+        let (mut w, mut scratch) = (Work::default(), Scratch::default());
+        self.space.start(&mut w)?;
+        self.insert(&mut w, NIL, 0)?;
+        let (mut state, mut round, mut ask) = (Vec::new(), Vec::new(), 0);
+        loop {
+            self.waiting.settle(&self.store.nodes);
+            if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes) {
+                return Ok(None);
+            }
+            let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
+            self.peak = self.peak.max(bytes);
+            if self.store.nodes.len() >= options.budget.states || !self.store.has_room(self.space.room()) {
+                return Ok(Some(Exhausted::States));
+            }
+            if bytes >= options.budget.bytes {
+                return Ok(Some(Exhausted::Memory));
+            }
+            if self.visited >= ask {
+                ask = self.visited + ROUND;
+                if !go_on(&self.progress(bytes)) {
+                    return Ok(Some(Exhausted::Stopped));
+                }
+            }
+            self.waiting.take(&self.store.nodes, FEW, &mut round);
+            for &id in &round {
+                // Another of the round may have driven it out.
+                let Some(zone) = self.zones[id as usize].take() else { continue };
+                let node = self.store.nodes[id as usize];
+                self.store.layout.unpack(self.store.packed(node.discrete), &mut state);
+                self.bytes -= zone.heap_bytes();
+                self.visited += 1;
+                self.expand(id, &mut state, &zone, &mut w, &mut scratch)?;
+                self.pool.push(zone);
+            }
+        }
+    }
+
+    fn progress(&self, bytes: usize) -> Progress {
+        Progress {
+            stored: self.store.stored,
+            visited: self.visited,
+            waiting: self.waiting.len(),
+            bytes,
+            open: self.left,
+        }
+    }
+
+    fn expand(
+        &mut self,
+        id: u32,
+        state: &mut [i64],
+        zone: &LocalZone,
+        w: &mut Work,
+        scratch: &mut Scratch,
+    ) -> Result<(), Failure> {
+        let (before, model) = (state.to_vec(), self.space.model);
+        let processes = Rc::clone(&self.space.processes);
+        let may = Meets { zone, processes: &processes };
+        let (mut number, mut end) = (0, Ok(()));
+        let _ = model.enumerate(state, &may, scratch, &mut |found| {
+            let next = self.space.found(w, &before, zone, &found);
+            let done = match (next, &found) {
+                (Ok(true), Found::Firing(firing)) => {
+                    number += 1;
+                    self.transitions += 1;
+                    self.taken(&before, firing, (id, number - 1));
+                    self.insert(w, id, number - 1)
+                }
+                (Ok(_), _) => Ok(()),
+                (Err(failure), _) => Err(self.led_to(id, failure)),
+            };
+            end = done;
+            if end.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        end
+    }
+
+    /// Looks at the goals that a transition meets.
+    fn taken(&mut self, before: &[i64], firing: &Firing, (node, number): (u32, u32)) {
+        if self.left == 0 {
+            return;
+        }
+        let model = self.space.model;
+        self.met.clear();
+        for part in firing.parts {
+            let m = usize::from(part.member);
+            let edge = model.members[m].edges[usize::from(part.edge)].number;
+            let last = model.pairs.then(|| model.last_edge_at(m));
+            self.compiled.taken(edge, before, last, &mut |goal| self.met.push(goal));
+        }
+        self.hit(Path { node, last: Some(number) });
+    }
+
+    /// The goals that were met are so by this path, unless they were met before.
+    fn hit(&mut self, path: Path) {
+        for &goal in &self.met {
+            if std::mem::replace(&mut self.open[goal], false) {
+                self.hits[goal] = Some(path);
+                self.left -= 1;
+            }
+        }
+    }
+
+    /// Stores the symbolic state in `w`, unless a stored one simulates it.
+    fn insert(&mut self, w: &mut Work, parent: u32, number: u32) -> Result<(), Failure> {
+        self.store.layout.pack(&w.effect.target, &mut self.packed);
+        let hash = hash_words(&self.packed);
+        let known = self.store.find(hash, &self.packed);
+        let mut lost = false;
+        let discrete = match known {
+            None => self.store.add_discrete(hash, &self.packed),
+            Some(discrete) => {
+                if self.compare(discrete, w) {
+                    return Ok(());
+                }
+                lost = self.drive_out(discrete);
+                discrete
+            }
+        };
+        let id = self.store.add(parent, number, discrete, &w.together);
+        self.look(w, known.is_none(), id)?;
+        let zone = std::mem::replace(&mut w.zone, self.pool.pop().unwrap_or_default());
+        self.bytes += zone.heap_bytes();
+        self.zones.push(Some(zone));
+        self.waiting.push(id, lost, level(&self.levels, &w.effect.target));
+        Ok(())
+    }
+
+    /// Whether a stored state simulates that in `w`; otherwise those that it simulates are in `driven_out`.
+    fn compare(&mut self, discrete: u32, w: &Work) -> bool {
+        self.driven_out.clear();
+        let mut at = self.store.head(discrete);
+        while at != NIL {
+            let node = &self.store.nodes[at as usize];
+            let old = self.store.zone(node, w.lu.len() + 1);
+            if zone::is_simulated(&w.together, old, &w.lu) {
+                return true;
+            }
+            if zone::is_simulated(old, &w.together, &w.lu) {
+                self.driven_out.push(at);
+            }
+            at = node.next;
+        }
+        false
+    }
+
+    /// Forgets the states that the new one simulates; those that wait need not be explored. Whether there are any.
+    fn drive_out(&mut self, discrete: u32) -> bool {
+        for &n in &self.driven_out {
+            self.waiting.covered(n);
+            self.store.cover(n);
+            if let Some(zone) = self.zones[n as usize].take() {
+                self.bytes -= zone.heap_bytes();
+                self.pool.push(zone);
+            }
+        }
+        if !self.driven_out.is_empty() {
+            self.store.unlink(discrete);
+        }
+        !self.driven_out.is_empty()
+    }
+
+    /// Looks at the goals that a state meets: all have one time in it.
+    fn look(&mut self, w: &mut Work, new: bool, node: u32) -> Result<(), Failure> {
+        if self.left == 0 {
+            return Ok(());
+        }
+        self.met.clear();
+        let model = self.space.model;
+        let settled = !model.any_committed(&w.effect.target);
+        let state = &mut w.effect.target;
+        if new {
+            let states = self.compiled.states(state, &mut w.stack, model, settled, &self.open, &mut self.met);
+            states.map_err(Error::from)?;
+        }
+        self.hit(Path { node, last: None });
+        Ok(())
+    }
+
+    /// A fault of the model with the way to it.
+    fn led_to(&self, id: u32, failure: Failure) -> Failure {
+        match failure {
+            Failure::Search(Error::Model { error, witness: None }) => match self.faulty(id, error) {
+                Ok(error) | Err(error) => error.into(),
+            },
+            other => other,
+        }
+    }
+
+    fn faulty(&self, id: u32, error: ModelError) -> Result<Error, Error> {
+        let witness = self.witness(&Path { node: id, last: None }, None)?;
+        Ok(Error::Model { error, witness: Some(Box::new(witness)) })
+    }
+
+    fn witness(&self, path: &Path, goal: Option<&Goal>) -> Result<Witness, Error> {
+        let mut numbers: Vec<u32> = path.last.into_iter().collect();
+        let mut at = self.store.nodes[path.node as usize];
+        while at.parent != NIL {
+            numbers.push(at.via);
+            at = self.store.nodes[at.parent as usize];
+        }
+        numbers.reverse();
+        let taken = order::by_time(&self.space, &numbers, path.last.is_some())?;
+        witness::build(self.space.model, taken, goal, crate::Timing::default())
+    }
+}
+
+/// After how many states the caller is asked whether to go on.
+const ROUND: usize = 1024;
+/// States that are taken at once: orders other than breadth first take a quarter of it.
+const FEW: usize = 4;

@@ -1,0 +1,293 @@
+//! A network's transitions as local zones see them.
+
+use std::rc::Rc;
+
+use hrdsl_ir::ta::LocationKind;
+
+use super::{
+    Failure, NotApplicable,
+    access::Processes,
+    zone::{self, Bound, ClockBound, LocalZone, Lu, Meeting, Set, TooLarge},
+};
+use crate::{
+    Abstraction, Error, Model, ModelError,
+    code::{Env, Fault},
+    extrapolation::{Frame, NONE},
+    network::Constraint,
+    semantics::{Effect, Firing, Found, May},
+};
+
+/// A network made ready for local time.
+pub(super) struct Space<'m, 'p> {
+    pub model: &'m Model<'p>,
+    pub processes: Rc<Processes>,
+    /// All of them.
+    everybody: Vec<u16>,
+}
+
+/// The last transition that was looked at, and where it leads; used again and again.
+#[derive(Default)]
+pub(super) struct Work {
+    pub effect: Effect,
+    /// The processes that have one time in it, in order.
+    pub who: Vec<u16>,
+    /// Its guard, and the invariants that those who move enter, as bounds before it.
+    pub bounds: Vec<ClockBound>,
+    pub sets: Vec<Set>,
+    pub zone: LocalZone,
+    /// The zone as far as all processes have one time, of the clocks that matter.
+    pub together: Vec<Bound>,
+    pub frame: Frame,
+    /// The clocks of the frame, counted from 0, without the reference, and their bounds.
+    pub clocks: Vec<u16>,
+    pub lu: Vec<Lu>,
+    pub stack: Vec<i64>,
+    meeting: Meeting,
+    invariant: Vec<Constraint>,
+    passing: Vec<ClockBound>,
+}
+
+/// Whether single bounds on clocks meet a zone.
+pub(super) struct Meets<'a> {
+    pub zone: &'a LocalZone,
+    pub processes: &'a Processes,
+}
+
+impl May for Meets<'_> {
+    fn may(&self, c: Constraint) -> bool {
+        match (clock_bound(&c), self.processes.owner(c.i.max(c.j))) {
+            (Ok(b), Some(owner)) if c.i == 0 || c.j == 0 => self.zone.meets(b, owner),
+            _ => true,
+        }
+    }
+}
+
+impl<'m, 'p> Space<'m, 'p> {
+    pub(super) fn new(model: &'m Model<'p>, media: bool) -> Result<Self, NotApplicable> {
+        let processes = Rc::new(Processes::of(model, media)?);
+        let everybody = (0..processes.count as u16).collect();
+        Ok(Self { model, processes, everybody })
+    }
+
+    pub(super) fn clocks(&self) -> usize {
+        self.model.clocks()
+    }
+
+    /// The most entries that a synchronised zone has.
+    pub(super) fn room(&self) -> usize {
+        self.model.dim * self.model.dim
+    }
+
+    /// The start, with the time that passes there.
+    pub(super) fn start(&self, w: &mut Work) -> Result<(), Failure> {
+        w.effect.target = self.model.initial();
+        w.zone = LocalZone::start(self.processes.count, self.clocks());
+        for m in 0..self.model.members.len() {
+            let holds = self.invariant(m, &mut w.effect.target, &mut w.stack, &mut w.invariant);
+            let holds = holds.map_err(|f| broken(self.fault(m, &w.effect.target, f)))?;
+            let mut zero = holds;
+            for c in &w.invariant {
+                zero &= keeps(&clock_bound(c)?, 0);
+            }
+            if !zero {
+                return Err(broken(ModelError::Initial));
+            }
+        }
+        self.enter(w, &self.everybody)?;
+        // INVARIANT: all processes start at one time.
+        Ok(())
+    }
+
+    /// Looks at a transition; whether it is one of the zone: then its effect is in `w`.
+    pub(super) fn found(
+        &self,
+        w: &mut Work,
+        state: &[i64],
+        zone: &LocalZone,
+        found: &Found,
+    ) -> Result<bool, Failure> {
+        let (Found::Firing(Firing { guard, .. }) | Found::Fault { guard, .. }) = found;
+        w.bounds.clear();
+        for c in *guard {
+            w.bounds.push(clock_bound(c)?);
+        }
+        let firing = match found {
+            Found::Firing(firing) => firing,
+            Found::Fault { member, edge, fault, .. } => {
+                let error = self.model.fault(usize::from(*member), usize::from(*edge), *fault);
+                return self.unless_met(w, zone, error);
+            }
+        };
+        self.processes.involved(firing.parts, &mut w.who);
+        if !w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicable::from)? {
+            return Ok(false);
+        }
+        match self.model.effect(state, firing, &mut w.stack, &mut w.effect) {
+            Ok(true) => {}
+            Ok(false) => return Ok(false),
+            Err((m, e, fault)) => {
+                let error = self.model.fault(usize::from(m), usize::from(e), fault);
+                return self.unless_met(w, zone, error);
+            }
+        }
+        self.negative(w, zone)?;
+        if !self.enters(w, zone, firing)? {
+            return Ok(false);
+        }
+        w.zone.restrict(zone, &w.meeting);
+        // INVARIANT: somebody moves.
+        w.zone.assign(&w.sets, usize::from(w.who[0]));
+        let who = std::mem::take(&mut w.who);
+        let met = self.enter(w, &who);
+        w.who = who;
+        met
+    }
+
+    /// The fault, if all processes can have one time at which the bounds hold: then the network can be there.
+    fn unless_met(&self, w: &mut Work, zone: &LocalZone, error: ModelError) -> Result<bool, Failure> {
+        let met = w.meeting.of(zone, &self.everybody, &w.bounds).map_err(NotApplicable::from)?;
+        if met { Err(broken(error)) } else { Ok(false) }
+    }
+
+    /// Whether an update may make a clock negative.
+    fn negative(&self, w: &mut Work, zone: &LocalZone) -> Result<(), Failure> {
+        for i in 0..w.effect.below.len() {
+            let below = w.effect.below[i];
+            let bound = zone::lt(-below.reset.by).ok_or(TooLarge).map_err(NotApplicable::from)?;
+            w.bounds.push(ClockBound { clock: below.reset.from - 1, upper: true, bound });
+            let fault = Fault::Negative { clock: below.reset.clock };
+            let error = self.model.fault(usize::from(below.member), usize::from(below.edge), fault);
+            self.unless_met(w, zone, error)?;
+            w.bounds.pop();
+        }
+        Ok(())
+    }
+
+    /// What the transition sets, and its meeting with the invariants that it enters; `false`: they forbid it.
+    fn enters(&self, w: &mut Work, zone: &LocalZone, firing: &Firing) -> Result<bool, Failure> {
+        w.sets.clear();
+        for r in &w.effect.resets {
+            let by = zone::le(r.by).ok_or(TooLarge).map_err(NotApplicable::from)?;
+            w.sets.push(Set { clock: r.clock - 1, from: r.from.checked_sub(1), by });
+        }
+        let guards = w.bounds.len();
+        for part in firing.parts {
+            let m = usize::from(part.member);
+            match self.invariant(m, &mut w.effect.target, &mut w.stack, &mut w.invariant) {
+                Ok(true) => {}
+                Ok(false) => return Ok(false),
+                Err(fault) => {
+                    let error = self.fault(m, &w.effect.target, fault);
+                    return self.unless_met(w, zone, error);
+                }
+            }
+            for c in &w.invariant {
+                let b = clock_bound(c)?;
+                // A bound on what a clock becomes is one on what it comes from.
+                match w.effect.resets.iter().find(|r| r.clock == b.clock + 1) {
+                    None => w.bounds.push(b),
+                    Some(r) if r.from == 0 => {
+                        if !keeps(&b, r.by) {
+                            return Ok(false);
+                        }
+                    }
+                    Some(r) => {
+                        let shift = zone::le(if b.upper { -r.by } else { r.by }).ok_or(TooLarge);
+                        let bound = zone::plus(b.bound, shift.map_err(NotApplicable::from)?);
+                        w.bounds.push(ClockBound { clock: r.from - 1, upper: b.upper, bound });
+                    }
+                }
+            }
+        }
+        if w.bounds.len() > guards || !w.effect.below.is_empty() {
+            return Ok(w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicable::from)?);
+        }
+        Ok(true)
+    }
+
+    /// Lets time pass for those who were part of a transition to the target, with only the clocks that matter there.
+    /// Whether all processes can have one time then.
+    fn enter(&self, w: &mut Work, who: &[u16]) -> Result<bool, Failure> {
+        self.model.extrapolation.frame(&w.effect.target, Abstraction::LowerUpper, &mut w.frame);
+        w.clocks.clear();
+        w.lu.clear();
+        for (&clock, lu) in w.frame.clocks.iter().zip(&w.frame.bounds).skip(1) {
+            let lower = if lu.lower == NONE { Some(zone::INF) } else { zone::lt(-lu.lower) };
+            let upper = if lu.upper == NONE { Some(zone::INF) } else { zone::le(-lu.upper) };
+            let (Some(lower), Some(upper)) = (lower, upper) else {
+                return Err(NotApplicable::Constants.into());
+            };
+            w.clocks.push(clock - 1);
+            w.lu.push(Lu { lower, upper });
+        }
+        w.zone.forget(&w.clocks);
+        for &p in who {
+            let m = usize::from(p);
+            w.passing.clear();
+            if m < self.model.members.len() {
+                if self.is_still(&w.effect.target, m) {
+                    continue;
+                }
+                // What it says of variables did not change, or was looked at.
+                let known = self.invariant(m, &mut w.effect.target, &mut w.stack, &mut w.invariant);
+                known.map_err(|f| broken(self.fault(m, &w.effect.target, f)))?;
+                for c in &w.invariant {
+                    w.passing.push(clock_bound(c)?);
+                }
+            }
+            w.zone.elapse(m, &w.passing);
+        }
+        let met = w.zone.synchronised(&w.clocks, &mut w.meeting, &mut w.together);
+        Ok(met.map_err(NotApplicable::from)?)
+    }
+
+    fn fault(&self, member: usize, state: &[i64], fault: Fault) -> ModelError {
+        self.model.invariant_fault(member, state[member] as usize, fault)
+    }
+
+    /// Whether no time passes for an automaton where it is.
+    pub(super) fn is_still(&self, state: &[i64], member: usize) -> bool {
+        self.model.place(state, member).kind != LocationKind::Normal
+    }
+
+    /// The bounds of an automaton's location; `Ok(false)`: its part over variables does not hold.
+    pub(super) fn invariant(
+        &self,
+        member: usize,
+        state: &mut [i64],
+        stack: &mut Vec<i64>,
+        out: &mut Vec<Constraint>,
+    ) -> Result<bool, Fault> {
+        out.clear();
+        let spot = self.model.place(state, member);
+        if spot.holds.is_none() && spot.invariant.moving.is_empty() {
+            out.extend_from_slice(&spot.invariant.fixed);
+            return Ok(true);
+        }
+        let mut env = Env::new(&self.model.library, state, stack);
+        if let Some(holds) = &spot.holds
+            && holds.eval(&mut env)? == 0
+        {
+            return Ok(false);
+        }
+        spot.invariant.eval(&mut env, out)?;
+        Ok(true)
+    }
+}
+
+fn broken(error: ModelError) -> Failure {
+    Failure::Search(Error::from(error))
+}
+
+/// A constraint as a bound on one clock.
+pub(super) fn clock_bound(c: &Constraint) -> Result<ClockBound, NotApplicable> {
+    let n = if c.bound.is_strict() { zone::lt } else { zone::le };
+    let bound = n(c.bound.value()).ok_or(TooLarge)?;
+    // INVARIANT: networks with bounds on differences were refused.
+    Ok(ClockBound { clock: c.i.max(c.j) - 1, upper: c.i > 0, bound })
+}
+
+/// Whether a clock of this value keeps the bound.
+fn keeps(b: &ClockBound, value: i64) -> bool {
+    value.unsigned_abs() < 1 << 26 && 2 * (if b.upper { value } else { -value }) < i64::from(b.bound)
+}

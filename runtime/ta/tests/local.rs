@@ -1,0 +1,302 @@
+//! Local time: the same verdicts as the standard search, with fewer states.
+
+mod common;
+mod local_nets;
+
+use common::{add, automaton, channel, edge, eq, families, n, normal, program, shared, v};
+use hrdsl_ir::{
+    Program,
+    ta::{AutomatonId, ChannelKind, ClockOp, Formula, LocationId, Party},
+};
+use hrdsl_ta::{
+    Error, Goal, GoalKind, Model, ModelError, Observe, Outcome, Report, StateFormula, explore,
+    local::{self, Failure, NotApplicable, Options},
+};
+use local_nets::{Draft, Member};
+use proptest::prelude::*;
+
+fn model(p: &Program) -> Model<'_> {
+    Model::new(p, &p.networks[0], &Observe::default()).unwrap()
+}
+
+fn run(p: &Program) -> Report {
+    let report = local::explore(&model(p), &[], &Options::default(), &|_| true).unwrap();
+    assert!(report.complete);
+    report
+}
+
+#[test]
+fn philosophers_need_one_zone_for_each_discrete_state() {
+    for (n, stored) in [(5, 277), (6, 853), (7, 2_627), (8, 8_090)] {
+        let report = run(&families::philosophers(n));
+        assert_eq!((report.states_stored, report.discrete_states), (stored, stored));
+    }
+}
+
+#[test]
+fn media_stand_for_shared_variables() {
+    // All of Fischer's transitions use the one variable: nothing commutes.
+    assert_eq!(run(&families::fischer(6)).states_stored, 2_378);
+    let options = Options { media: false, ..Options::default() };
+    let p = families::fischer(3);
+    let refused = local::explore(&model(&p), &[], &options, &|_| true);
+    assert_eq!(refused, Err(Failure::NotApplicable(NotApplicable::Shared("id".into()))));
+}
+
+#[test]
+fn families_have_no_more_states_than_with_global_time() {
+    for (p, most) in [
+        (families::fddi(8), 341),
+        (families::parallel(8), 257),
+        (families::train_gate(4), 12_000),
+        (families::critical_region(3), 3_015),
+    ] {
+        assert!(run(&p).states_stored <= most);
+    }
+}
+
+/// Every location, every edge, every pair of locations of two automata.
+fn goals(p: &Program) -> Vec<Goal> {
+    let mut goals = Vec::new();
+    let mut goal = |what| goals.push(Goal { what, settled: false });
+    let locations = |a: usize| (0..p.automata[a].locations.len() as u16).map(LocationId);
+    for (automaton, a) in p.automata.iter().enumerate() {
+        (0..a.edges.len()).for_each(|edge| goal(GoalKind::Edge { automaton, edge }));
+        locations(automaton).for_each(|location| goal(GoalKind::Location { automaton, location }));
+        for (other, l) in (0..automaton).flat_map(|o| locations(o).map(move |l| (o, l))) {
+            for location in locations(automaton) {
+                let here = StateFormula::At { automaton, location };
+                let there = StateFormula::At { automaton: other, location: l };
+                goal(GoalKind::Condition(StateFormula::And(vec![here, there])));
+            }
+        }
+    }
+    goals
+}
+
+/// Both searches answer all goals alike. Witnesses were replayed before they are here.
+fn agree(p: &Program) {
+    let goals = goals(p);
+    let model = model(p);
+    let plain = hrdsl_ta::Options { reduce: true, ..hrdsl_ta::Options::reference() };
+    let global = explore(&model, &goals, &plain, &|_| true);
+    let local = local::explore(&model, &goals, &Options::default(), &|_| true);
+    let (local, global) = match (local, global) {
+        (Ok(local), Ok(global)) => (local, global),
+        (Err(Failure::Search(Error::Model { .. })), Err(Error::Model { .. })) => return,
+        (local, global) => panic!("{local:?} with local time, {global:?} with global time"),
+    };
+    for ((goal, a), b) in goals.iter().zip(&local.goals).zip(&global.goals) {
+        let same = matches!(
+            (a, b),
+            (Outcome::Reached(_), Outcome::Reached(_)) | (Outcome::Unreachable, Outcome::Unreachable)
+        );
+        assert!(same, "{goal:?}: {a:?} with local time, {b:?} with global time");
+    }
+    let all = |r: &Report| r.complete.then_some(r.discrete_states);
+    if let (Some(a), Some(b)) = (all(&local), all(&global)) {
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn families_have_the_same_answers() {
+    agree(&families::philosophers(4));
+    agree(&families::fddi(3));
+    agree(&families::parallel(4));
+    agree(&families::train_gate(3));
+    agree(&families::fischer(4));
+    agree(&families::csma_cd(3));
+    agree(&families::critical_region(2));
+}
+
+/// A goal that only a run whose time goes back would meet.
+fn is_out_of_order(p: &Program, a: (usize, u16), b: (usize, u16)) {
+    let at = |(automaton, l): (usize, u16)| StateFormula::At { automaton, location: LocationId(l) };
+    let goal = |what| Goal { what: GoalKind::Condition(what), settled: false };
+    let goals = [goal(StateFormula::And(vec![at(a), at(b)])), goal(at(a))];
+    let report = local::explore(&model(p), &goals, &Options::default(), &|_| true).unwrap();
+    assert_eq!(report.goals[0], Outcome::Unreachable);
+    agree(p);
+}
+
+#[test]
+fn a_shared_variable_is_written_before_it_is_read() {
+    let mut p = program();
+    let s = shared(&mut p, "s", 0, 1, 0);
+    let mut late = automaton("Late", &["x"]);
+    let (a, b) = (normal(&mut late, "a"), normal(&mut late, "b"));
+    edge(a, b).clock(0, ClockOp::Ge, 3).set(s, n(1)).to(&mut late);
+    add(&mut p, late);
+    let mut early = automaton("Early", &["y"]);
+    let (a, b) = (normal(&mut early, "a"), normal(&mut early, "b"));
+    edge(a, b).clock(0, ClockOp::Le, 2).when(eq(v(s), n(1))).to(&mut early);
+    add(&mut p, early);
+    is_out_of_order(&p, (0, 1), (1, 1));
+}
+
+#[test]
+fn a_shared_clock_is_read_when_it_is_set() {
+    let mut p = program();
+    p.clocks.push("g".into());
+    let mut late = automaton("Late", &["x"]);
+    let (a, b) = (normal(&mut late, "a"), normal(&mut late, "b"));
+    edge(a, b).clock(1, ClockOp::Ge, 3).reset(0).to(&mut late);
+    add(&mut p, late);
+    let mut early = automaton("Early", &["y"]);
+    let (a, b) = (normal(&mut early, "a"), normal(&mut early, "b"));
+    edge(a, b).clock(1, ClockOp::Eq, 2).clock(0, ClockOp::Lt, 1).to(&mut early);
+    add(&mut p, early);
+    is_out_of_order(&p, (0, 1), (1, 1));
+}
+
+/// The one leaves before three, or goes off from three on; the other tells it, until two.
+fn leaving(stay_away: impl Fn(&mut Program) -> [hrdsl_ir::ta::ChannelId; 2], joint: bool) -> Program {
+    let mut p = program();
+    let [told, tell] = stay_away(&mut p);
+    let mut one = automaton("One", &["x"]);
+    let (here, off, left) = (normal(&mut one, "here"), normal(&mut one, "off"), normal(&mut one, "left"));
+    edge(here, off).clock(0, ClockOp::Ge, 3).to(&mut one);
+    let hears = edge(here, left);
+    if joint { hears.join(told) } else { hears.accept(told, &[]) }.to(&mut one);
+    add(&mut p, one);
+    let mut other = automaton("Other", &["y"]);
+    let (a, b) = (normal(&mut other, "a"), normal(&mut other, "b"));
+    let tells = edge(a, b).clock(0, ClockOp::Le, 2);
+    if joint { tells.join(tell) } else { tells.offer(tell, &[]) }.to(&mut other);
+    add(&mut p, other);
+    p
+}
+
+#[test]
+fn who_stays_away_from_a_broadcast_does_so_at_its_time() {
+    let cast = |p: &mut Program| [channel(p, "cast", ChannelKind::Broadcast, &[]); 2];
+    is_out_of_order(&leaving(cast, false), (0, 1), (1, 1));
+}
+
+#[test]
+fn who_stays_away_from_a_joint_channel_does_so_at_its_time() {
+    let party = |i, optional| Party { automaton: AutomatonId(i), optional };
+    let kind = ChannelKind::Joint(vec![party(0, true), party(1, false)]);
+    let joint = |p: &mut Program| [channel(p, "all", kind.clone(), &[]); 2];
+    is_out_of_order(&leaving(joint, true), (0, 1), (1, 1));
+}
+
+/// One automaton writes what another's invariant says, another has an urgent channel, a third a difference of clocks.
+#[test]
+fn what_local_time_does_not_serve_is_refused() {
+    let refusal = |p: &Program| match local::explore(&model(p), &[], &Options::default(), &|_| true) {
+        Err(Failure::NotApplicable(why)) => why.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let mut p = program();
+    let s = shared(&mut p, "s", 0, 1, 0);
+    let mut one = automaton("One", &["x"]);
+    let a = normal(&mut one, "a");
+    one.locations[0].holds = Some(eq(v(s), n(0)));
+    edge(a, a).to(&mut one);
+    add(&mut p, one);
+    let mut other = automaton("Other", &["y", "z"]);
+    let b = normal(&mut other, "b");
+    edge(b, b).set(s, n(1)).to(&mut other);
+    add(&mut p, other);
+    let why = refusal(&p);
+    assert_eq!(why, "the invariant of `a` of `One` depends on `s`, which other automata change or share");
+    p.automata[0].locations[0].holds = None;
+    let hurry = channel(&mut p, "hurry", ChannelKind::HandShake, &[]);
+    p.channels[0].urgent = true;
+    p.automata[0].edges[0] = edge(a, a).offer(hurry, &[]).0;
+    assert_eq!(refusal(&p), "channel `hurry` is urgent");
+    p.channels[0].urgent = false;
+    let high =
+        Goal { what: GoalKind::Formula(Formula::Clock(common::clock(0, ClockOp::Ge, 1))), settled: false };
+    let refused = local::explore(&model(&p), &[high], &Options::default(), &|_| true);
+    assert_eq!(refused, Err(Failure::NotApplicable(NotApplicable::ClockGoal)));
+    let mut apart = common::clock(0, ClockOp::Le, 3);
+    apart.minus = Some(hrdsl_ir::ta::ClockId(1));
+    p.automata[1].edges[0].clock_guard.push(apart);
+    assert_eq!(refusal(&p), "`Other` has a bound on a difference of clocks");
+}
+
+/// A variable leaves its range after two steps of one automaton; the other can no longer wait then, or it can.
+#[test]
+fn faults_are_met_where_all_can_be() {
+    for (patience, faulty) in [(1, false), (4, true)] {
+        let mut p = program();
+        let mut one = automaton("One", &["x"]);
+        one.vars.push(common::var("k", 0, 1, 0));
+        let (a, b) = (normal(&mut one, "a"), normal(&mut one, "b"));
+        edge(a, b).clock(0, ClockOp::Ge, 1).reset(0).to(&mut one);
+        edge(b, b).clock(0, ClockOp::Ge, 2).set(0, n(2)).to(&mut one);
+        add(&mut p, one);
+        let mut other = automaton("Other", &["y"]);
+        common::location(
+            &mut other,
+            "c",
+            hrdsl_ir::ta::LocationKind::Normal,
+            &[common::clock(0, ClockOp::Le, patience)],
+        );
+        add(&mut p, other);
+        match local::explore(&model(&p), &[], &Options::default(), &|_| true) {
+            Ok(report) => assert!(report.complete && !faulty),
+            Err(Failure::Search(Error::Model { error: ModelError::Range { value: 2, .. }, witness })) => {
+                assert!(faulty);
+                assert_eq!(witness.unwrap().steps.len(), 1);
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+}
+
+/// Edges of few kinds, so that they meet.
+fn draft(kinds: [u8; 3]) -> impl Strategy<Value = Draft> {
+    // Clocks are seldom the shared one.
+    let clock = || 0..8u16;
+    let guard = proptest::option::weighted(0.7, (clock(), 0..5u8, 0..4i64));
+    let copied = prop_oneof![4 => Just(None), 1 => clock().prop_map(Some)];
+    let reset = proptest::option::weighted(0.3, (clock(), copied, prop_oneof![4 => Just(0), 1 => 0..3i64]));
+    let shared = prop_oneof![
+        2 => Just((None, None)),
+        1 => (proptest::option::of(0..2i64), proptest::option::of(0..2i64)),
+    ];
+    let sync = prop_oneof![1 => Just(9), 2 => (0..3usize).prop_map(move |i| kinds[i])];
+    let ends = (0..3u16, 0..3u16);
+    (ends, sync, guard, reset, shared).prop_map(|((from, to), sync, guard, reset, shared)| Draft {
+        from,
+        to,
+        sync,
+        guard,
+        reset,
+        shared,
+    })
+}
+
+fn member(kinds: [u8; 3]) -> impl Strategy<Value = Member> {
+    let location = (0..16u8, proptest::option::weighted(0.25, (0..2u16, 0..4i64)));
+    let locations = proptest::collection::vec(location, 2..=3);
+    (0..=2u16, locations, proptest::collection::vec(draft(kinds), 2..=5))
+        .prop_map(|(clocks, locations, edges)| Member { clocks, locations, edges })
+}
+
+fn members() -> impl Strategy<Value = Vec<Member>> {
+    // Offers and accepts of a hand-shake, a broadcast, an event; a joint channel.
+    let pairs = [[0, 2, 0], [1, 3, 2], [5, 6, 4], [7, 8, 5], [4, 4, 7], [9, 9, 9]];
+    let kinds = prop_oneof![
+        3 => (0..pairs.len()).prop_map(move |i| pairs[i]),
+        1 => [0..13u8, 0..13u8, 0..13u8],
+    ];
+    kinds.prop_flat_map(|kinds| proptest::collection::vec(member(kinds), 2..=4))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_networks_have_the_same_answers(
+        members in members(),
+        optional in any::<[bool; 3]>(),
+    ) {
+        let p = local_nets::random(&members, optional);
+        agree(&p);
+    }
+}
