@@ -83,7 +83,7 @@ fn each_construct_is_exported_and_read_again() {
         "x &lt;= 6 &amp;&amp; left &lt; 5",
         "take[f - 1]!",
         "asked[mood][(left &gt; 1 ? 1 : 0)]!",
-        "asked[0][t]?",
+        "asked[calm][t]?",
         "t == 1",
         "both!",
         "both?",
