@@ -155,7 +155,7 @@ impl Cx<'_> {
 
     fn add(&mut self, e: &Expr, sign: i64, sum: &mut Sum) -> Result<(), Fault> {
         if !self.mentions_clock(e) {
-            let value = self.expr(e)?.as_int();
+            let value = self.expr(e)?.into_int();
             sum.terms.push((sign, value));
             return Ok(());
         }

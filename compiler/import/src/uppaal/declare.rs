@@ -26,7 +26,7 @@ impl Cx<'_> {
         match &ty.base {
             Base::Int(None) => Ok(Ty::Data(Scalar::range(INT.0, INT.1), Vec::new())),
             Base::Int(Some(bounds)) => {
-                let (lo, hi) = (self.expr(&bounds.0)?.as_int(), self.expr(&bounds.1)?.as_int());
+                let (lo, hi) = (self.expr(&bounds.0)?.into_int(), self.expr(&bounds.1)?.into_int());
                 let (Some(l), Some(h)) = (lo.value, hi.value) else {
                     return fault(ty.span, "the bounds of a type must be constant");
                 };
@@ -343,7 +343,7 @@ impl Cx<'_> {
     }
 }
 
-fn listed<'i>(init: Option<&'i Init>, dim: Range, span: Span) -> Result<Option<&'i [Init]>, Fault> {
+fn listed(init: Option<&Init>, dim: Range, span: Span) -> Result<Option<&[Init]>, Fault> {
     match init {
         None => Ok(None),
         Some(Init::List(all, _)) if all.len() as i64 == dim.count() => Ok(Some(all)),

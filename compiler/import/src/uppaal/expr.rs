@@ -27,7 +27,7 @@ impl Cx<'_> {
     }
 
     pub fn condition(&mut self, e: &Expr) -> Result<Out, Fault> {
-        Ok(self.expr(e)?.as_bool())
+        Ok(self.expr(e)?.into_bool())
     }
 
     pub fn expr(&mut self, e: &Expr) -> Result<Out, Fault> {
@@ -65,7 +65,7 @@ impl Cx<'_> {
     }
 
     fn negative(&mut self, of: &Expr) -> Result<Out, Fault> {
-        let of = self.expr(of)?.as_int();
+        let of = self.expr(of)?.into_int();
         if let Some(n) = of.value.filter(|_| of.text.bytes().all(|b| b.is_ascii_digit())) {
             return Ok(Out::int(-n));
         }
@@ -132,10 +132,10 @@ impl Cx<'_> {
     fn quantified(&mut self, q: Quantifier, name: &str, ty: &Type, of: &Expr) -> Result<Out, Fault> {
         let parts = self.parts(name, ty, |cx| cx.expr(of))?;
         if q == Quantifier::Sum {
-            let parts = parts.into_iter().map(Out::as_int);
+            let parts = parts.into_iter().map(Out::into_int);
             return Ok(joined(parts, "+", Level::Sum, Out::int(0), |a, b| a.checked_add(b)));
         }
-        let parts = parts.into_iter().map(Out::as_bool);
+        let parts = parts.into_iter().map(Out::into_bool);
         Ok(if q == Quantifier::Forall { all(parts) } else { any(parts) })
     }
 
@@ -202,7 +202,7 @@ impl Cx<'_> {
             ExprKind::Index(of, index) => {
                 let sym = self.place(of)?;
                 let index_span = index.span;
-                let index = self.expr(index)?.as_int();
+                let index = self.expr(index)?.into_int();
                 self.element(sym, index, index_span)
             }
             ExprKind::Field(of, name) => self.member(of, name, e.span),

@@ -147,7 +147,7 @@ impl Cx<'_> {
         let mut plans = Vec::new();
         for args in combinations(&ranges) {
             let given = scalars.iter().zip(&args).map(|(s, n)| Sym::Const(s.literal(*n))).collect();
-            let (template, scope, shown) = self.bound(name, given, instances, span, 0)?;
+            let (template, scope, shown) = self.bound(name, given, instances, span)?;
             plans.push(Plan { model_name: name.to_owned(), args, template, scope, shown });
         }
         Ok(plans)
@@ -160,7 +160,6 @@ impl Cx<'_> {
         given: Vec<Sym>,
         instances: &[Instance],
         span: Span,
-        depth: usize,
     ) -> Result<(usize, Scope, Vec<String>), Fault> {
         if let Some(at) = instances.iter().position(|i| i.name == name) {
             // An instance is made of what stands before it.
@@ -177,7 +176,7 @@ impl Cx<'_> {
             let args = params.iter().zip(&instance.args).map(|(p, a)| self.argument(p, a)).collect();
             self.locals = outer;
             let args: Result<Vec<Sym>, Fault> = args;
-            return self.bound(&instance.of, args?, before, instance.span, depth + 1);
+            return self.bound(&instance.of, args?, before, instance.span);
         }
         let Some(template) = self.templates.iter().position(|t| t.name == name) else {
             return fault(span, format!("there is no template `{name}`"));
@@ -411,7 +410,7 @@ impl Cx<'_> {
     fn sync(&mut self, sync: &Sync, has_clocks: bool) -> Result<(bool, String), Fault> {
         let sym = self.place(&sync.channel)?;
         let channel = self.channel(&sym, sync.channel.span)?;
-        if channel.urgent && has_clocks && !(channel.broadcast && !sync.offers) {
+        if channel.urgent && has_clocks && (sync.offers || !channel.broadcast) {
             let message = format!("`{}` is urgent: its edges have no conditions over clocks", channel.name);
             return fault(sync.channel.span, message);
         }

@@ -52,7 +52,7 @@ impl Out {
     }
 
     /// As a number: 1 for true, 0 for false.
-    pub fn as_int(self) -> Self {
+    pub fn into_int(self) -> Self {
         match (self.is_bool, self.value) {
             (false, _) => self,
             (true, Some(n)) => Self::int(n),
@@ -61,7 +61,7 @@ impl Out {
     }
 
     /// As a condition: a number is true if it is not 0.
-    pub fn as_bool(self) -> Self {
+    pub fn into_bool(self) -> Self {
         match (self.is_bool, self.value) {
             (true, _) => self,
             (false, Some(n)) => Self::bool(n != 0),
@@ -70,7 +70,7 @@ impl Out {
     }
 
     pub fn of_type(self, is_bool: bool) -> Self {
-        if is_bool { self.as_bool() } else { self.as_int() }
+        if is_bool { self.into_bool() } else { self.into_int() }
     }
 }
 

@@ -120,7 +120,11 @@ impl Cx<'_> {
         let of =
             of.iter()
                 .map(|e| {
-                    if self.mentions_clock(e) { self.clock(e) } else { self.expr(e).map(|e| e.as_int().text) }
+                    if self.mentions_clock(e) {
+                        self.clock(e)
+                    } else {
+                        self.expr(e).map(|e| e.into_int().text)
+                    }
                 })
                 .collect::<Result<Vec<_>, _>>()?;
         Ok(format!("{word}{when}: {}", of.join(", ")))
