@@ -43,6 +43,10 @@ ids! {
     ClockId,
     /// Index into [`Scenario::networks`].
     NetworkId,
+    /// Index into [`Scenario::queries`].
+    QueryId,
+    /// Index into [`Scenario::requirements`].
+    RequirementId,
     /// Index into [`Scenario::points`].
     PointId,
     /// Index into [`Scenario::crosses`].
@@ -73,6 +77,7 @@ pub struct Scenario {
     pub shared: Vec<Var>,
     pub automata: Vec<Automaton>,
     pub networks: Vec<Network>,
+    pub queries: Vec<crate::Query>,
     pub requirements: Vec<Requirement>,
     pub assumptions: Vec<Assumption>,
     pub points: Vec<CoverPoint>,
@@ -855,6 +860,8 @@ pub enum Method {
     Search {
         network: NetworkId,
         goals: Vec<SearchGoal>,
+        witness: WitnessKind,
+        delays: Delays,
     },
     Random {
         stimuli: Vec<EventId>,
@@ -923,6 +930,32 @@ pub enum SearchGoal {
     Bins(CrossId),
     Locations,
     Edges,
+    Pairs,
+    Uses,
+    Violation(RequirementId),
+    Trigger(RequirementId),
+    /// One that asks `E<>`.
+    Query(QueryId),
+}
+
+/// Which witness a search takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WitnessKind {
+    Any,
+    #[default]
+    Shortest,
+    Fastest,
+}
+
+/// When its transitions happen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Delays {
+    #[default]
+    Earliest,
+    Latest,
+    Sampled,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -118,6 +118,7 @@ codes! {
     UNREACHABLE_LOCATION = 505 "a location that no edge reaches",
     TIME_STOPS = 506 "an invariant that stops time",
     NO_TIME_PASSES_HERE = 507 "a cycle in which no time passes",
+    BAD_QUERY = 520 "a query that cannot be asked",
     BAD_PATTERN = 601 "a requirement that says nothing",
     NEVER_TRIGGERED = 602 "a requirement that can never be triggered",
     OVERLAPPING_BINS = 701 "bins that overlap",

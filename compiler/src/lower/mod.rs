@@ -4,6 +4,7 @@ pub mod bdi;
 pub mod coverage;
 pub mod expr;
 pub mod monitor;
+pub mod query;
 pub mod suite;
 pub mod ta;
 pub mod test;
@@ -20,6 +21,7 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
     let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &mut signals));
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
+    let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     Program {
         name: scenario.name.clone(),
         actors: vocabulary::actors(scenario),
@@ -30,8 +32,8 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
         clocks: Vec::new(),
         channels: Vec::new(),
         functions: Vec::new(),
-        queries: Vec::new(),
-        automata: scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect(),
+        queries: scenario.queries.iter().map(|q| query::query(q, scenario, &automata, files)).collect(),
+        automata,
         networks: scenario.networks.iter().map(ta::network).collect(),
         signals: signals.into_list(),
         monitors,

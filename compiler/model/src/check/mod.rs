@@ -22,6 +22,7 @@ mod measure;
 mod message;
 mod places;
 mod plan;
+mod query;
 mod range;
 mod requirement;
 mod rule;
@@ -68,7 +69,7 @@ use table::{MAX_NAMES, Map, Refused, Table};
 /// 2. [`Checker::world`]: bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
-/// 5. [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
+/// 5. [`Checker::queries`], [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
 /// 6. [`Checker::tests`]
 #[must_use]
 pub fn resolve(
@@ -100,6 +101,7 @@ pub fn resolve_part(
     checker.stimuli();
     checker.agents();
     checker.automata();
+    checker.queries();
     checker.requirements();
     checker.coverage();
     checker.unread_members = checker.agent_decls.iter().any(|a| unread::in_agent(a.syntax));
@@ -191,6 +193,10 @@ pub(crate) struct Checker<'a> {
     /// What every automaton sees of them.
     shared_scope: Rc<env::Scope>,
     networks: Table,
+    queries: Table,
+    requirement_names: Table,
+    /// By the place in the scenario's automata: what the edges of each see.
+    automaton_scopes: BTreeMap<usize, Rc<env::Scope>>,
     points: Table,
     crosses: Table,
     suites: Table,
@@ -265,6 +271,9 @@ impl<'a> Checker<'a> {
             shared_names: Table::default(),
             shared_scope: Rc::default(),
             networks: Table::default(),
+            queries: Table::default(),
+            requirement_names: Table::default(),
+            automaton_scopes: BTreeMap::new(),
             points: Table::default(),
             crosses: Table::default(),
             suites: Table::default(),
@@ -418,6 +427,8 @@ impl<'a> Checker<'a> {
             (&self.actors, Noun::Actor),
             (&self.shared_names, Noun::Variable),
             (&self.networks, Noun::Network),
+            (&self.queries, Noun::Query),
+            (&self.requirement_names, Noun::Requirement),
             (&self.points, Noun::Point),
             (&self.crosses, Noun::Cross),
             (&self.suites, Noun::Suite),

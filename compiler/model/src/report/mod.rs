@@ -4,6 +4,7 @@ pub(crate) mod agents;
 pub(crate) mod automata;
 pub(crate) mod coverage;
 pub(crate) mod names;
+pub(crate) mod queries;
 pub(crate) mod requirements;
 pub(crate) mod roles;
 pub(crate) mod tests;
