@@ -10,4 +10,5 @@ pub mod import;
 pub mod inspect;
 pub mod man;
 pub mod new;
+pub mod prove;
 pub mod sim;
