@@ -124,10 +124,16 @@ pub enum EvalError {
         at: i64,
         count: u16,
     },
-    /// A function that does not end within [`STEPS`](crate::ta) statements.
+    /// A function that does not end within [`STEPS`](crate::exec::STEPS) statements, or calls more than
+    /// [`DEPTH`](crate::exec::DEPTH) deep.
     Endless,
-    /// A value outside the range of a local variable or parameter of a function.
+    /// A value outside the range of a local variable, parameter or result of a function.
     Range(i64),
+    /// A value outside the range of a variable that a function assigns; the slot is its memory's.
+    Outside {
+        slot: u16,
+        value: i64,
+    },
     /// An operand of the wrong type: a fault of whoever made the expression, since the checker rules it out.
     Type,
 }
@@ -141,6 +147,9 @@ impl fmt::Display for EvalError {
             EvalError::Index { at, count } => write!(f, "index {at} is none of 0..{}", i32::from(*count) - 1),
             EvalError::Endless => f.write_str("a function does not end"),
             EvalError::Range(n) => write!(f, "{n} is outside the range of a variable of a function"),
+            EvalError::Outside { slot, value } => {
+                write!(f, "{value} is outside the range of variable {slot}")
+            }
             EvalError::Type => f.write_str("operand of the wrong type"),
         }
     }

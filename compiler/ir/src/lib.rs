@@ -1,7 +1,7 @@
 //! `Program`: what a scenario says, resolved and typed, as plain data.
 //!
 //! This is the waist between the compiler, which makes it, and the runtime, which executes it. It has no behaviour but
-//! the evaluation of expressions ([`expr`]), so that every engine means the same by `+`.
+//! the evaluation of expressions ([`expr`]) and functions ([`exec`]), so that every engine means the same by `+`.
 //!
 //! All quantities are in SI units (metre, second, radian, kilogram, newton and what is made of them) as `f64`; all times that an engine counts
 //! with are integer nanoseconds ([`Nanos`]).
@@ -9,6 +9,7 @@
 pub mod bdi;
 pub mod coverage;
 pub mod event;
+pub mod exec;
 pub mod expr;
 pub mod list;
 pub mod monitor;

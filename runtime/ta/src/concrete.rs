@@ -1,36 +1,106 @@
 //! A small interpreter of automata under concrete clocks, straight from the program.
 //!
-//! It shares no transition relation with the search, so that a witness that it replays is believed for good reason; and it
-//! plays a single automaton in a harness ([`Player`](crate::Player)).
+//! It shares no transition relation with the search, so that a witness that it [replays](crate::replay) is believed for
+//! good reason; and it plays a single automaton in a harness ([`Player`](crate::Player)). What functions mean it takes from
+//! [`hrdsl_ir::exec`], as everybody does.
 
-use std::fmt;
+use std::sync::Arc;
 
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
+    exec::{self, Functions, Memory},
     expr::EvalError,
-    ta::{Automaton, ClockConstraint, ClockId, ClockOp, Edge, LocationId, LocationKind, Sync, Update, Var},
+    ta::{
+        Automaton, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge, FunctionId,
+        LocationId, LocationKind, ReceiveArg, Sync, Time, Update, Var,
+    },
 };
 
 use crate::{
-    Counter, Limit, ModelError, Witness, WitnessStep,
+    ModelError,
     error::EdgeName,
-    query::{View, any_matches},
-    semantics::{Binders, Move, argument_fault, bad_argument, bind, choices, range_fault, stored},
+    query::nanos,
+    semantics::{Binders, Move, argument_fault, bad_argument, bind, choices, range_fault},
 };
+
+/// What a synchronisation goes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Medium {
+    Event(EventId),
+    Channel(ChannelId),
+}
 
 /// The state of some automata at an instant; time is in ticks.
 #[derive(Clone)]
 pub(crate) struct Machine<'p> {
-    program: &'p Program,
+    pub(crate) program: &'p Program,
+    functions: Arc<Functions<'p>>,
     pub(crate) members: Vec<&'p Automaton>,
     pub(crate) location: Vec<LocationId>,
     shared: Vec<i64>,
     own: Vec<Vec<i64>>,
-    /// When each clock was last zero.
-    reset_at: Vec<Vec<i128>>,
+    /// When each shared clock was, or would have been, zero.
+    shared_zero: Vec<i128>,
+    own_zero: Vec<Vec<i128>>,
     pub(crate) now: i128,
     /// Ticks in a nanosecond.
     ticks: i128,
+}
+
+/// The variables that an automaton knows.
+struct Known<'m> {
+    program: &'m Program,
+    vars: &'m [Var],
+    shared: &'m [i64],
+    own: &'m [i64],
+}
+
+impl Memory for Known<'_> {
+    fn read(&self, slot: u16) -> Option<Value> {
+        read(self.program, self.vars, self.shared, self.own, slot)
+    }
+
+    fn write(&mut self, _: u16, _: Value) -> Result<(), EvalError> {
+        Err(EvalError::Type)
+    }
+}
+
+/// The same, to be assigned.
+struct Mine<'m> {
+    program: &'m Program,
+    vars: &'m [Var],
+    shared: &'m mut [i64],
+    own: &'m mut [i64],
+}
+
+impl Memory for Mine<'_> {
+    fn read(&self, slot: u16) -> Option<Value> {
+        read(self.program, self.vars, self.shared, self.own, slot)
+    }
+
+    fn write(&mut self, slot: u16, value: Value) -> Result<(), EvalError> {
+        let at = usize::from(slot);
+        let (var, place) = match self.program.shared.get(at) {
+            Some(var) => (var, self.shared.get_mut(at)),
+            None => {
+                let own = at - self.program.shared.len();
+                (self.vars.get(own).ok_or(EvalError::Unbound(slot))?, self.own.get_mut(own))
+            }
+        };
+        *place.ok_or(EvalError::Unbound(slot))? = exec::fit(var, slot, value)?;
+        Ok(())
+    }
+}
+
+fn read(program: &Program, vars: &[Var], shared: &[i64], own: &[i64], slot: u16) -> Option<Value> {
+    let at = usize::from(slot);
+    match program.shared.get(at) {
+        Some(var) => var.value(*shared.get(at)?),
+        None => {
+            let at = at - program.shared.len();
+            vars.get(at)?.value(*own.get(at)?)
+        }
+    }
 }
 
 impl<'p> Machine<'p> {
@@ -38,10 +108,12 @@ impl<'p> Machine<'p> {
     pub(crate) fn new(program: &'p Program, members: &[&'p Automaton], ticks: i64) -> Self {
         Self {
             program,
+            functions: Arc::new(Functions::new(program)),
             location: members.iter().map(|a| a.initial).collect(),
             shared: program.shared.iter().map(|v| v.init).collect(),
             own: members.iter().map(|a| a.vars.iter().map(|v| v.init).collect()).collect(),
-            reset_at: members.iter().map(|a| vec![0; a.clocks.len()]).collect(),
+            shared_zero: vec![0; program.clocks.len()],
+            own_zero: members.iter().map(|a| vec![0; a.clocks.len()]).collect(),
             members: members.to_vec(),
             now: 0,
             ticks: i128::from(ticks),
@@ -49,33 +121,91 @@ impl<'p> Machine<'p> {
     }
 
     pub(crate) fn kind(&self, member: usize) -> LocationKind {
-        self.members[member].locations[usize::from(self.location[member].0)].kind
+        self.place(member).kind
     }
 
-    pub(crate) fn invariant(&self, member: usize) -> &'p [ClockConstraint] {
+    pub(crate) fn place(&self, member: usize) -> &'p hrdsl_ir::ta::Location {
         let automaton: &'p Automaton = self.members[member];
-        &automaton.locations[usize::from(self.location[member].0)].invariant
+        &automaton.locations[usize::from(self.location[member].0)]
     }
 
-    /// Whether clock constraints hold now.
-    pub(crate) fn holds(&self, member: usize, constraints: &[ClockConstraint]) -> bool {
-        let clock = |c: ClockId| self.now - self.reset_at[member][usize::from(c.0)];
-        constraints.iter().all(|c| {
-            let value = clock(c.clock) - c.minus.map_or(0, clock);
-            let bound = i128::from(c.bound.nanos) * self.ticks;
-            match c.op {
-                ClockOp::Lt => value < bound,
-                ClockOp::Le => value <= bound,
-                ClockOp::Eq => value == bound,
-                ClockOp::Ge => value >= bound,
-                ClockOp::Gt => value > bound,
-            }
-        })
+    pub(crate) fn any_committed(&self) -> bool {
+        (0..self.members.len()).any(|m| self.kind(m) == LocationKind::Committed)
     }
 
     /// When a clock was last zero, in ticks.
     pub(crate) fn zero_at(&self, member: usize, clock: ClockId) -> i128 {
-        self.reset_at[member][usize::from(clock.0)]
+        let at = usize::from(clock.0);
+        match self.shared_zero.get(at) {
+            Some(zero) => *zero,
+            None => self.own_zero[member][at - self.shared_zero.len()],
+        }
+    }
+
+    /// The values of the network's clocks now, in ticks: the shared ones, then each automaton's.
+    pub(crate) fn clocks(&self) -> Vec<i128> {
+        self.shared_zero.iter().chain(self.own_zero.iter().flatten()).map(|zero| self.now - zero).collect()
+    }
+
+    /// A time of this automaton in ticks.
+    pub(crate) fn span(&self, member: usize, binders: &[Value], time: &Time) -> Result<i128, EvalError> {
+        if time.terms.is_empty() {
+            return Ok(i128::from(time.nanos) * self.ticks);
+        }
+        let n = self.view(member, binders, |view| nanos(time, view))?;
+        Ok(i128::from(n) * self.ticks)
+    }
+
+    fn view<T>(&self, member: usize, binders: &[Value], f: impl FnOnce(&exec::View<'_>) -> T) -> T {
+        let vars = &self.members[member].vars;
+        let memory = Known { program: self.program, vars, shared: &self.shared, own: &self.own[member] };
+        f(&exec::View::new(&self.functions, &memory, slots(self.program, vars), binders))
+    }
+
+    /// Whether clock constraints hold now.
+    pub(crate) fn holds(
+        &self,
+        member: usize,
+        binders: &[Value],
+        constraints: &[ClockConstraint],
+    ) -> Result<bool, EvalError> {
+        for c in constraints {
+            let clock = |c: ClockId| self.now - self.zero_at(member, c);
+            let value = clock(c.clock) - c.minus.map_or(0, clock);
+            if !compare(value, c.op, self.span(member, binders, &c.bound)?) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether a member's invariant holds now, its variables' part included.
+    pub(crate) fn invariant_holds(&self, member: usize) -> Result<bool, ModelError> {
+        let place = self.place(member);
+        let all = self.data_holds(member).and_then(|h| Ok(h && self.holds(member, &[], &place.invariant)?));
+        all.map_err(|error| ModelError::Invariant {
+            automaton: self.members[member].name.clone(),
+            location: place.name.clone(),
+            error,
+        })
+    }
+
+    /// Whether the part of a member's invariant that is over variables holds.
+    pub(crate) fn data_holds(&self, member: usize) -> Result<bool, EvalError> {
+        match &self.place(member).holds {
+            None => Ok(true),
+            Some(e) => self.view(member, &[], |v| v.eval(e))?.as_bool().ok_or(EvalError::Type),
+        }
+    }
+
+    /// The first member whose invariant does not hold now.
+    pub(crate) fn broken_invariant(&self) -> Result<Option<usize>, ModelError> {
+        for m in 0..self.members.len() {
+            if !self.invariant_holds(m)? {
+                return Ok(Some(m));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether the edge leaves the current location and its data guard holds; clocks are not looked at.
@@ -87,6 +217,11 @@ impl<'p> Machine<'p> {
         let Some(guard) = &edge.guard else { return Ok(true) };
         let value = self.eval(m, guard).and_then(|v| v.as_bool().ok_or(EvalError::Type));
         value.map_err(|e| self.fault(m, e))
+    }
+
+    /// Whether the edge's clock guard holds now.
+    pub(crate) fn clock_guard(&self, m: &Move) -> Result<bool, ModelError> {
+        self.holds(m.automaton, &m.binders, &self.edge(m).clock_guard).map_err(|e| self.fault(m, e))
     }
 
     /// The arguments that a sending edge sends.
@@ -105,35 +240,91 @@ impl<'p> Machine<'p> {
         }
     }
 
+    /// The arguments that an offering edge offers.
+    pub(crate) fn offered(
+        &self,
+        m: &Move,
+        channel: &Channel,
+        args: &[Expr],
+    ) -> Result<Vec<Value>, ModelError> {
+        let mut values = Vec::with_capacity(args.len());
+        for (param, e) in channel.params.iter().zip(args) {
+            let value = self.eval(m, e).map_err(|e| self.fault(m, e))?;
+            let n = param.number(value).ok_or_else(|| self.fault(m, EvalError::Type))?;
+            if !(param.lo..=param.hi).contains(&n) {
+                return Err(bad_argument(self.names(m), &channel.name, &param.name, value));
+            }
+            values.push(value);
+        }
+        Ok(values)
+    }
+
     /// Goes along an edge: its updates in order, then its target.
     pub(crate) fn take(&mut self, m: &Move) -> Result<(), ModelError> {
         let edge = self.edge(m);
         self.location[m.automaton] = edge.to;
-        for u in &edge.updates {
-            match u {
-                Update::Reset { clock, .. } => self.reset_at[m.automaton][usize::from(clock.0)] = self.now,
-                Update::Assign { place, value } => self.assign(m, usize::from(place.slot), value)?,
-                Update::Call { .. } => {}
-            }
+        edge.updates.iter().try_for_each(|u| self.update(m, u))
+    }
+
+    /// One of an edge's updates.
+    pub(crate) fn update(&mut self, m: &Move, u: &Update) -> Result<(), ModelError> {
+        match u {
+            Update::Reset { clock, from, to } => self.set_clock(m, *clock, *from, to),
+            Update::Assign { place, value } => self.change(m, |view| view.assign(place, value)),
+            Update::Call { function, args } => self.change(m, |view| view.call(*function, args)),
+        }
+    }
+
+    fn set_clock(
+        &mut self,
+        m: &Move,
+        clock: ClockId,
+        from: Option<ClockId>,
+        to: &Time,
+    ) -> Result<(), ModelError> {
+        let plus = self.span(m.automaton, &m.binders, to).map_err(|e| self.fault(m, e))?;
+        let zero = from.map_or(self.now, |from| self.zero_at(m.automaton, from)) - plus;
+        if zero > self.now {
+            let name = clock_name(self.program, self.members[m.automaton], clock);
+            return Err(ModelError::NegativeClock { edge: self.names(m), clock: name });
+        }
+        let at = usize::from(clock.0);
+        let shared = self.shared_zero.len();
+        match self.shared_zero.get_mut(at) {
+            Some(place) => *place = zero,
+            None => self.own_zero[m.automaton][at - shared] = zero,
         }
         Ok(())
     }
 
-    fn assign(&mut self, m: &Move, slot: usize, value: &Expr) -> Result<(), ModelError> {
-        let program = self.program;
-        let var = match program.shared.get(slot) {
-            Some(var) => var,
-            None => &self.members[m.automaton].vars[slot - program.shared.len()],
+    fn change(
+        &mut self,
+        m: &Move,
+        f: impl FnOnce(&exec::View<'_>) -> Result<(), EvalError>,
+    ) -> Result<(), ModelError> {
+        let vars = &self.members[m.automaton].vars;
+        let result = {
+            let own = &mut self.own[m.automaton];
+            let mut memory = Mine { program: self.program, vars, shared: &mut self.shared, own };
+            f(&exec::View::open(&self.functions, &mut memory, slots(self.program, vars), &m.binders))
         };
-        let n = self.eval(m, value).and_then(|v| stored(var, v)).map_err(|e| self.fault(m, e))?;
-        if !(var.lo..=var.hi).contains(&n) {
-            return Err(range_fault(self.names(m), var, n));
-        }
-        match self.shared.get_mut(slot) {
-            Some(place) => *place = n,
-            None => self.own[m.automaton][slot - program.shared.len()] = n,
-        }
-        Ok(())
+        result.map_err(|e| match e {
+            EvalError::Outside { slot, value } => {
+                let at = usize::from(slot);
+                let own = || vars.get(at - self.program.shared.len());
+                match self.program.shared.get(at).or_else(own) {
+                    Some(var) => range_fault(self.names(m), var, value),
+                    None => self.fault(m, e),
+                }
+            }
+            EvalError::Unbound(_)
+            | EvalError::DivisionByZero
+            | EvalError::Overflow
+            | EvalError::Index { .. }
+            | EvalError::Endless
+            | EvalError::Range(_)
+            | EvalError::Type => self.fault(m, e),
+        })
     }
 
     pub(crate) fn edge(&self, m: &Move) -> &'p Edge {
@@ -142,31 +333,35 @@ impl<'p> Machine<'p> {
     }
 
     fn eval(&self, m: &Move, e: &Expr) -> Result<Value, EvalError> {
-        let own = &self.members[m.automaton].vars;
-        e.eval(&|i| {
-            let i = usize::from(i);
-            if let Some(var) = self.program.shared.get(i) {
-                return var.value(self.shared[i]);
-            }
-            let i = i - self.shared.len();
-            match own.get(i) {
-                Some(var) => var.value(self.own[m.automaton][i]),
-                None => m.binders.get(i - own.len()).copied(),
-            }
-        })
+        self.view(m.automaton, &m.binders, |view| view.eval(e))
     }
 
     /// The variable that a member's expressions call `slot`.
     pub(crate) fn variable(&self, member: usize, slot: usize) -> Option<Value> {
-        if let Some(var) = self.program.shared.get(slot) {
-            return var.value(self.shared[slot]);
-        }
-        let own = slot - self.shared.len();
-        let n = *self.own.get(member)?.get(own)?;
-        self.members[member].vars[own].value(n)
+        let vars = &self.members.get(member)?.vars;
+        read(self.program, vars, &self.shared, &self.own[member], u16::try_from(slot).ok()?)
     }
 
-    fn names(&self, m: &Move) -> Box<EdgeName> {
+    /// All variables of the network with the numbers that they keep: the shared ones, then each automaton's.
+    pub(crate) fn numbers(&self) -> Vec<(&'p Var, i64)> {
+        let shared = self.program.shared.iter().zip(&self.shared);
+        let own = self.members.iter().zip(&self.own);
+        let own = own.flat_map(|(a, own)| a.vars.iter().zip(own));
+        shared.chain(own).map(|(v, n)| (v, *n)).collect()
+    }
+
+    /// The value of a function: with its owner's variables if it has one.
+    pub(crate) fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        let owner = self.program.functions.get(usize::from(function.0)).ok_or(EvalError::Type)?.owner;
+        let owner = owner.and_then(|id| self.program.automata.get(usize::from(id.0)));
+        let member = match owner {
+            None => 0,
+            Some(a) => self.members.iter().position(|m| std::ptr::eq(*m, a)).ok_or(EvalError::Type)?,
+        };
+        self.view(member, &[], |view| hrdsl_ir::expr::Scope::apply(view, function, args))
+    }
+
+    pub(crate) fn names(&self, m: &Move) -> Box<EdgeName> {
         EdgeName::of(self.members[m.automaton], self.edge(m))
     }
 
@@ -174,203 +369,289 @@ impl<'p> Machine<'p> {
         ModelError::Evaluation { edge: self.names(m), error }
     }
 
-    /// The ways in which an automaton can receive an event now: data and clock guards hold.
+    pub(crate) fn channel(&self, id: ChannelId) -> Option<&'p Channel> {
+        self.program.channels.get(usize::from(id.0))
+    }
+
+    /// The ways in which an automaton can take part in what another one sends or offers: data guards hold, and the clock
+    /// guards too if they are asked for.
     pub(crate) fn receptions(
         &self,
         member: usize,
-        event: EventId,
+        medium: Medium,
         args: &[Value],
+        clocks: bool,
     ) -> Result<Vec<Move>, ModelError> {
         let mut out = Vec::new();
         for (i, edge) in self.members[member].edges.iter().enumerate() {
-            let Sync::Receive { event: wanted, args: pattern } = &edge.sync else { continue };
+            let pattern: &[ReceiveArg] = match (&edge.sync, medium) {
+                (Sync::Receive { event, args }, Medium::Event(e)) if *event == e => args,
+                (Sync::Accept { channel, args }, Medium::Channel(c)) if *channel == c => args,
+                (Sync::Join { channel }, Medium::Channel(c)) if *channel == c => &[],
+                (
+                    Sync::Internal
+                    | Sync::Send { .. }
+                    | Sync::Receive { .. }
+                    | Sync::Offer { .. }
+                    | Sync::Accept { .. }
+                    | Sync::Join { .. },
+                    _,
+                ) => continue,
+            };
             let mut bound = Binders::new();
-            let here = edge.from == self.location[member] && *wanted == event;
+            let here = edge.from == self.location[member];
             if !here || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
-                continue;
-            }
-            if !self.holds(member, &edge.clock_guard) {
                 continue;
             }
             for mut binders in choices(&edge.selects) {
                 binders.extend_from_slice(&bound);
                 let m = Move { automaton: member, edge: i, binders };
-                if self.guard(&m)? {
+                if self.guard(&m)? && (!clocks || self.clock_guard(&m)?) {
                     out.push(m);
                 }
             }
         }
         Ok(out)
     }
-}
 
-/// Why a run is not one of the network.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Mismatch {
-    step: usize,
-    why: String,
-}
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "step {}: {}", self.step, self.why)
-    }
-}
-
-/// The discrete state after a replay.
-pub(crate) struct Final<'p> {
-    locations: Vec<LocationId>,
-    /// Variables and the numbers that they keep.
-    slots: Vec<(&'p Var, i64)>,
-    counters: Vec<i64>,
-    /// No automaton is in a committed location.
-    pub(crate) settled: bool,
-}
-
-impl Final<'_> {
-    /// Locations, variables, counters, in the search's order.
-    pub(crate) fn numbers(&self) -> Vec<i64> {
-        let locations = self.locations.iter().map(|l| i64::from(l.0));
-        locations.chain(self.slots.iter().map(|s| s.1)).chain(self.counters.iter().copied()).collect()
-    }
-}
-
-impl View for Final<'_> {
-    fn location(&self, automaton: usize) -> Option<LocationId> {
-        self.locations.get(automaton).copied()
-    }
-
-    fn slot(&self, slot: u16) -> Option<Value> {
-        let (var, n) = self.slots.get(usize::from(slot))?;
-        var.value(*n)
-    }
-
-    fn counter(&self, counter: usize) -> i64 {
-        self.counters.get(counter).copied().unwrap_or(0)
-    }
-}
-
-/// Runs a witness and checks each rule of the semantics on the way.
-pub(crate) fn replay<'p>(
-    program: &'p Program,
-    automata: &[&'p Automaton],
-    counters: &[Counter],
-    limits: &[Limit],
-    witness: &Witness,
-) -> Result<Final<'p>, Mismatch> {
-    let mut machine = Machine::new(program, automata, witness.ticks);
-    let mut counted = vec![0; counters.len()];
-    let mut used = vec![0; limits.len()];
-    if let Err(why) = invariants(&machine) {
-        return Err(Mismatch { step: 0, why });
-    }
-    for (step, s) in witness.steps.iter().enumerate() {
-        replay_step(&mut machine, s).map_err(|why| Mismatch { step, why })?;
-        let Some((event, args)) = &s.event else { continue };
-        for (n, counter) in counted.iter_mut().zip(counters) {
-            if any_matches(&counter.patterns, *event, args) && *n < counter.cap {
-                *n += 1;
-            }
-        }
-        for (n, limit) in used.iter_mut().zip(limits) {
-            *n += i64::from(any_matches(&limit.patterns, *event, args));
-            if *n > limit.at_most {
-                return Err(Mismatch { step, why: "an event happens more often than its limit".into() });
-            }
-        }
-    }
-    let shared = program.shared.iter().zip(&machine.shared);
-    let own = automata.iter().zip(&machine.own);
-    let own = own.flat_map(|(a, own)| a.vars.iter().zip(own));
-    Ok(Final {
-        slots: shared.chain(own).map(|(v, n)| (v, *n)).collect(),
-        counters: counted,
-        settled: (0..automata.len()).all(|m| machine.kind(m) != LocationKind::Committed),
-        locations: machine.location,
-    })
-}
-
-fn replay_step(machine: &mut Machine, s: &WitnessStep) -> Result<(), String> {
-    let time = i128::from(s.time);
-    let members = 0..machine.members.len();
-    if time < machine.now {
-        return Err("time goes back".into());
-    }
-    if time > machine.now && members.clone().any(|m| machine.kind(m) != LocationKind::Normal) {
-        return Err("time passes in an urgent or committed location".into());
-    }
-    machine.now = time;
-    invariants(machine)?;
-    let Some((sender, receivers)) = s.moves.split_first() else { return Err("nobody moves".into()) };
-    if s.moves.iter().any(|m| machine.members.get(m.automaton).is_none_or(|a| m.edge >= a.edges.len())) {
-        return Err("an automaton or edge is not there".into());
-    }
-    sends(machine, sender, s)?;
-    receives(machine, sender.automaton, receivers, s)?;
-    let committed = |m: usize| machine.kind(m) == LocationKind::Committed;
-    if members.clone().any(committed) && !s.moves.iter().any(|m| committed(m.automaton)) {
-        return Err("a committed location waits".into());
-    }
-    for m in &s.moves {
-        machine.take(m).map_err(|e| e.to_string())?;
-    }
-    invariants(machine)
-}
-
-fn invariants(machine: &Machine) -> Result<(), String> {
-    match (0..machine.members.len()).find(|&m| !machine.holds(m, machine.invariant(m))) {
-        None => Ok(()),
-        Some(m) => Err(format!("the invariant of `{}` does not hold", machine.members[m].name)),
-    }
-}
-
-fn sends(machine: &Machine, sender: &Move, s: &WitnessStep) -> Result<(), String> {
-    let edge = machine.edge(sender);
-    let chosen = choices(&edge.selects).contains(&sender.binders);
-    if !chosen || !machine.holds(sender.automaton, &edge.clock_guard) {
-        return Err("the sender's selects or clock guard do not hold".into());
-    }
-    if !machine.guard(sender).map_err(|e| e.to_string())? {
-        return Err("the sender's guard does not hold".into());
-    }
-    match (&edge.sync, &s.event) {
-        (Sync::Internal, None) => Ok(()),
-        (Sync::Send { event, args }, Some((sent, values))) if event == sent => {
-            let own = machine.arguments(sender, *event, args).map_err(|e| e.to_string())?;
-            let same = own.iter().map(|v| v.key()).eq(values.iter().map(|v| v.key()));
-            if same { Ok(()) } else { Err("the sender sends other arguments".into()) }
-        }
-        (
-            Sync::Internal
-            | Sync::Send { .. }
-            | Sync::Receive { .. }
-            | Sync::Offer { .. }
-            | Sync::Accept { .. }
-            | Sync::Join { .. },
-            _,
-        ) => Err("the sender's edge sends something else".into()),
-    }
-}
-
-fn receives(machine: &Machine, sender: usize, receivers: &[Move], s: &WitnessStep) -> Result<(), String> {
-    let mut left = receivers;
-    for m in (0..machine.members.len()).filter(|&m| m != sender) {
-        let can = match &s.event {
-            None => Vec::new(),
-            Some((event, args)) => machine.receptions(m, *event, args).map_err(|e| e.to_string())?,
-        };
-        match left.split_first() {
-            Some((first, rest)) if first.automaton == m => {
-                if !can.contains(first) {
-                    return Err(format!("`{}` cannot receive that way", machine.members[m].name));
+    /// Whether a transition over an urgent channel is possible: then no time passes. Clock guards do not matter, since the
+    /// edges of urgent channels have none but those that accept a broadcast. What has no value is not possible.
+    pub(crate) fn is_urged(&self) -> bool {
+        self.program.channels.iter().zip(0u16..).filter(|(c, _)| c.urgent).any(|(channel, id)| {
+            let id = ChannelId(id);
+            match &channel.kind {
+                ChannelKind::Joint(parties) => {
+                    let mut there =
+                        parties.iter().filter_map(|p| Some((self.member(p.automaton)?, p.optional)));
+                    let open =
+                        |m| self.receptions(m, Medium::Channel(id), &[], false).is_ok_and(|w| !w.is_empty());
+                    let ways: Vec<(bool, bool)> = there.by_ref().map(|(m, opt)| (open(m), opt)).collect();
+                    ways.iter().any(|w| w.0) && ways.iter().all(|w| w.0 || w.1)
                 }
-                left = rest;
+                ChannelKind::HandShake => self.offers(id, false).iter().any(|(m, args)| {
+                    self.others(m.automaton).any(|o| {
+                        self.receptions(o, Medium::Channel(id), args, false).is_ok_and(|w| !w.is_empty())
+                    })
+                }),
+                ChannelKind::Broadcast => !self.offers(id, false).is_empty(),
             }
-            Some(_) | None if can.is_empty() => {}
-            Some(_) | None => {
-                return Err(format!("`{}` must take part and does not", machine.members[m].name));
+        })
+    }
+
+    /// The open offers over a channel; those without a value are left out.
+    fn offers(&self, id: ChannelId, clocks: bool) -> Vec<(Move, Vec<Value>)> {
+        let Some(declared) = self.channel(id) else { return Vec::new() };
+        let mut out = Vec::new();
+        for (automaton, a) in self.members.iter().enumerate() {
+            for (edge, e) in a.edges.iter().enumerate() {
+                let Sync::Offer { channel, args } = &e.sync else { continue };
+                if *channel != id || e.from != self.location[automaton] {
+                    continue;
+                }
+                for binders in choices(&e.selects) {
+                    let m = Move { automaton, edge, binders };
+                    let open = self.guard(&m) == Ok(true) && (!clocks || self.clock_guard(&m) == Ok(true));
+                    if open && let Ok(args) = self.offered(&m, declared, args) {
+                        out.push((m, args));
+                    }
+                }
             }
         }
+        out
     }
-    if left.is_empty() { Ok(()) } else { Err("the receivers are out of order".into()) }
+
+    pub(crate) fn others(&self, member: usize) -> impl Iterator<Item = usize> + use<> {
+        (0..self.members.len()).filter(move |&m| m != member)
+    }
+
+    /// Where an automaton of the program is among the members.
+    pub(crate) fn member(&self, id: hrdsl_ir::ta::AutomatonId) -> Option<usize> {
+        let automaton = self.program.automata.get(usize::from(id.0))?;
+        self.members.iter().position(|m| std::ptr::eq(*m, automaton))
+    }
+
+    /// Whether time may pass as far as locations and channels tell.
+    pub(crate) fn may_wait(&self) -> bool {
+        (0..self.members.len()).all(|m| self.kind(m) == LocationKind::Normal) && !self.is_urged()
+    }
+
+    /// Whether some transition is possible right now.
+    ///
+    /// # Errors
+    /// If the model is at fault.
+    pub(crate) fn can_move(&self) -> Result<bool, ModelError> {
+        let mut groups: Vec<Vec<Vec<Move>>> = Vec::new();
+        for (automaton, a) in self.members.iter().enumerate() {
+            for (edge, e) in a.edges.iter().enumerate().filter(|(_, e)| e.from == self.location[automaton]) {
+                for binders in choices(&e.selects) {
+                    let m = Move { automaton, edge, binders };
+                    if self.guard(&m)? && self.clock_guard(&m)? {
+                        self.partners(&m, &mut groups)?;
+                    }
+                }
+            }
+        }
+        for group in groups {
+            if self.some_way(&group)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The transitions that an open edge starts: for each, what each automaton that takes part may do.
+    fn partners(&self, m: &Move, groups: &mut Vec<Vec<Vec<Move>>>) -> Result<(), ModelError> {
+        let hear = |medium: Medium, args: &[Value]| -> Result<Vec<Vec<Move>>, ModelError> {
+            let mut all = vec![vec![m.clone()]];
+            for o in self.others(m.automaton) {
+                let ways = self.receptions(o, medium, args, true)?;
+                if !ways.is_empty() {
+                    all.push(ways);
+                }
+            }
+            Ok(all)
+        };
+        match &self.edge(m).sync {
+            Sync::Internal => groups.push(vec![vec![m.clone()]]),
+            Sync::Send { event, args } => {
+                let args = self.arguments(m, *event, args)?;
+                groups.push(hear(Medium::Event(*event), &args)?);
+            }
+            Sync::Offer { channel, args } => {
+                let Some(declared) = self.channel(*channel) else { return Ok(()) };
+                let args = self.offered(m, declared, args)?;
+                let all = hear(Medium::Channel(*channel), &args)?;
+                match declared.kind {
+                    ChannelKind::Broadcast => groups.push(all),
+                    ChannelKind::HandShake | ChannelKind::Joint(_) => {
+                        groups.extend(all.into_iter().skip(1).map(|ways| vec![vec![m.clone()], ways]));
+                    }
+                }
+            }
+            Sync::Join { channel } => groups.extend(self.joint(*channel, m)?),
+            Sync::Receive { .. } | Sync::Accept { .. } => {}
+        }
+        Ok(())
+    }
+
+    /// What each party of a joint channel may do; nothing if a party that must take part cannot, or if the given move is
+    /// not the first party's, which starts it.
+    pub(crate) fn joint(&self, id: ChannelId, first: &Move) -> Result<Option<Vec<Vec<Move>>>, ModelError> {
+        let Some(ChannelKind::Joint(parties)) = self.channel(id).map(|c| &c.kind) else { return Ok(None) };
+        let mut all = Vec::new();
+        for p in parties {
+            let Some(member) = self.member(p.automaton) else { continue };
+            let ways = self.receptions(member, Medium::Channel(id), &[], true)?;
+            match (ways.is_empty(), p.optional) {
+                (true, true) => {}
+                (true, false) => return Ok(None),
+                (false, _) => all.push(ways),
+            }
+        }
+        Ok(all.first().is_some_and(|ways| ways.contains(first)).then_some(all))
+    }
+
+    /// Whether one choice of a move for each automaton is a transition.
+    fn some_way(&self, group: &[Vec<Move>]) -> Result<bool, ModelError> {
+        let takes_committed =
+            group.iter().any(|ways| self.kind(ways[0].automaton) == LocationKind::Committed);
+        if self.any_committed() && !takes_committed {
+            return Ok(false);
+        }
+        let mut at = vec![0; group.len()];
+        loop {
+            let mut next = self.clone();
+            for (ways, &i) in group.iter().zip(&at) {
+                next.take(&ways[i])?;
+            }
+            if next.broken_invariant()?.is_none() {
+                return Ok(true);
+            }
+            let Some(turn) = (0..at.len()).rev().find(|&i| at[i] + 1 < group[i].len()) else {
+                return Ok(false);
+            };
+            at[turn] += 1;
+            at[turn + 1..].fill(0);
+        }
+    }
+
+    /// Whether some transition is possible now or after some delay.
+    ///
+    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and a tick to
+    /// either side.
+    ///
+    /// # Errors
+    /// If the model is at fault.
+    pub(crate) fn can_ever_move(&self) -> Result<bool, ModelError> {
+        if self.can_move()? {
+            return Ok(true);
+        }
+        if !self.may_wait() {
+            return Ok(false);
+        }
+        for later in self.turns() {
+            let mut then = self.clone();
+            then.now = later;
+            if then.broken_invariant()?.is_none() && then.can_move()? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The times from now on at which a constraint may change its value, in order.
+    fn turns(&self) -> Vec<i128> {
+        let mut times = Vec::new();
+        for (member, a) in self.members.iter().enumerate() {
+            let edges = a.edges.iter().filter(|e| e.from == self.location[member]);
+            let targets = edges.clone().flat_map(|e| &a.locations[usize::from(e.to.0)].invariant);
+            let guards = edges.clone().flat_map(|e| e.clock_guard.iter().map(move |c| (e, c)));
+            for c in targets.chain(&self.place(member).invariant) {
+                self.note_turn(member, &[], c, &mut times);
+            }
+            for (e, c) in guards {
+                for binders in choices(&e.selects) {
+                    self.note_turn(member, &binders, c, &mut times);
+                }
+            }
+        }
+        times.retain(|t| *t > self.now);
+        times.sort_unstable();
+        times.dedup();
+        times
+    }
+
+    fn note_turn(&self, member: usize, binders: &[Value], c: &ClockConstraint, times: &mut Vec<i128>) {
+        if let (None, Ok(bound)) = (c.minus, self.span(member, binders, &c.bound)) {
+            let at = self.zero_at(member, c.clock) + bound;
+            times.extend([at - 1, at, at + 1]);
+        }
+    }
+}
+
+pub(crate) fn compare(value: i128, op: ClockOp, bound: i128) -> bool {
+    match op {
+        ClockOp::Lt => value < bound,
+        ClockOp::Le => value <= bound,
+        ClockOp::Eq => value == bound,
+        ClockOp::Ge => value >= bound,
+        ClockOp::Gt => value > bound,
+    }
+}
+
+/// The name of a clock as an automaton numbers it.
+pub(crate) fn clock_name(program: &Program, automaton: &Automaton, clock: ClockId) -> String {
+    let at = usize::from(clock.0);
+    match program.clocks.get(at) {
+        Some(shared) => shared.clone(),
+        None => {
+            let own = automaton.clocks.get(at - program.clocks.len());
+            own.map_or_else(|| format!("#{at}"), |c| format!("{}.{c}", automaton.name))
+        }
+    }
+}
+
+/// How many variables an automaton knows.
+fn slots(program: &Program, vars: &[Var]) -> u16 {
+    u16::try_from(program.shared.len() + vars.len()).unwrap_or(u16::MAX)
 }

@@ -48,7 +48,13 @@ pub enum ModelError {
     /// An update leaves the range of a variable.
     #[error("{edge}: `{variable}` becomes {value}, outside {lo}..{hi}")]
     Range { edge: Box<EdgeName>, variable: String, value: i64, lo: i64, hi: i64 },
-    /// An argument of a sent event is outside the range of its parameter, or no value of its enumeration.
+    /// An update sets a clock to less than zero.
+    #[error("{edge}: `{clock}` becomes less than zero")]
+    NegativeClock { edge: Box<EdgeName>, clock: String },
+    /// An invariant has no value.
+    #[error("the invariant of `{automaton}.{location}`: {error}")]
+    Invariant { automaton: String, location: String, error: EvalError },
+    /// An argument of a sent event or of an offer is outside the range of its parameter, or no value of its enumeration.
     #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
     Argument { edge: Box<EdgeName>, event: String, parameter: String, value: Value },
     /// A player's invariant (or urgent location) lets no time pass, yet time passed: nothing it could do was enabled.

@@ -60,6 +60,35 @@ impl Extrapolation {
         }
     }
 
+    pub(crate) fn bounds(&self, locations: &[i64], out: &mut crate::abstraction::Bounds) {
+        let mut lu = Vec::new();
+        self.lu(locations, &mut lu);
+        for (i, b) in lu.iter().enumerate() {
+            (out.lower[i], out.upper[i]) = (out.lower[i].max(b.lower), out.upper[i].max(b.upper));
+        }
+    }
+
+    pub(crate) fn diagonals(&self) -> Vec<Constraint> {
+        self.diagonals.as_ref().map_or(Vec::new(), |d| d.constraints.clone())
+    }
+
+    pub(crate) fn greatest(&self, dim: usize) -> Vec<i64> {
+        match &self.diagonals {
+            Some(d) => d.greatest.clone(),
+            None => {
+                let mut all = vec![0; dim];
+                for (first, places) in &self.members {
+                    for row in places {
+                        for (k, b) in row.iter().enumerate() {
+                            all[first + k] = all[first + k].max(b.lower).max(b.upper);
+                        }
+                    }
+                }
+                all
+            }
+        }
+    }
+
     fn lu(&self, locations: &[i64], lu: &mut Vec<Lu>) {
         lu.clear();
         lu.push(Lu { lower: 0, upper: 0 });

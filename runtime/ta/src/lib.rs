@@ -19,16 +19,23 @@
 //! An event is one occurrence: the body of a stimulus is not executed, so a model that speaks of a stimulus's events
 //! sends them itself.
 
+mod abstraction;
 mod check;
 mod concrete;
 pub mod dbm;
 mod error;
 mod extrapolation;
+pub mod federation;
+mod graph;
 mod network;
 mod player;
 pub mod query;
+mod replay;
+mod schedule;
 mod search;
 mod semantics;
+mod sequence;
+mod story;
 mod witness;
 mod zone;
 
@@ -36,6 +43,8 @@ pub use error::{EdgeName, Error, ModelError};
 pub use network::{Model, slot_names};
 pub use player::Player;
 pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula};
+pub use schedule::{DAWDLE, Timing};
 pub use search::{Exhausted, Outcome, Report, check, explore};
 pub use semantics::{Binders, Move};
-pub use witness::{Witness, WitnessStep};
+pub use story::{Medium, Part, Scene, Story};
+pub use witness::{Ending, Witness, WitnessStep};

@@ -221,6 +221,7 @@ impl<'p> Model<'p> {
         match formula {
             StateFormula::And(fs) | StateFormula::Or(fs) => fs.iter().try_for_each(|f| self.check_formula(f)),
             StateFormula::Not(f) => self.check_formula(f),
+            StateFormula::Clock(_) | StateFormula::Deadlock => Ok(()),
             StateFormula::At { automaton, location } if self.has_location(*automaton, *location) => Ok(()),
             StateFormula::At { .. } => Err(unknown()),
             StateFormula::Data(e) => {

@@ -3,11 +3,16 @@
 //! The policy is urgency: whenever an internal or sending edge is enabled, the first in source order is taken at once, so
 //! the model shows its fastest behaviour. A strict lower bound is met one nanosecond after it.
 //!
-//! The player has its own copy of the program's shared variables: what other automata do to theirs it does not see.
+//! The player has its own copy of the program's shared variables and clocks: what other automata do to theirs it does not
+//! see. Since it is alone, it never takes edges over hand-shakes and joint channels; an offer over a broadcast channel it
+//! takes as an internal edge, for nobody hears it.
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    ta::{AutomatonId, ClockConstraint, ClockOp, LocationId, LocationKind, Sync, Update},
+    expr::EvalError,
+    ta::{
+        AutomatonId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, Sync, Update,
+    },
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -76,8 +81,8 @@ impl<'p> Player<'p> {
             if *wanted != event || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
                 continue;
             }
-            if let Some(m) = self.enabled(e, &bound)? {
-                return self.take(&m);
+            if let Some(way) = self.enabled(e, &bound)? {
+                return self.go(way);
             }
         }
         Ok(())
@@ -89,16 +94,18 @@ impl<'p> Player<'p> {
     /// If the model is at fault: no value, out of range, stuck, or edges without end at one instant.
     pub fn run(&mut self, now: Nanos, out: &mut Vec<(EventId, Vec<Value>)>) -> Result<(), ModelError> {
         self.advance(now)?;
-        while let Some(m) = self.next_move()? {
-            match &self.machine.edge(&m).sync {
-                Sync::Send { event, args } => out.push((*event, self.machine.arguments(&m, *event, args)?)),
+        while let Some(way) = self.next_move()? {
+            match &self.machine.edge(&way.step).sync {
+                Sync::Send { event, args } => {
+                    out.push((*event, self.machine.arguments(&way.step, *event, args)?));
+                }
                 Sync::Internal
                 | Sync::Receive { .. }
                 | Sync::Offer { .. }
                 | Sync::Accept { .. }
                 | Sync::Join { .. } => {}
             }
-            self.take(&m)?;
+            self.go(way)?;
         }
         Ok(())
     }
@@ -108,21 +115,33 @@ impl<'p> Player<'p> {
     #[must_use]
     pub fn next_wake(&self) -> Option<Nanos> {
         let automaton = self.machine.members.first()?;
-        let times = automaton.edges.iter().enumerate().filter_map(|(e, edge)| {
-            let active = match edge.sync {
-                Sync::Internal | Sync::Send { .. } => true,
-                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => false,
-            };
-            if !active || edge.from != self.machine.location[0] {
-                return None;
+        let mut least: Option<i128> = None;
+        for (e, edge) in automaton.edges.iter().enumerate() {
+            if edge.from != self.machine.location[0] || !self.is_active(&edge.sync) {
+                continue;
             }
-            // A guard without a value wakes it, too, so that `run` can report it.
-            let possible = choices(&edge.selects)
-                .into_iter()
-                .any(|binders| self.machine.guard(&Move { automaton: 0, edge: e, binders }).unwrap_or(true));
-            possible.then(|| self.earliest(e)).flatten()
-        });
-        times.min().and_then(|t| Nanos::try_from(t).ok())
+            for binders in choices(&edge.selects) {
+                let m = Move { automaton: 0, edge: e, binders };
+                // A guard without a value wakes it, too, so that `run` can report it.
+                if self.machine.guard(&m).unwrap_or(true)
+                    && let Some(t) = self.earliest(&m)
+                {
+                    least = Some(least.map_or(t, |l| l.min(t)));
+                }
+            }
+        }
+        least.and_then(|t| Nanos::try_from(t).ok())
+    }
+
+    /// Whether it can take such an edge without having received anything.
+    fn is_active(&self, sync: &Sync) -> bool {
+        match sync {
+            Sync::Internal | Sync::Send { .. } => true,
+            Sync::Offer { channel, .. } => {
+                self.machine.channel(*channel).is_some_and(|c| c.kind == ChannelKind::Broadcast)
+            }
+            Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => false,
+        }
     }
 
     /// Lets time pass. Times before the last call count as that.
@@ -139,42 +158,40 @@ impl<'p> Player<'p> {
             LocationKind::Normal => true,
             LocationKind::Urgent | LocationKind::Committed => self.machine.now == self.entered,
         };
-        if !stays || !self.machine.holds(0, self.machine.invariant(0)) {
+        if !stays || !self.machine.invariant_holds(0)? {
             let (automaton, location) = self.names();
             return Err(ModelError::Timelock { automaton, location });
         }
         Ok(())
     }
 
-    fn next_move(&mut self) -> Result<Option<Move>, ModelError> {
+    fn next_move(&mut self) -> Result<Option<Way<'p>>, ModelError> {
         for e in 0..self.machine.members[0].edges.len() {
-            match self.machine.members[0].edges[e].sync {
-                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
-                Sync::Internal | Sync::Send { .. } => {
-                    if let Some(m) = self.enabled(e, &[])? {
-                        return Ok(Some(m));
-                    }
-                }
+            if self.is_active(&self.machine.members[0].edges[e].sync)
+                && let Some(way) = self.enabled(e, &[])?
+            {
+                return Ok(Some(way));
             }
         }
         Ok(None)
     }
 
     /// The edge with the chosen selects, if it is enabled now and its target's invariant will hold.
-    fn enabled(&mut self, edge: usize, bound: &[Value]) -> Result<Option<Move>, ModelError> {
+    fn enabled(&mut self, edge: usize, bound: &[Value]) -> Result<Option<Way<'p>>, ModelError> {
         let e = &self.machine.members[0].edges[edge];
-        if e.from != self.machine.location[0]
-            || !self.machine.holds(0, &e.clock_guard)
-            || !self.may_enter(edge)
-        {
+        if e.from != self.machine.location[0] {
             return Ok(None);
         }
         let mut open = Vec::new();
         for mut binders in choices(&e.selects) {
             binders.extend_from_slice(bound);
-            let m = Move { automaton: 0, edge, binders };
-            if self.machine.guard(&m)? {
-                open.push(m);
+            let step = Move { automaton: 0, edge, binders };
+            // First what the clocks forbid, so that a fault counts only where they do not.
+            if !self.machine.clock_guard(&step)? || !self.machine.guard(&step)? {
+                continue;
+            }
+            if let Some(after) = self.after(&step)? {
+                open.push(Way { step, after });
                 if self.rng.is_none() {
                     break;
                 }
@@ -187,13 +204,32 @@ impl<'p> Player<'p> {
         Ok(if open.is_empty() { None } else { Some(open.swap_remove(pick)) })
     }
 
-    fn take(&mut self, m: &Move) -> Result<(), ModelError> {
+    /// What the edge leads to now; `None`: the target's invariant forbids it.
+    fn after(&self, m: &Move) -> Result<Option<Machine<'p>>, ModelError> {
+        let now = self.machine.now;
+        // The clocks first: if they forbid the edge, its updates have no faults.
+        let clocks =
+            self.zeros_after(m).and_then(|zeros| self.window(&self.target(m), &zeros, m, (now, now)));
+        if clocks.is_ok_and(|(lo, hi)| lo > hi) && !self.depends(m) {
+            return Ok(None);
+        }
+        let mut after = self.machine.clone();
+        after.take(m)?;
+        Ok(after.broken_invariant()?.is_none().then_some(after))
+    }
+
+    /// Whether the target's bounds on clocks have variables, which the edge may change.
+    fn depends(&self, m: &Move) -> bool {
+        self.target(m).iter().any(|c| !c.bound.terms.is_empty())
+    }
+
+    fn go(&mut self, way: Way<'p>) -> Result<(), ModelError> {
         self.taken += 1;
         if self.taken > ZENO {
             let (automaton, location) = self.names();
             return Err(ModelError::Zeno { automaton, location });
         }
-        self.machine.take(m)?;
+        self.machine = way.after;
         self.entered = self.machine.now;
         Ok(())
     }
@@ -203,60 +239,97 @@ impl<'p> Player<'p> {
         (a.name.clone(), a.locations[usize::from(self.machine.location[0].0)].name.clone())
     }
 
-    /// Whether the target's invariant holds after the edge's resets, if it is taken now.
-    fn may_enter(&self, edge: usize) -> bool {
-        let now = self.machine.now;
-        let (lo, hi) = self.interval(edge, &self.target(edge), (now, now), true);
-        lo <= hi
-    }
-
-    fn target(&self, edge: usize) -> Vec<ClockConstraint> {
+    fn target(&self, m: &Move) -> Vec<ClockConstraint> {
         let a = self.machine.members[0];
-        a.locations[usize::from(a.edges[edge].to.0)].invariant.clone()
+        a.locations[usize::from(self.machine.edge(m).to.0)].invariant.clone()
     }
 
     /// The earliest time from now on at which an edge's clock guard holds, the location's invariant still holds, and the
-    /// target's will.
-    fn earliest(&self, edge: usize) -> Option<i128> {
+    /// target's will. What has no value is left to `run`.
+    fn earliest(&self, m: &Move) -> Option<i128> {
         let now = self.machine.now;
         let last = match self.machine.kind(0) {
             LocationKind::Normal => i128::MAX,
             LocationKind::Urgent | LocationKind::Committed => self.entered,
         };
-        let guard = &self.machine.members[0].edges[edge].clock_guard;
-        let mut window = self.interval(edge, guard, (now, last), false);
-        window = self.interval(edge, self.machine.invariant(0), window, false);
-        window = self.interval(edge, &self.target(edge), window, true);
+        let still: Vec<Zero> = self.zeros();
+        let here = &self.machine.place(0).invariant;
+        let mut window = self.window(&self.machine.edge(m).clock_guard, &still, m, (now, last)).ok()?;
+        window = self.window(here, &still, m, window).ok()?;
+        if window.0 > window.1 {
+            return None;
+        }
+        // Variables and clocks after the edge; what has no value is for `run` to say.
+        let mut after = self.machine.clone();
+        let Ok(zeros) = self.zeros_after(m) else { return Some(window.0) };
+        if after.take(m).is_err() {
+            return Some(window.0);
+        }
+        let place = after.place(0);
+        if place.holds.is_some() && !holds_data(&after) {
+            return None;
+        }
+        let after = Player { machine: after, entered: 0, taken: 0, rng: None, fault: None };
+        let none = Move { automaton: 0, edge: m.edge, binders: Binders::new() };
+        window = after.window(&place.invariant, &zeros, &none, window).ok()?;
         (window.0 <= window.1).then_some(window.0)
     }
 
-    /// Narrows an interval of times to those at which the constraints hold: before the edge, or `after` its resets.
-    fn interval(
+    /// The clocks as they are while nothing happens.
+    fn zeros(&self) -> Vec<Zero> {
+        let a = self.machine.members[0];
+        let count = self.machine.program.clocks.len() + a.clocks.len();
+        (0..count)
+            .filter_map(|c| u16::try_from(c).ok())
+            .map(|c| Zero { runs: true, at: self.machine.zero_at(0, ClockId(c)) })
+            .collect()
+    }
+
+    /// The clocks after an edge that is taken some time from now on.
+    fn zeros_after(&self, m: &Move) -> Result<Vec<Zero>, EvalError> {
+        let mut zeros = self.zeros();
+        let mut trial = self.machine.clone();
+        for u in &self.machine.edge(m).updates {
+            match u {
+                Update::Assign { .. } | Update::Call { .. } => {
+                    trial.update(m, u).map_err(|_| EvalError::Type)?;
+                }
+                Update::Reset { clock, from, to } => {
+                    let to = trial.span(0, &m.binders, to)?;
+                    let from = from.map_or(Zero { runs: false, at: 0 }, |f| zeros[usize::from(f.0)]);
+                    let at = if from.runs { from.at - to } else { from.at + to };
+                    zeros[usize::from(clock.0)] = Zero { runs: from.runs, at };
+                }
+            }
+        }
+        Ok(zeros)
+    }
+
+    /// Narrows an interval of times to those at which the constraints hold.
+    fn window(
         &self,
-        edge: usize,
         constraints: &[ClockConstraint],
+        zeros: &[Zero],
+        m: &Move,
         (mut lo, mut hi): (i128, i128),
-        after: bool,
-    ) -> (i128, i128) {
-        let resets = |clock| {
-            after
-                && self.machine.members[0].edges[edge].updates.iter().any(|u| match u {
-                    Update::Assign { .. } | Update::Call { .. } => false,
-                    Update::Reset { clock: c, .. } => *c == clock,
-                })
-        };
+    ) -> Result<(i128, i128), EvalError> {
         for c in constraints {
-            // As `sign · t` against `bound`: a clock is the time since its reset, or 0 if this edge resets it.
-            let (mut sign, mut bound) = (0, i128::from(c.bound.nanos));
+            // As `sign · t` against `bound`: a clock is the time since it was zero, or what the edge sets it to.
+            let (mut sign, mut bound) = (0, self.machine.span(0, &m.binders, &c.bound)?);
             for (clock, factor) in [(Some(c.clock), 1), (c.minus, -1)] {
-                let Some(clock) = clock.filter(|&clock| !resets(clock)) else { continue };
-                sign += factor;
-                bound += factor * self.machine.zero_at(0, clock);
+                let Some(clock) = clock else { continue };
+                let zero = zeros[usize::from(clock.0)];
+                if zero.runs {
+                    sign += factor;
+                    bound += factor * zero.at;
+                } else {
+                    bound -= factor * zero.at;
+                }
             }
             let (least, most) = allowed(c.op, bound);
             match sign {
                 0 if least <= 0 && 0 <= most => {}
-                0 => return (1, 0),
+                0 => return Ok((1, 0)),
                 1 => (lo, hi) = (lo.max(least), hi.min(most)),
                 // `0 - t`, the clock of `minus` being the one that runs
                 _ => {
@@ -265,8 +338,25 @@ impl<'p> Player<'p> {
                 }
             }
         }
-        (lo, hi)
+        Ok((lo, hi))
     }
+}
+
+/// An edge that can be taken, and what it leads to.
+struct Way<'p> {
+    step: Move,
+    after: Machine<'p>,
+}
+
+/// A clock: one that runs since it was zero `at` that time, or one that is `at` when the edge is taken.
+#[derive(Clone, Copy)]
+struct Zero {
+    runs: bool,
+    at: i128,
+}
+
+fn holds_data(machine: &Machine) -> bool {
+    machine.data_holds(0).unwrap_or(true)
 }
 
 /// The whole numbers `n` with `n op bound`, as an interval; without an end it is the type's.

@@ -1,6 +1,18 @@
 //! Questions about a network: goals, counters of events, and restrictions of the environment.
 
-use hrdsl_ir::{EventId, EventPattern, Expr, Value, expr::EvalError, ta::LocationId};
+use hrdsl_ir::{
+    EventId, EventPattern, Expr, Nanos, Value,
+    expr::{EvalError, Scope},
+    ta::{self as ir, ClockConstraint, ClockId, ClockOp, FunctionId, LocationId, Time},
+};
+use smallvec::{SmallVec, smallvec};
+
+use crate::{
+    ModelError,
+    dbm::{Bound, Dbm},
+    federation::{Federation, keep},
+    network::Constraint,
+};
 
 /// What a search looks for. Automata are given by their index in the network.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +36,7 @@ pub enum GoalKind {
     Condition(StateFormula),
 }
 
-/// A formula over a state's locations, variables and counters.
+/// A formula over a state's locations, variables, clocks and counters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StateFormula {
     And(Vec<StateFormula>),
@@ -43,6 +55,11 @@ pub enum StateFormula {
         lo: i64,
         hi: Option<i64>,
     },
+    /// Over the network's clocks: the shared ones first, then each automaton's own; see
+    /// [`clock_names`](crate::clock_names). Expressions in it are as in `Data`.
+    Clock(ClockConstraint),
+    /// No transition is possible, now or after any delay.
+    Deadlock,
 }
 
 /// Counts the events that match one of the patterns, up to `cap`: it stays there.
@@ -82,10 +99,96 @@ pub trait View {
     fn slot(&self, slot: u16) -> Option<Value>;
     /// The counter's number.
     fn counter(&self, counter: usize) -> i64;
+    /// The value of a function.
+    ///
+    /// # Errors
+    /// Of its body; `Type` if there is no such function.
+    fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        let _ = (function, args);
+        Err(EvalError::Type)
+    }
+}
+
+/// A discrete state that knows the network's clocks, too.
+pub trait Symbolic: View {
+    /// The nanoseconds of a unit of zones' bounds.
+    fn unit(&self) -> Nanos;
+    /// The part of a zone from which no transition is possible, now or after any delay.
+    ///
+    /// # Errors
+    /// If the model is at fault there.
+    fn deadlocked(&self, zone: &Dbm) -> Result<Federation, ModelError>;
+}
+
+/// A view as the scope of expressions.
+pub(crate) struct Slots<'a>(pub(crate) &'a dyn View);
+
+impl Scope for Slots<'_> {
+    fn var(&self, slot: u16) -> Option<Value> {
+        self.0.slot(slot)
+    }
+
+    fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        self.0.apply(function, args)
+    }
+}
+
+impl From<&ir::Formula> for StateFormula {
+    fn from(f: &ir::Formula) -> Self {
+        let all = |fs: &[ir::Formula]| fs.iter().map(StateFormula::from).collect();
+        match f {
+            ir::Formula::At { automaton, location } => {
+                StateFormula::At { automaton: usize::from(*automaton), location: *location }
+            }
+            ir::Formula::Data(e) => StateFormula::Data(e.clone()),
+            ir::Formula::Clock(c) => StateFormula::Clock(c.clone()),
+            ir::Formula::Deadlock => StateFormula::Deadlock,
+            ir::Formula::Not(f) => StateFormula::from(&**f).not(),
+            ir::Formula::And(fs) => StateFormula::And(all(fs)),
+            ir::Formula::Or(fs) => StateFormula::Or(all(fs)),
+        }
+    }
+}
+
+/// The time of an expression in nanoseconds.
+///
+/// # Errors
+/// If a term has no value or the sum is too large.
+pub(crate) fn nanos(time: &Time, scope: &dyn Scope) -> Result<Nanos, EvalError> {
+    let mut sum = time.nanos;
+    for term in &time.terms {
+        let n = term.value.eval_in(scope)?.as_int().ok_or(EvalError::Type)?;
+        sum = term.factor.checked_mul(n).and_then(|t| sum.checked_add(t)).ok_or(EvalError::Overflow)?;
+    }
+    Ok(sum)
+}
+
+/// A comparison of clocks of the network, `bound` units, as bounds of a zone: one, or two for an equality.
+pub(crate) fn as_bounds(c: &ClockConstraint, bound: i64) -> SmallVec<[Constraint; 2]> {
+    let clock = |x: ClockId| x.0.saturating_add(1);
+    let (i, j) = (clock(c.clock), c.minus.map_or(0, clock));
+    let upper = |bound| Constraint { i, j, bound };
+    let lower = |bound| Constraint { i: j, j: i, bound };
+    match c.op {
+        ClockOp::Lt => smallvec![upper(Bound::lt(bound))],
+        ClockOp::Le => smallvec![upper(Bound::le(bound))],
+        ClockOp::Eq => smallvec![upper(Bound::le(bound)), lower(Bound::le(-bound))],
+        ClockOp::Ge => smallvec![lower(Bound::le(-bound))],
+        ClockOp::Gt => smallvec![lower(Bound::lt(-bound))],
+    }
 }
 
 impl StateFormula {
-    /// Whether it holds in a state.
+    #[must_use]
+    #[expect(clippy::should_implement_trait, reason = "it is a constructor, as `And` and `Or` are")]
+    pub fn not(self) -> Self {
+        match self {
+            StateFormula::Not(f) => *f,
+            other => StateFormula::Not(Box::new(other)),
+        }
+    }
+
+    /// Whether it holds in a state; without clocks, so `Clock` and `Deadlock` have no value.
     ///
     /// # Errors
     /// If an expression has no value there.
@@ -109,13 +212,102 @@ impl StateFormula {
             }
             StateFormula::Not(f) => Ok(!f.holds(view)?),
             StateFormula::At { automaton, location } => Ok(view.location(*automaton) == Some(*location)),
-            StateFormula::Data(e) => e.eval(&|i| view.slot(i))?.as_bool().ok_or(EvalError::Type),
+            StateFormula::Data(e) => e.eval_in(&Slots(view))?.as_bool().ok_or(EvalError::Type),
             StateFormula::CounterIn { counter, lo, hi } => {
                 let n = view.counter(*counter);
                 Ok(*lo <= n && hi.is_none_or(|hi| n <= hi))
             }
+            StateFormula::Clock(_) | StateFormula::Deadlock => Err(EvalError::Type),
         }
     }
+
+    /// Calls `f` with each comparison of clocks in it.
+    pub fn each_clock(&self, f: &mut dyn FnMut(&ClockConstraint)) {
+        match self {
+            StateFormula::And(fs) | StateFormula::Or(fs) => fs.iter().for_each(|g| g.each_clock(f)),
+            StateFormula::Not(g) => g.each_clock(f),
+            StateFormula::Clock(c) => f(c),
+            StateFormula::At { .. }
+            | StateFormula::Data(_)
+            | StateFormula::CounterIn { .. }
+            | StateFormula::Deadlock => {}
+        }
+    }
+
+    /// Whether it speaks of `deadlock`.
+    #[must_use]
+    pub fn asks_deadlock(&self) -> bool {
+        match self {
+            StateFormula::And(fs) | StateFormula::Or(fs) => fs.iter().any(StateFormula::asks_deadlock),
+            StateFormula::Not(f) => f.asks_deadlock(),
+            StateFormula::Deadlock => true,
+            StateFormula::At { .. }
+            | StateFormula::Data(_)
+            | StateFormula::CounterIn { .. }
+            | StateFormula::Clock(_) => false,
+        }
+    }
+
+    /// Whether the state's discrete part alone does not decide it.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        let mut timed = self.asks_deadlock();
+        self.each_clock(&mut |_| timed = true);
+        timed
+    }
+
+    /// The part of a zone in which it holds.
+    ///
+    /// # Errors
+    /// `Question` if an expression has no value there; what `deadlocked` gives.
+    pub fn part(&self, at: &dyn Symbolic, zone: &Dbm) -> Result<Federation, ModelError> {
+        match self {
+            StateFormula::And(fs) => {
+                let mut parts = Federation::of(zone.clone());
+                for f in fs {
+                    let mut next = Federation::empty();
+                    for z in parts.zones() {
+                        next = next.union(f.part(at, z)?);
+                    }
+                    parts = next;
+                }
+                Ok(parts)
+            }
+            StateFormula::Or(fs) => {
+                let mut parts = Federation::empty();
+                for f in fs {
+                    parts = parts.union(f.part(at, zone)?);
+                }
+                Ok(parts)
+            }
+            StateFormula::Not(f) => Ok(Federation::of(zone.clone()).without(&f.part(at, zone)?)),
+            StateFormula::Clock(c) => clock_part(c, at, zone),
+            StateFormula::Deadlock => at.deadlocked(zone),
+            StateFormula::At { .. } | StateFormula::Data(_) | StateFormula::CounterIn { .. } => {
+                let holds = self.holds(at).map_err(no_value)?;
+                Ok(if holds { Federation::of(zone.clone()) } else { Federation::empty() })
+            }
+        }
+    }
+}
+
+/// What is said of a formula without a value.
+pub(crate) fn no_value(e: EvalError) -> ModelError {
+    ModelError::Question(format!("the formula has no value in a state that can be reached: {e}"))
+}
+
+fn clock_part(c: &ClockConstraint, at: &dyn Symbolic, zone: &Dbm) -> Result<Federation, ModelError> {
+    let time = nanos(&c.bound, &Slots(at)).map_err(no_value)?;
+    if time % at.unit() != 0 {
+        return Err(ModelError::Question("a time in the formula is finer than the network's unit".into()));
+    }
+    let mut part = zone.clone();
+    for b in as_bounds(c, time / at.unit()) {
+        if !keep(&mut part, b) {
+            return Ok(Federation::empty());
+        }
+    }
+    Ok(Federation::of(part))
 }
 
 /// Whether one of the patterns matches.

@@ -326,7 +326,7 @@ impl<'m, 'p> Search<'m, 'p> {
             at = self.nodes[at as usize].parent;
         }
         choices.reverse();
-        witness::build(self.model, &choices, goal)
+        witness::build(self.model, &choices, goal, crate::Timing::default())
     }
 }
 

@@ -25,7 +25,7 @@ use crate::{
 pub type Binders = SmallVec<[Value; 2]>;
 
 /// One automaton's part in a transition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Move {
     /// Index in the network.
     pub automaton: usize,

@@ -1,44 +1,65 @@
-//! Witnesses: a way to a goal with earliest times, believed only after a replay under concrete clocks.
+//! Witnesses: a run that shows something, with concrete times, believed only after a replay under concrete clocks.
 //!
-//! The times of a path's transitions are the least solution of difference constraints over those times alone: a clock's
-//! value is the time since the transition that last reset it. A strict bound counts as one infinitely small step ε more,
-//! so that a time is `a` units and `b` ε. Then ε is made one tick. A tick is a nanosecond, unless the unit of the network
-//! is so small that the path's ε would add up to a unit; then it is the fraction [`Witness::ticks`] of one.
-
-use std::fmt::Write as _;
+//! A path of transitions gets its times from a [schedule](crate::schedule): the earliest, the latest or sampled ones.
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    ta::{LocationId, Network},
+    ta::{ChannelId, LocationId, Network},
 };
 use hrdsl_trace::{Step, Trace, What};
+use serde::Serialize;
 
 use crate::{
-    Error, Goal, GoalKind,
-    concrete::{self, Final},
+    Error, Goal, GoalKind, StateFormula,
+    dbm::Dbm,
+    graph::{Action, Detail, Graph, Label, Stay},
     network::{Constraint, Model},
+    replay::{self, Final},
+    schedule::{Schedule, Times, Timing},
     search::goal_holds,
     semantics::Move,
 };
 
-/// A run of the network that leads to a goal.
-#[derive(Clone, Debug, PartialEq)]
+/// A run of the network.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Witness {
     /// The network's name.
     pub network: String,
     /// Ticks in a nanosecond; 1 unless strict bounds are finer than that.
     pub ticks: i64,
     pub steps: Vec<WitnessStep>,
+    /// When what it shows is so, in ticks: with the last transition, or later if time had to pass.
+    pub end: i64,
+    pub ending: Ending,
+}
+
+/// How a run goes on after its last transition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// What was asked for is reached.
+    #[default]
+    Reached,
+    /// The steps from this one on can be repeated for ever; not always with the same delays. Runs in which time does not
+    /// pass beyond a bound (Zeno runs) count.
+    Again(usize),
+    /// Nothing more can happen.
+    Stuck,
+    /// Time can pass for ever, and nothing has to happen.
+    Waits,
 }
 
 /// One transition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WitnessStep {
     /// Since the start, in ticks.
     pub time: i64,
-    /// What was sent; `None`: an internal edge.
+    /// What was sent; `None`: nothing.
     pub event: Option<(EventId, Vec<Value>)>,
-    /// The edges taken: the sender's first, then the receivers', in the network's order.
+    /// The channel that it went over, with the arguments of the offer.
+    pub channel: Option<(ChannelId, Vec<Value>)>,
+    /// The edges taken: the sender's first, then those of who takes part, in the network's order; of a joint channel in the
+    /// order of its parties.
     pub moves: Vec<Move>,
     /// Which automata changed their location: index in the network, from, to.
     pub locations: Vec<(usize, LocationId, LocationId)>,
@@ -67,227 +88,230 @@ impl Witness {
         trace
     }
 
-    /// A readable printing, one line for each transition: when, who did what, which locations and variables changed.
+    /// A readable printing: see [`Story`](crate::Story).
     ///
     /// `network` must be the one that was searched.
     #[must_use]
     pub fn text(&self, program: &Program, network: &Network) -> String {
-        let slots = crate::slot_names(program, network);
-        let member = |m: usize| network.automata.get(m).and_then(|a| program.automata.get(usize::from(a.0)));
-        let mut out = String::new();
-        for step in &self.steps {
-            let who = step.moves.first().and_then(|m| member(m.automaton)).map_or("?", |a| &a.name);
-            let _ = write!(out, "{} s  {who}", decimal(step.time, self.ticks));
-            if let Some((event, args)) = &step.event {
-                let name = program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
-                let args: Vec<String> = args.iter().map(ToString::to_string).collect();
-                let list = if args.is_empty() { String::new() } else { format!("({})", args.join(", ")) };
-                let _ = write!(out, " sends {name}{list}");
-            }
-            let mut facts = Vec::new();
-            for m in &step.moves {
-                let Some(a) = member(m.automaton) else { continue };
-                let name = |l: LocationId| a.locations.get(usize::from(l.0)).map_or("?", |l| &l.name);
-                if let Some(e) = a.edges.get(m.edge) {
-                    facts.push(format!("{} {} -> {}", a.name, name(e.from), name(e.to)));
-                }
-            }
-            for &(slot, from, to) in &step.variables {
-                facts.push(format!("{} {from} -> {to}", slots.get(slot).map_or("?", |s| s)));
-            }
-            let _ = writeln!(out, ": {}", facts.join("; "));
-        }
-        out
+        crate::Story::of(program, network, self).text()
     }
 }
 
-/// Ticks as seconds, exact for whole nanoseconds.
-fn decimal(time: i64, ticks: i64) -> String {
-    let nanos = time.div_euclid(ticks.max(1));
-    let rest = time.rem_euclid(ticks.max(1));
-    let mut text = format!("{}.{:09}", nanos / 1_000_000_000, nanos % 1_000_000_000);
-    if rest == 0 {
-        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
-    } else {
-        let _ = write!(text, " + {rest}/{ticks} ns");
-    }
-    text
+/// A part of a path: a transition, or time that passes into something.
+#[derive(Clone, Debug)]
+pub(crate) enum Stop {
+    /// The candidate of this number is taken where `before` holds, and `after` does right after it.
+    Take { choice: u32, before: Vec<Constraint>, after: Vec<Constraint> },
+    /// Some time passes, perhaps none; then these hold.
+    Wait(Vec<Constraint>),
 }
 
-/// A time: units, then infinitely small steps.
-type Time = (i64, i64);
+/// All bounds of a zone.
+pub(crate) fn bounds_of(zone: &Dbm) -> Vec<Constraint> {
+    let pairs = (0..zone.dim()).flat_map(|i| (0..zone.dim()).map(move |j| (i, j)));
+    pairs
+        .filter(|(i, j)| i != j && !zone.at(*i, *j).is_infinite())
+        .map(|(i, j)| Constraint { i: i as u16, j: j as u16, bound: zone.at(i, j) })
+        .collect()
+}
 
-/// `later ≥ earlier + (units, ε)`, of the transitions with these numbers.
-struct AtLeast {
-    later: usize,
-    earlier: usize,
-    by: Time,
+/// The stops of transitions alone.
+pub(crate) fn takes(choices: &[u32]) -> Vec<Stop> {
+    choices.iter().map(|&choice| Stop::Take { choice, before: Vec::new(), after: Vec::new() }).collect()
 }
 
 /// Makes the path (given by the candidates' numbers) concrete, replays it, and looks whether it meets the goal.
-pub(crate) fn build(model: &Model, choices: &[u32], goal: Option<&Goal>) -> Result<Witness, Error> {
-    let Walk { mut steps, constraints, state } = walk(model, choices)?;
-    let times = least(steps.len() + 1, &constraints)
-        .ok_or_else(|| Error::Internal("the zones reach a goal that no run reaches".into()))?;
-    let most = times.iter().map(|t| t.1).max().unwrap_or(0);
-    let ticks = most / model.unit + 1;
-    for (step, &(units, small)) in steps.iter_mut().zip(&times[1..]) {
-        let time = i128::from(units) * i128::from(model.unit) * i128::from(ticks) + i128::from(small);
-        step.time = i64::try_from(time)
-            .map_err(|_| Error::Internal("a witness lasts longer than time can be counted".into()))?;
+pub(crate) fn build(
+    model: &Model,
+    choices: &[u32],
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let graph = Graph::new(model, Detail::Tell, &[], 0)?;
+    let stops = takes(choices);
+    let Some(GoalKind::Condition(f)) = goal.map(|g| &g.what).filter(|_| goal.is_some_and(timed)) else {
+        return concrete(&graph, &stops, Ending::Reached, goal, timing);
+    };
+    reach_in_time(&graph, stops, f, goal, timing)
+}
+
+fn timed(goal: &Goal) -> bool {
+    matches!(&goal.what, GoalKind::Condition(f) if f.is_timed())
+}
+
+/// The path and then the time that the formula needs: the first of its zones that can be.
+fn reach_in_time(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let state = walk(graph, &stops)?.state;
+    let mut all = Dbm::universe(graph.dim());
+    let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
+    stay.invariant.iter().for_each(|c| {
+        crate::federation::keep(&mut all, *c);
+    });
+    let parts = f.part(&graph.here(&state), &all)?.into_zones();
+    let mut best: Option<Witness> = None;
+    for part in parts {
+        let mut stops = stops.clone();
+        stops.push(Stop::Wait(bounds_of(&part)));
+        let w = walk(graph, &stops)?;
+        let Some(times) = w.schedule.solve(graph.model.unit, timing) else { continue };
+        let witness = finish(graph, w, &times, Ending::Reached, goal)?;
+        // The earliest of them, as nanoseconds and their parts.
+        let key = |w: &Witness| (i128::from(w.end) << 32) / i128::from(w.ticks);
+        if best.as_ref().is_none_or(|b| key(&witness) < key(b)) {
+            best = Some(witness);
+        }
     }
-    let witness = Witness { network: model.name.to_owned(), ticks, steps };
-    believe(model, &witness, &state, goal)?;
+    best.ok_or_else(|| internal("the zones reach a goal that no run reaches"))
+}
+
+fn internal(what: &str) -> Error {
+    Error::Internal(what.to_owned())
+}
+
+/// Makes a path concrete and replays it.
+pub(crate) fn concrete(
+    graph: &Graph,
+    stops: &[Stop],
+    ending: Ending,
+    goal: Option<&Goal>,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    let w = walk(graph, stops)?;
+    let times = w
+        .schedule
+        .solve(graph.model.unit, timing)
+        .ok_or_else(|| internal("the zones have a path that no run takes"))?;
+    finish(graph, w, &times, ending, goal)
+}
+
+/// Whether time can pass between a stop and the end of the path, and at what times the stops are.
+pub(crate) fn times(graph: &Graph, stops: &[Stop], timing: Timing) -> Result<Option<Times>, Error> {
+    Ok(walk(graph, stops)?.schedule.solve(graph.model.unit, timing))
+}
+
+fn finish(
+    graph: &Graph,
+    w: Walk,
+    times: &Times,
+    ending: Ending,
+    goal: Option<&Goal>,
+) -> Result<Witness, Error> {
+    let mut steps = w.steps;
+    for (step, &at) in steps.iter_mut().zip(&w.at) {
+        step.time = times.at[at];
+    }
+    let end = times.at.last().copied().unwrap_or(0);
+    let witness = Witness { network: graph.model.name.to_owned(), ticks: times.ticks, steps, end, ending };
+    believe(graph.model, &witness, &w.state, goal)?;
     Ok(witness)
 }
 
 fn believe(model: &Model, witness: &Witness, state: &[i64], goal: Option<&Goal>) -> Result<(), Error> {
     let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
-    let end = concrete::replay(model.program, &ids, &model.counters, &model.limits, witness)
+    let end = replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
         .map_err(|m| Error::Internal(format!("a witness does not replay: {m}")))?;
     if end.numbers() != state[..model.limit_at(0)] {
-        return Err(Error::Internal("a witness ends in another state than the search".into()));
+        return Err(internal("a witness ends in another state than the search"));
+    }
+    if let Ending::Again(from) = witness.ending
+        && end.history.get(from) != end.history.last()
+    {
+        return Err(internal("a loop does not end where it begins"));
+    }
+    if witness.ending == Ending::Stuck && !end.meets(&StateFormula::Deadlock)? {
+        return Err(internal("something can happen where nothing should"));
     }
     match goal {
-        Some(goal) if !meets(goal, witness, &end) => {
-            Err(Error::Internal("a witness does not meet its goal".into()))
-        }
+        Some(goal) if !meets(goal, witness, &end)? => Err(internal("a witness does not meet its goal")),
         Some(_) | None => Ok(()),
     }
 }
 
-fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> bool {
-    match &goal.what {
+fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> Result<bool, Error> {
+    Ok(match &goal.what {
         GoalKind::Edge { automaton, edge } => witness
             .steps
             .last()
             .is_some_and(|s| s.moves.iter().any(|m| m.automaton == *automaton && m.edge == *edge)),
-        GoalKind::Location { .. } | GoalKind::Condition(_) => {
-            (end.settled || !goal.settled) && goal_holds(goal, end) == Ok(true)
-        }
-    }
+        GoalKind::Condition(f) => (end.settled || !goal.settled) && end.meets(f)?,
+        GoalKind::Location { .. } => (end.settled || !goal.settled) && goal_holds(goal, end) == Ok(true),
+    })
 }
 
 /// A path without times.
 struct Walk {
     steps: Vec<WitnessStep>,
-    /// What the times must keep.
-    constraints: Vec<AtLeast>,
+    /// The number of each step's time.
+    at: Vec<usize>,
+    schedule: Schedule,
     /// The last discrete state.
     state: Vec<i64>,
 }
 
-fn walk(model: &Model, choices: &[u32]) -> Result<Walk, Error> {
-    let mut state = model.initial();
-    let (mut steps, mut constraints) = (Vec::new(), Vec::new());
-    // The transition that last reset each clock; all clocks start at 0, the start.
-    let mut resets = vec![0; model.dim];
-    model.invariant(&state).for_each(|c| bound(c, 0, &resets, &mut constraints));
-    for (before, &choice) in choices.iter().enumerate() {
-        let now = before + 1;
-        constraints.push(AtLeast { later: now, earlier: before, by: (0, 0) });
-        if !model.may_delay(&state) {
-            constraints.push(AtLeast { later: before, earlier: now, by: (0, 0) });
-        }
+fn walk(graph: &Graph, stops: &[Stop]) -> Result<Walk, Error> {
+    let state = graph.initial();
+    let schedule = Schedule::new(graph.dim());
+    let mut w = Walk { steps: Vec::new(), at: Vec::new(), schedule, state };
+    let mut stay = allowed(graph, &w.state)?;
+    stay.invariant.iter().for_each(|c| w.schedule.require(*c));
+    for stop in stops {
+        let now = w.schedule.next(stay.waits);
         // An invariant is convex: it holds all the while if it holds at both ends.
-        model.invariant(&state).for_each(|c| bound(c, now, &resets, &mut constraints));
-        let candidate = model.candidates(&state).into_iter().nth(choice as usize);
-        let Some(candidate) = candidate else {
-            return Err(Error::Internal("a path takes a transition that is not there".into()));
+        stay.invariant.iter().for_each(|c| w.schedule.require(*c));
+        let (choice, after) = match stop {
+            Stop::Wait(there) => {
+                there.iter().for_each(|c| w.schedule.require(*c));
+                continue;
+            }
+            Stop::Take { choice, before, after } => {
+                before.iter().for_each(|c| w.schedule.require(*c));
+                (*choice, after)
+            }
         };
-        candidate.guard.iter().for_each(|&c| bound(c, now, &resets, &mut constraints));
-        candidate.resets.iter().for_each(|&x| resets[usize::from(x)] = now);
-        let target = candidate
-            .target
-            .map_err(|_| Error::Internal("a path takes a transition that is a fault".into()))?;
-        model.invariant(&target).for_each(|c| bound(c, now, &resets, &mut constraints));
-        steps.push(step(model, &state, &target, candidate.event, candidate.moves.to_vec()));
-        state = target;
+        let action = graph.actions(&w.state).into_iter().nth(choice as usize);
+        let action = action.ok_or_else(|| internal("a path takes a transition that is not there"))?;
+        let target =
+            action.target.clone().map_err(|_| internal("a path takes a transition that is a fault"))?;
+        action.guard.iter().for_each(|c| w.schedule.require(*c));
+        action.sets.iter().for_each(|s| w.schedule.set(*s));
+        stay = allowed(graph, &target)?;
+        stay.invariant.iter().chain(after).for_each(|c| w.schedule.require(*c));
+        w.steps.push(step(graph.model, &w.state, &target, action));
+        w.at.push(now);
+        w.state = target;
     }
-    Ok(Walk { steps, constraints, state })
+    Ok(w)
 }
 
-fn step(
-    model: &Model,
-    before: &[i64],
-    after: &[i64],
-    event: Option<(EventId, Vec<Value>)>,
-    moves: Vec<Move>,
-) -> WitnessStep {
+fn allowed(graph: &Graph, state: &[i64]) -> Result<Stay, Error> {
+    graph.stay(state)?.ok_or_else(|| internal("a path leads through a forbidden state"))
+}
+
+fn step(model: &Model, before: &[i64], after: &[i64], action: Action) -> WitnessStep {
     let location = |n: i64| LocationId(u16::try_from(n).unwrap_or(u16::MAX));
     let changed = |i: &usize| before[*i] != after[*i];
     let locations = (0..model.members.len()).filter(changed);
     let slots = (0..model.slots.len()).filter(|&s| changed(&model.slot_at(s)));
     let value = |state: &[i64], slot: usize| model.slot_value(state, slot);
+    let (event, channel) = match action.label {
+        Label::Internal => (None, None),
+        Label::Event(e, args) => (Some((e, args)), None),
+        Label::Channel(c, args) => (None, Some((c, args))),
+    };
     WitnessStep {
         time: 0,
         event,
-        moves,
+        channel,
+        moves: action.moves.to_vec(),
         locations: locations.map(|m| (m, location(before[m]), location(after[m]))).collect(),
         variables: slots
             .filter_map(|s| value(before, s).zip(value(after, s)).map(|(a, b)| (s, a, b)))
             .collect(),
-    }
-}
-
-/// `x_i - x_j ≺ b` at the transition `now`: with `x` the time since its reset, `reset_j - reset_i ≺ b`.
-fn bound(c: Constraint, now: usize, resets: &[usize], out: &mut Vec<AtLeast>) {
-    let reset = |x: u16| if x == 0 { now } else { resets[usize::from(x)] };
-    let by = (-c.bound.value(), i64::from(c.bound.is_strict()));
-    out.push(AtLeast { later: reset(c.i), earlier: reset(c.j), by });
-}
-
-/// The least times that keep all constraints, from 0 for the start; `None`: there are none.
-fn least(count: usize, constraints: &[AtLeast]) -> Option<Vec<Time>> {
-    let mut times = vec![(0, 0); count];
-    for _ in 0..=count {
-        let mut changed = false;
-        for c in constraints {
-            let from: Time = times[c.earlier];
-            let at = (from.0 + c.by.0, from.1 + c.by.1);
-            if at > times[c.later] {
-                if c.later == 0 {
-                    return None;
-                }
-                times[c.later] = at;
-                changed = true;
-            }
-        }
-        if !changed {
-            return Some(times);
-        }
-    }
-    None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn least_times_count_strict_bounds_in_small_steps() {
-        // t1 > 2, t2 > t1, t2 < 3, t3 ≥ t2 + 1
-        let constraints = [
-            AtLeast { later: 1, earlier: 0, by: (2, 1) },
-            AtLeast { later: 2, earlier: 1, by: (0, 1) },
-            AtLeast { later: 0, earlier: 2, by: (-3, 1) },
-            AtLeast { later: 3, earlier: 2, by: (1, 0) },
-        ];
-        assert_eq!(least(4, &constraints), Some(vec![(0, 0), (2, 1), (2, 2), (3, 2)]));
-    }
-
-    #[test]
-    fn contradiction_has_no_times() {
-        let constraints =
-            [AtLeast { later: 1, earlier: 0, by: (2, 0) }, AtLeast { later: 0, earlier: 1, by: (-2, 1) }];
-        assert_eq!(least(2, &constraints), None);
-    }
-
-    #[test]
-    fn times_print_as_seconds() {
-        assert_eq!(decimal(0, 1), "0");
-        assert_eq!(decimal(10_000_000_001, 1), "10.000000001");
-        assert_eq!(decimal(1_500_000_000, 1), "1.5");
-        assert_eq!(decimal(7, 3), "0.000000002 + 1/3 ns");
     }
 }
