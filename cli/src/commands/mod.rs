@@ -6,6 +6,7 @@ pub mod emit;
 pub mod explain;
 pub mod fmt;
 pub mod generate;
+pub mod how;
 pub mod import;
 pub mod inspect;
 pub mod man;

@@ -124,7 +124,7 @@ fn settled(
     fates
 }
 
-fn exhausted(what: Exhausted) -> String {
+pub(super) fn exhausted(what: Exhausted) -> String {
     match what {
         Exhausted::States => "the budget of states was used up".to_owned(),
         Exhausted::Memory => "the budget of memory was used up".to_owned(),

@@ -17,16 +17,17 @@ mod query;
 mod settings;
 mod window;
 
-use hrdsl_coverage::Assumptions;
+use hrdsl_coverage::assume::Assumptions;
 use hrdsl_ir::{Nanos, Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::Checker;
+pub use hrdsl_ta::Story;
 use hrdsl_ta::{Error, Witness};
 use hrdsl_trace::{Observer as _, Trace, What};
 
-pub use goals::{Decided, Fate, decide};
+pub use goals::{Decided, Fate, decide, of_formula};
 pub use observer::{Observed, Verdicts};
-pub use query::{Answered, Found, answer_all};
-pub use settings::Settings;
+pub use query::{Answered, Found, answer};
+pub use settings::{Order, Settings, Watch};
 
 /// What became of a requirement.
 #[derive(Clone, Debug)]
@@ -63,11 +64,20 @@ pub struct Run {
     pub witness: Witness,
 }
 
+impl Run {
+    /// The run, told by names.
+    #[must_use]
+    pub fn story(&self) -> Story {
+        Story::of(&self.observed.program, &self.observed.network, &self.witness)
+    }
+}
+
 /// Searches a network for a violation of a requirement.
 ///
 /// # Errors
 /// The engine or the observer contradicts the monitor, or the network does not exist.
-pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Settings) -> Result<Proof, String> {
+pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Settings, watch: Watch<'_>) -> Result<Proof, String> {
+    let _ = watch;
     let Some(requirement) = program.monitors.get(monitor) else {
         return Err(format!("there is no requirement {monitor}"));
     };

@@ -11,15 +11,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use clap::ValueEnum;
-use hrdsl_ir::{
-    Program,
-    suite::{Delays, WitnessKind},
-    ta::Network,
-};
-use hrdsl_runtime::prove::{self, Order, Settings, Watch};
+use hrdsl_ir::{Program, ta::Network};
+use hrdsl_runtime::prove::{self, Settings, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::how::{Way, When, Witness};
 use crate::{
     exit::Exit,
     input::{self, Fault},
@@ -96,72 +92,6 @@ pub struct How {
     /// The most memory for them, like `2GB` or `500MB`.
     #[arg(long, value_name = "SIZE", value_parser = memory)]
     budget_memory: Option<usize>,
-}
-
-/// What `--witness` takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Witness {
-    /// The first that is found.
-    Any,
-    /// As few transitions as any.
-    Shortest,
-    /// Ends as early as any.
-    Fastest,
-}
-
-impl From<Witness> for WitnessKind {
-    fn from(kind: Witness) -> Self {
-        match kind {
-            Witness::Any => Self::Any,
-            Witness::Shortest => Self::Shortest,
-            Witness::Fastest => Self::Fastest,
-        }
-    }
-}
-
-/// What `--delays` takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum When {
-    /// As early as possible.
-    Earliest,
-    /// As late as possible.
-    Latest,
-    /// Drawn from the seed.
-    Sampled,
-}
-
-impl From<When> for Delays {
-    fn from(when: When) -> Self {
-        match when {
-            When::Earliest => Self::Earliest,
-            When::Latest => Self::Latest,
-            When::Sampled => Self::Sampled,
-        }
-    }
-}
-
-/// What `--order` takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Way {
-    /// First all states near the start.
-    Breadth,
-    /// First what follows the latest state.
-    Depth,
-    /// As `depth`, with the ways in a random order.
-    Random,
-    /// First what leads to most.
-    Topological,
-}
-
-impl From<Way> for Order {
-    fn from(way: Way) -> Self {
-        match way {
-            Way::Breadth => Self::Breadth,
-            Way::Depth => Self::Depth,
-            Way::Random => Self::Random,
-            Way::Topological => Self::Topological,
-        }
-    }
 }
 
 impl How {
