@@ -58,9 +58,9 @@ pub struct Args {
     /// Of suites by search, when the transitions of these runs happen, instead of what the suite says.
     #[arg(long, value_enum)]
     delays: Option<When>,
-    /// Of suites by search, in which order states are looked at.
-    #[arg(long, value_enum, default_value_t = Way::Breadth)]
-    order: Way,
+    /// Of suites by search, in which order states are looked at [default: what the witness needs].
+    #[arg(long, value_enum)]
+    order: Option<Way>,
     /// Of suites by search, threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
@@ -84,7 +84,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             witness: args.witness.map(Into::into),
             delays: args.delays.map(Into::into),
             search: Settings {
-                order: args.order.into(),
+                order: args.order.map(Into::into),
                 threads: usize::from(args.threads),
                 ..Settings::default()
             },

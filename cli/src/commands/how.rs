@@ -55,7 +55,7 @@ pub enum Way {
     Depth,
     /// As `depth`, with the ways in a random order.
     Random,
-    /// First what leads to most.
+    /// First what comes first in the order of the locations.
     Topological,
 }
 

@@ -3,7 +3,7 @@
 use hrdsl_ir::{Program, ta::Formula};
 use hrdsl_ta::{Counter, Error, Exhausted, Goal, GoalKind, Limit, Outcome, Report, StateFormula};
 
-use super::{Observed, Run, Settings, keeps_assumptions, settings::search};
+use super::{Observed, Run, Settings, Watch, keeps_assumptions, settings::search};
 
 /// How a goal ended.
 #[derive(Clone, Debug)]
@@ -54,6 +54,7 @@ pub fn decide(
     goals: &[Goal],
     counters: &[Counter],
     settings: &Settings,
+    watch: &Watch,
 ) -> Result<Decided, Error> {
     let windowed = program.assumptions.iter().any(|a| a.within.is_some());
     let ways: &[Windows] = match (windowed, settings.keep_first) {
@@ -78,7 +79,7 @@ pub fn decide(
                 continue;
             }
         };
-        let report = match search(&restricted, &questions, counters, &limits, settings) {
+        let report = match search(&restricted, &questions, counters, &limits, settings, watch) {
             Ok(report) => report,
             // Only a run that breaks the assumptions: another search tells.
             Err(Error::Model { witness: Some(witness), .. })
@@ -128,6 +129,7 @@ pub(super) fn exhausted(what: Exhausted) -> String {
     match what {
         Exhausted::States => "the budget of states was used up".to_owned(),
         Exhausted::Memory => "the budget of memory was used up".to_owned(),
+        Exhausted::Stopped => "the time was over".to_owned(),
     }
 }
 

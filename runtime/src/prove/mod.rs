@@ -76,8 +76,7 @@ impl Run {
 ///
 /// # Errors
 /// The engine or the observer contradicts the monitor, or the network does not exist.
-pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Settings, watch: Watch<'_>) -> Result<Proof, String> {
-    let _ = watch;
+pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Settings, watch: &Watch) -> Result<Proof, String> {
     let Some(requirement) = program.monitors.get(monitor) else {
         return Err(format!("there is no requirement {monitor}"));
     };
@@ -88,7 +87,7 @@ pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Se
     };
     let formulas: Vec<_> = verdicts.violated.iter().chain([&verdicts.triggered]).collect();
     let questions: Vec<_> = formulas.into_iter().map(goals::of_formula).collect();
-    let decided = match decide(program, &observed, &questions, &[], settings) {
+    let decided = match decide(program, &observed, &questions, &[], settings, watch) {
         Ok(decided) => decided,
         Err(Error::Model { error, witness }) => {
             let what = error.to_string();

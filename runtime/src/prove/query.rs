@@ -38,7 +38,7 @@ pub enum Found {
 ///
 /// # Errors
 /// If the engine contradicts itself, or there is no such query.
-pub fn answer(program: &Program, query: usize, settings: &Settings, watch: super::Watch<'_>) -> Result<Answered, String> {
+pub fn answer(program: &Program, query: usize, settings: &Settings, watch: &super::Watch) -> Result<Answered, String> {
     let _ = watch;
     let asked = program.queries.get(query).ok_or_else(|| format!("there is no query {query}"))?;
     let network = program

@@ -1,9 +1,10 @@
 //! How networks are searched, and the one place that calls the search.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use hrdsl_ir::suite::{Delays, WitnessKind};
-use hrdsl_ta::{Budget, Counter, Error, Goal, Limit, Report};
+use hrdsl_ta::{Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing};
+pub use hrdsl_ta::Order;
 
 use super::Observed;
 
@@ -11,7 +12,9 @@ use super::Observed;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     pub budget: Budget,
-    pub order: Order,
+    /// In which order states are looked at; `None`: as the witness needs it. Another order than breadth first finds witnesses
+    /// that are not the shortest.
+    pub order: Option<Order>,
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
     pub witness: WitnessKind,
@@ -23,23 +26,33 @@ pub struct Settings {
     pub keep_first: bool,
 }
 
-/// In which order states are looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Order {
-    #[default]
-    Breadth,
-    Depth,
-    Random,
-    Topological,
+/// For watching a search from another thread.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Set: the search ends soon, and what is not decided is open.
+    pub stop: AtomicBool,
+    /// How many states are stored so far.
+    pub stored: AtomicUsize,
 }
 
-/// Who watches a search from another thread.
-#[derive(Clone, Copy, Debug)]
-pub struct Watch<'a> {
-    /// Set: the search ends soon, and what is not decided is open.
-    pub stop: &'a AtomicBool,
-    /// How many states are stored so far.
-    pub stored: &'a AtomicUsize,
+impl Settings {
+    pub(super) fn options(&self) -> Options {
+        let usual = match self.witness {
+            WitnessKind::Shortest => Options::shortest(),
+            WitnessKind::Any | WitnessKind::Fastest => Options::default(),
+        };
+        Options {
+            order: self.order.unwrap_or(usual.order),
+            threads: self.threads.max(1),
+            budget: self.budget,
+            seed: self.seed,
+            ..usual
+        }
+    }
+
+    pub(super) fn timing(&self) -> Timing {
+        Timing { delays: self.delays, seed: self.seed, prompt: false }
+    }
 }
 
 pub(crate) fn search(
@@ -48,6 +61,25 @@ pub(crate) fn search(
     counters: &[Counter],
     limits: &[Limit],
     settings: &Settings,
+    watch: &Watch,
 ) -> Result<Report, Error> {
-    hrdsl_ta::check(&observed.program, &observed.network, goals, counters, limits, settings.budget)
+    let observe = Observe {
+        counters: counters.to_vec(),
+        limits: limits.to_vec(),
+        pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
+        uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
+        ..Observe::default()
+    };
+    let model = Model::new(&observed.program, &observed.network, &observe)?;
+    let go_on = |p: &hrdsl_ta::Progress| {
+        watch.stored.store(p.stored, Ordering::Relaxed);
+        !watch.stop.load(Ordering::Relaxed)
+    };
+    let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
+    for (goal, outcome) in goals.iter().zip(&mut report.goals) {
+        if let Outcome::Reached(found) = outcome {
+            *found = chosen(&model, goal, found, settings)?;
+        }
+    }
+    Ok(report)
 }

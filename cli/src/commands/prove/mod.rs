@@ -6,7 +6,7 @@ mod table;
 
 use std::{
     path::PathBuf,
-    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
+    sync::atomic::{AtomicBool, Ordering},
     thread,
     time::{Duration, Instant},
 };
@@ -71,15 +71,15 @@ pub struct Args {
 /// How networks are searched: for `prove`.
 #[derive(clap::Args)]
 pub struct How {
-    /// Which run shows what is found.
-    #[arg(long, value_enum, default_value_t = Witness::Shortest)]
-    witness: Witness,
+    /// Which run shows what is found [default: shortest; with --order, any].
+    #[arg(long, value_enum)]
+    witness: Option<Witness>,
     /// When its transitions happen.
     #[arg(long, value_enum, default_value_t = When::Earliest)]
     delays: When,
-    /// In which order states are looked at.
-    #[arg(long, value_enum, default_value_t = Way::Breadth)]
-    order: Way,
+    /// In which order states are looked at [default: what the witness needs].
+    #[arg(long, value_enum)]
+    order: Option<Way>,
     /// Threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
@@ -96,10 +96,11 @@ pub struct How {
 
 impl How {
     fn settings(&self) -> Settings {
+        let usual = if self.order.is_some() { Witness::Any } else { Witness::Shortest };
         let mut settings = Settings {
-            witness: self.witness.into(),
+            witness: self.witness.unwrap_or(usual).into(),
             delays: self.delays.into(),
-            order: self.order.into(),
+            order: self.order.map(Into::into),
             threads: usize::from(self.threads),
             seed: self.seed,
             ..Settings::default()
@@ -156,7 +157,7 @@ impl<'p> Job<'p> {
         }
     }
 
-    fn row(&self, program: &Program, settings: &Settings, watch: Watch<'_>) -> Result<Row, Fault> {
+    fn row(&self, program: &Program, settings: &Settings, watch: &Watch) -> Result<Row, Fault> {
         let started = now();
         let mut row = match self {
             Job::Requirement { network, monitor } => {
@@ -196,13 +197,13 @@ impl Clock {
     fn watched<T: Send>(
         &self,
         name: &str,
-        work: impl FnOnce(Watch<'_>) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&Watch) -> Result<T, Fault> + Send,
     ) -> Result<T, Fault> {
-        let (stop, stored, done) = (AtomicBool::new(false), AtomicUsize::new(0), AtomicBool::new(false));
+        let (watch, done) = (Watch::default(), AtomicBool::new(false));
         self.bar.set_message(name.to_owned());
         thread::scope(|scope| {
             let working = scope.spawn(|| {
-                let result = work(Watch { stop: &stop, stored: &stored });
+                let result = work(&watch);
                 done.store(true, Ordering::Release);
                 result
             });
@@ -212,9 +213,9 @@ impl Clock {
                 // Short work ends soon; long work is looked at now and then.
                 waited = (waited * 2).min(Duration::from_millis(50));
                 if self.until.is_some_and(|until| now() >= until) {
-                    stop.store(true, Ordering::Relaxed);
+                    watch.stop.store(true, Ordering::Relaxed);
                 }
-                self.bar.set_message(format!("{name}: {} states", stored.load(Ordering::Relaxed)));
+                self.bar.set_message(format!("{name}: {} states", watch.stored.load(Ordering::Relaxed)));
                 self.bar.tick();
             }
             working.join().unwrap_or_else(|_| Err("internal error: a search broke off".to_owned()))
