@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use serde::Serialize;
 
-use crate::{ArmId, GripperId, Kind, SignalId, Value, world::BodyRef};
+use crate::{ArmId, FunctionId, GripperId, Kind, SignalId, Type, Value, world::BodyRef};
 
 /// A typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,8 +27,44 @@ pub enum ExprKind {
     Call(Function, Vec<Expr>),
     /// `[a, b | rest]`
     List(Vec<Expr>, Option<Box<Expr>>),
+    /// `a[i]`: an element of an array of variables that is chosen at run time. Automata only.
+    Element(Box<Place>),
+    /// A function of automata, applied; with the type of its value.
+    Apply(FunctionId, Vec<Expr>, Type),
     /// Has a diagnostic.
     Error,
+}
+
+/// A variable, perhaps one that indices choose among several: `leaf + Σ at · stride`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The variable, or the first of the array.
+    pub leaf: Leaf,
+    pub indices: Vec<Index>,
+}
+
+/// One index of a place: of `0..count`, or there is no such element.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Index {
+    pub at: Expr,
+    pub count: u16,
+    pub stride: u16,
+}
+
+impl Place {
+    /// All variables that it may stand for.
+    #[must_use]
+    pub fn leaves(&self) -> Vec<Leaf> {
+        let mut leaves = vec![self.leaf];
+        for index in &self.indices {
+            let steps = |l: &Leaf| {
+                let l = *l;
+                (0..index.count).map(move |n| l.plus(n.saturating_mul(index.stride)))
+            };
+            leaves = leaves.iter().flat_map(steps).collect();
+        }
+        leaves
+    }
 }
 
 /// A name that has a value at run time.
@@ -42,6 +78,19 @@ pub enum Leaf {
     /// A variable shared by all automata.
     Shared(u16),
     Signal(SignalId),
+}
+
+impl Leaf {
+    /// The variable so many places after it.
+    #[must_use]
+    pub fn plus(self, n: u16) -> Self {
+        match self {
+            Leaf::Local(i) => Leaf::Local(i.saturating_add(n)),
+            Leaf::Own(i) => Leaf::Own(i.saturating_add(n)),
+            Leaf::Shared(i) => Leaf::Shared(i.saturating_add(n)),
+            Leaf::Signal(_) => self,
+        }
+    }
 }
 
 /// A function on numbers.
@@ -92,8 +141,27 @@ impl Expr {
             | ExprKind::If(..)
             | ExprKind::Call(..)
             | ExprKind::List(..)
+            | ExprKind::Element(_)
+            | ExprKind::Apply(..)
             | ExprKind::Error => None,
         }
+    }
+
+    /// Calls `f` with each variable that the expression may read, as often as it occurs; without what functions read.
+    pub fn each_leaf(&self, f: &mut dyn FnMut(Leaf)) {
+        self.each(&mut |e| match &e.kind {
+            ExprKind::Leaf(leaf) => f(*leaf),
+            ExprKind::Element(place) => place.leaves().into_iter().for_each(&mut *f),
+            ExprKind::Const(_)
+            | ExprKind::Term(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Call(..)
+            | ExprKind::List(..)
+            | ExprKind::Apply(..)
+            | ExprKind::Error => {}
+        });
     }
 
     /// Calls `f` with the expression and each part of it, the whole first.
@@ -111,7 +179,8 @@ impl Expr {
                 a.each(f);
                 b.each(f);
             }
-            ExprKind::Call(_, args) => args.iter().for_each(|a| a.each(f)),
+            ExprKind::Call(_, args) | ExprKind::Apply(_, args, _) => args.iter().for_each(|a| a.each(f)),
+            ExprKind::Element(place) => place.indices.iter().for_each(|i| i.at.each(f)),
             ExprKind::List(items, rest) => {
                 items.iter().for_each(|e| e.each(f));
                 rest.iter().for_each(|e| e.each(f));

@@ -15,7 +15,7 @@ pub mod world;
 
 pub use check::{INTERNAL_ACTIONS, InternalAction, Slot};
 pub use check::{resolve, resolve_part};
-pub use expr::{Expr, ExprKind, Function, Leaf, Term};
+pub use expr::{Expr, ExprKind, Function, Index, Leaf, Place, Term};
 pub use lint::lint;
 pub use nearest::{distance, nearest};
 pub use query::{Ask, ClockBound, Formula, Linear, Measure, Query};

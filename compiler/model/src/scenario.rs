@@ -10,7 +10,7 @@ use hrdsl_syntax::ast::LocationKind;
 use serde::Serialize;
 
 use crate::{
-    Expr, Type, Value,
+    Expr, Leaf, Place, Type, Value,
     world::{Action, World},
 };
 
@@ -41,6 +41,8 @@ ids! {
     LocationId,
     /// Index into [`Automaton::clocks`].
     ClockId,
+    /// Index into [`Scenario::functions`].
+    FunctionId,
     /// Index into [`Scenario::networks`].
     NetworkId,
     /// Index into [`Scenario::queries`].
@@ -75,6 +77,7 @@ pub struct Scenario {
     pub agents: Vec<Agent>,
     pub contents: Vec<Content>,
     pub shared: Vec<Var>,
+    pub functions: Vec<Routine>,
     pub automata: Vec<Automaton>,
     pub networks: Vec<Network>,
     pub queries: Vec<crate::Query>,
@@ -749,6 +752,92 @@ pub enum Update {
     Shared(u16, Expr),
     Own(u16, Expr),
     Reset(ClockId),
+    /// An element that is chosen at run time.
+    Element(Place, Expr),
+    /// A function for its effect.
+    Call(FunctionId, Vec<Expr>),
+}
+
+/// A function of automata.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Routine {
+    pub name: String,
+    /// The automaton whose variables it knows, too.
+    pub owner: Option<AutomatonId>,
+    /// Of finite types. They are the first locals of the body's expressions.
+    pub params: Vec<Param>,
+    /// The locals after them.
+    pub locals: Vec<Var>,
+    /// `None`: it is for its effect.
+    pub result: Option<Type>,
+    pub body: Vec<Statement>,
+    /// The variables that it may read, or what it calls.
+    pub reads: Vec<Leaf>,
+    /// The variables that it may assign, or what it calls: none, if it is pure.
+    pub assigns: Vec<Leaf>,
+    /// Its name, where it is declared.
+    pub place: Span,
+    pub span: Span,
+}
+
+impl Routine {
+    /// It assigns nothing but its parameters and locals.
+    #[must_use]
+    pub fn pure(&self) -> bool {
+        self.assigns.is_empty()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statement {
+    Assign(Place, Expr),
+    Call(FunctionId, Vec<Expr>),
+    If {
+        condition: Expr,
+        then: Vec<Statement>,
+        otherwise: Vec<Statement>,
+    },
+    While {
+        condition: Expr,
+        body: Vec<Statement>,
+    },
+    /// For each number from `lo` to `hi`, kept in this local.
+    For {
+        local: u16,
+        lo: Expr,
+        hi: Expr,
+        body: Vec<Statement>,
+    },
+    Return(Option<Expr>),
+}
+
+impl Statement {
+    /// Calls `f` with this statement and each one in it, the outer one first.
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Statement)) {
+        f(self);
+        match self {
+            Statement::Assign(..) | Statement::Call(..) | Statement::Return(_) => {}
+            Statement::If { then, otherwise, .. } => {
+                then.iter().chain(otherwise).for_each(|s| s.each(f));
+            }
+            Statement::While { body, .. } | Statement::For { body, .. } => {
+                body.iter().for_each(|s| s.each(f));
+            }
+        }
+    }
+
+    /// The expressions of the statement itself, not of those in it; the indices of what it assigns are not among them.
+    #[must_use]
+    pub fn expressions(&self) -> Vec<&Expr> {
+        match self {
+            Statement::Assign(_, e) | Statement::Return(Some(e)) => vec![e],
+            Statement::Call(_, args) => args.iter().collect(),
+            Statement::If { condition, .. } | Statement::While { condition, .. } => vec![condition],
+            Statement::For { lo, hi, .. } => vec![lo, hi],
+            Statement::Return(None) => Vec::new(),
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

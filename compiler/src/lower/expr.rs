@@ -1,6 +1,10 @@
 //! Values, types and expressions.
 
-use hrdsl_ir::{self as ir, Expr, Unit};
+use hrdsl_ir::{
+    self as ir, Expr, Unit,
+    expr::{Index, Place},
+    ta::FunctionId,
+};
 use hrdsl_model::{self as model, Dim, ExprKind, Leaf, Term};
 use hrdsl_syntax::ast;
 
@@ -94,9 +98,25 @@ pub(crate) fn expr(e: &model::Expr, read: &mut dyn FnMut(Source) -> Expr) -> Exp
             let rest = rest.as_ref().map(|r| Box::new(expr(r, read)));
             Expr::List(items, rest)
         }
+        ExprKind::Element(of) => Expr::Element(Box::new(place(of, read))),
+        ExprKind::Apply(function, args, _) => {
+            Expr::Apply(FunctionId(function.0), args.iter().map(|a| expr(a, read)).collect())
+        }
         // INVARIANT: a scenario with errors is not lowered.
         ExprKind::Error => Expr::bool(false),
     }
+}
+
+/// Lowers a variable or an element of an array of them.
+pub(crate) fn place(of: &model::Place, read: &mut dyn FnMut(Source) -> Expr) -> Place {
+    let slot = match read(Source::Leaf(of.leaf)) {
+        Expr::Var(slot) => slot,
+        // INVARIANT: arrays are indexed at run time in automata and functions only, where leaves are variables.
+        _ => u16::MAX,
+    };
+    let index = |i: &model::Index, at| Index { at, count: i.count, stride: i.stride };
+    let indices = of.indices.iter().map(|i| index(i, expr(&i.at, read))).collect();
+    Place { slot, indices }
 }
 
 /// An expression over the locals alone: of a stimulus or a plan.

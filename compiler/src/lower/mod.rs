@@ -3,6 +3,7 @@
 pub mod bdi;
 pub mod coverage;
 pub mod expr;
+pub mod function;
 pub mod monitor;
 pub mod query;
 pub mod suite;
@@ -20,6 +21,7 @@ use hrdsl_source::Files;
 pub fn lower(scenario: &Scenario, files: &Files) -> Program {
     let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &mut signals));
+    let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
     let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     Program {
@@ -31,8 +33,8 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
         shared: scenario.shared.iter().map(ta::var).collect(),
         clocks: Vec::new(),
         channels: Vec::new(),
-        functions: Vec::new(),
         queries: scenario.queries.iter().map(|q| query::query(q, scenario, &automata, files)).collect(),
+        functions: scenario.functions.iter().map(|f| function::function(f, scenario, &automata)).collect(),
         automata,
         networks: scenario.networks.iter().map(ta::network).collect(),
         signals: signals.into_list(),

@@ -188,6 +188,8 @@ fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Optio
         | ExprKind::If(..)
         | ExprKind::Call(..)
         | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
         | ExprKind::Error => None,
     }
 }

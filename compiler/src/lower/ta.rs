@@ -4,8 +4,8 @@ use hrdsl_ir::{
     ActorId, ArgPattern, EventId, Expr, Span, Type,
     expr::Place,
     ta::{
-        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind,
-        Network, ReceiveArg, Sync, Time, Update, Var,
+        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, FunctionId, Location, LocationId,
+        LocationKind, Network, ReceiveArg, Sync, Time, Update, Var,
     },
     value::nanos,
 };
@@ -37,7 +37,7 @@ pub(crate) fn var(v: &model::Var) -> Var {
 }
 
 /// A variable over a finite type, starting with its first value.
-fn bounded(name: &str, ty: model::Type) -> Var {
+pub(super) fn bounded(name: &str, ty: model::Type) -> Var {
     let (lo, hi, is_bool, enumeration) = match expr::ty(ty) {
         Type::Int { lo, hi } => (lo, hi, false, None),
         Type::Enum(e) => (0, e.values().len() as i64 - 1, false, Some(e)),
@@ -70,7 +70,7 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
     lowered
 }
 
-fn count(n: usize) -> u16 {
+pub(super) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
@@ -192,13 +192,13 @@ impl Emission<'_> {
 // ── edges ──
 
 /// Where variables are found: `Expr::Var` counts shared, own, then the edge's binders.
-struct Slots {
-    shared: u16,
-    own: u16,
+pub(super) struct Slots {
+    pub shared: u16,
+    pub own: u16,
 }
 
 impl Slots {
-    fn slot(&self, leaf: Leaf) -> u16 {
+    pub(super) fn slot(&self, leaf: Leaf) -> u16 {
         match leaf {
             Leaf::Shared(i) => i,
             Leaf::Own(i) => self.shared + i,
@@ -208,11 +208,20 @@ impl Slots {
         }
     }
 
-    fn expr(&self, e: &model::Expr) -> Expr {
-        expr::expr(e, &mut |source| match source {
-            Source::Leaf(leaf) => Expr::Var(self.slot(leaf)),
+    pub(super) fn expr(&self, e: &model::Expr) -> Expr {
+        expr::expr(e, &mut |source| self.read(&source))
+    }
+
+    pub(super) fn place(&self, place: &model::Place) -> Place {
+        expr::place(place, &mut |source| self.read(&source))
+    }
+
+    fn read(&self, source: &Source) -> Expr {
+        match source {
+            Source::Leaf(leaf) => Expr::Var(self.slot(*leaf)),
+            // INVARIANT: automata measure nothing.
             Source::Term(..) => Expr::bool(false),
-        })
+        }
     }
 
     fn edge(&self, e: &model::Edge) -> Edge {
@@ -228,6 +237,13 @@ impl Slots {
             model::Update::Own(i, v) => {
                 Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
             }
+            model::Update::Element(place, v) => {
+                Update::Assign { place: self.place(place), value: self.expr(v) }
+            }
+            model::Update::Call(function, args) => Update::Call {
+                function: FunctionId(function.0),
+                args: args.iter().map(|a| self.expr(a)).collect(),
+            },
             model::Update::Reset(clock) => Update::zero(ClockId(clock.0)),
         };
         Edge {

@@ -680,6 +680,7 @@ pub enum StatementKind {
         body: Vec<Statement>,
     },
     Return(Option<Expr>),
+    Error,
 }
 
 /// `query live "title" of table = formula`

@@ -5,8 +5,8 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 use crate::ast::{
     Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, Channel,
     ChannelKind, CrossMember, Edge, EdgeAction, EventName, Expr, ExprKind, Instance, ItemKind, Literal, Name,
-    Param, Party, Path, Range, Sort, Step, StepKind, StimulusStep, SuiteMember, SystemMember, TestMember,
-    Text, TypeExpr, UnaryOp, WorldMember,
+    Param, Party, Path, Range, Sort, Statement, Step, StepKind, StimulusStep, SuiteMember, SystemMember,
+    TestMember, Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -16,6 +16,7 @@ pub(crate) enum Unit {
     StimulusStep(StimulusStep),
     AgentMember(AgentMember),
     Step(Step),
+    Statement(Statement),
     AutomatonMember(AutomatonMember),
     CrossMember(CrossMember),
     SuiteMember(SuiteMember),

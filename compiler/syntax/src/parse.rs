@@ -128,6 +128,7 @@ pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) 
     let of = match start {
         None => "declaration",
         Some(Kind::StartStep | Kind::StartStimulusStep) => "step",
+        Some(Kind::StartStatement) => "statement",
         Some(_) => "member",
     };
     Err(Fault { of, at, expected })

@@ -3,6 +3,7 @@
 //! The grammar itself says where a member ends: the first token that cannot belong to it. Only after a broken member the
 //! next one is looked for by its keyword.
 
+mod statements;
 mod steps;
 
 use std::ops::Range;
@@ -103,11 +104,11 @@ impl Recovery<'_, '_> {
             (ItemKind::Part(item), _) => item.members = self.members(block),
             (ItemKind::World(item), _) => item.members = self.members(block),
             (ItemKind::System(item), _) => item.members = self.members(block),
-            // The statements of a function are not read one by one: it keeps its name and type.
-            (ItemKind::Function(_), _) => {}
+            (ItemKind::Function(item), _) => item.body = self.statements(block),
             // Of a list with a fault nothing is kept: its names would be said to be unknown.
             (ItemKind::Enum { .. } | ItemKind::Record { .. }, _) => kind = ItemKind::Error,
             (_, Kind::Stimulus) => drop(self.members::<StimulusStep>(block)),
+            (_, Kind::Fn) => drop(self.statements(block)),
             (_, Kind::Agent) => drop(self.members::<AgentMember>(block)),
             (_, Kind::Automaton) => drop(self.members::<AutomatonMember>(block)),
             (_, Kind::Cross) => drop(self.members::<CrossMember>(block)),
@@ -257,6 +258,7 @@ impl Recovery<'_, '_> {
         let said = self.cx.diagnostics.len();
         let unit = match self.tokens[range.start].kind {
             Kind::Plan if M::START == Kind::StartAgentMember => self.plan(&range),
+            Kind::Fn if M::START == Kind::StartAutomatonMember => self.function(&range),
             Kind::If if M::START == Kind::StartStimulusStep => self.condition(&range),
             _ => None,
         };

@@ -80,7 +80,7 @@ fn any_of(words: &[String]) -> String {
 // ── What was expected ──
 
 const OPERATORS: &[&str] =
-    &["+", "-", "*", "/", "%", "=", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or"];
+    &["+", "-", "*", "/", "%", "=", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or", "imply"];
 
 /// Terminals that together mean one thing to a person. The first that fits is taken.
 struct Group {
@@ -199,7 +199,7 @@ fn describe(fault: &Fault, first: bool) -> Vec<String> {
         left.retain(|t| !is_name(t));
     }
     // `and` and `or` alone stand between the branches of a fork.
-    let fork = !left.iter().any(|t| OPERATORS.contains(t) && !["and", "or"].contains(t));
+    let fork = !left.iter().any(|t| OPERATORS.contains(t) && !["and", "or", "imply"].contains(t));
     if !fork && left.iter().filter(|t| OPERATORS.contains(t)).count() >= 2 {
         said.push("an operator".to_owned());
         left.retain(|t| !OPERATORS.contains(t));
@@ -291,6 +291,9 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         }
         Kind::Pipe if fault.has("||") => "in expressions `or` is written `||` or `or`",
         Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
+        Kind::Pipe if before.is_some_and(Kind::ends_operand) && !fault.has("|") => {
+            "in expressions `or` is written `||` or `or`"
+        }
         Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
         kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
             "texts are written between `\"` and `\"`"

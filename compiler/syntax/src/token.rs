@@ -98,6 +98,7 @@ macro_rules! tokens {
             StartStimulusStep,
             StartAgentMember,
             StartStep,
+            StartStatement,
             StartAutomatonMember,
             StartCrossMember,
             StartSuiteMember,

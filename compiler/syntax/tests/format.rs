@@ -623,6 +623,30 @@ world{
 }
 system robot{run "python3 robot.py" coverage "a.py","b.py";limit 300s;budget 10s}
 "#
+    functions r#"
+fn front()->0..4{return q[0]}
+fn pop()->0..4{var first:0..4=q[0];var i:0..5;while i<4{q[i]=q[i+1];i+=1}q[4]=0;len-=1;return first}
+fn lines(a:0..4,b:bool){
+var first:0..4=q[0];
+var second : bool = false; // a comment
+// another
+while i<4{q[i]=q[i+1];i+=1}
+
+q[4]=0;len-=1
+; if a > b { return } else if c { x = 1;
+ y = 2 } else { f(1) }
+for k in 0..3 {
+ for j in 0..k-1 { swap(k,j) } }
+}
+automaton A{
+init location a
+fn f(a:0..3,b:bool)->bool{return a>2&&b}
+fn g(a:0..3){
+q[a].x=a;n-=2
+}
+a->a when f(1,true)do g(2)
+}
+"#
     comments_everywhere r#"// head
 scenario s // name
 // ── Agents ── the people

@@ -2,8 +2,9 @@
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, ItemKind, PatternKind, Step,
-    StepKind, StimulusStepKind, SuiteMemberKind, TestMemberKind, WorldMemberKind,
+    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, Function, ItemKind, PatternKind,
+    Statement, StatementKind, Step, StepKind, StimulusStepKind, SuiteMemberKind, TestMemberKind,
+    WorldMemberKind,
 };
 use hrdsl_syntax::parse;
 
@@ -298,4 +299,77 @@ system r { run x limit 3 s }
             other => panic!("{other:?}"),
         }
     }
+}
+
+/// The functions of a file and of its automata.
+fn functions(file: &File) -> Vec<&Function> {
+    let mut found = Vec::new();
+    for item in &file.items {
+        match &item.kind {
+            ItemKind::Function(f) => found.push(f),
+            ItemKind::Automaton(a) => found.extend(a.members.iter().filter_map(|m| match &m.kind {
+                AutomatonMemberKind::Function(f) => Some(f),
+                _ => None,
+            })),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The statements, those in blocks too, and how many of them could not be read.
+fn statements(of: &[Statement]) -> (usize, usize) {
+    let inner = |parts: &[&[Statement]]| {
+        parts.iter().map(|p| statements(p)).fold((1, 0), |(n, bad), (m, b)| (n + m, bad + b))
+    };
+    of.iter().fold((0, 0), |(n, bad), s| {
+        let (m, b) = match &s.kind {
+            StatementKind::If { then, otherwise, .. } => inner(&[then, otherwise]),
+            StatementKind::While { body, .. } | StatementKind::For { body, .. } => inner(&[body]),
+            StatementKind::Error => (1, 1),
+            StatementKind::Var(_)
+            | StatementKind::Assign { .. }
+            | StatementKind::Call(_)
+            | StatementKind::Return(_) => (1, 0),
+        };
+        (n + m, bad + b)
+    })
+}
+
+#[test]
+fn a_broken_statement_costs_that_statement() {
+    let text = "\
+fn a(n: 0..3) -> bool {
+  var i: 0..3 = ;
+  i = 1;
+  if n > { i = 2 } else if n == 1 { i = ; n = 2 } else { f( }
+  while n > 1 { i = 3; return + }
+  for k of 0..3 { g(k) }
+  i = 4
+  j = 5;;
+  return true
+}
+fn b() { return }
+automaton A {
+  fn c(n: 0..3) -> bool { i = = 2; return true }
+  init location x
+  fn d() { for i in 0..2 { n += ; m = 1 } }
+  x -> x
+}
+";
+    let (file, diagnostics) = parse(FileId(0), text);
+    let found: Vec<(&str, usize, bool, (usize, usize))> = functions(&file)
+        .into_iter()
+        .map(|f| (f.name.text.as_str(), f.params.len(), f.result.is_some(), statements(&f.body)))
+        .collect();
+    assert_eq!(
+        found,
+        [("a", 1, true, (10, 4)), ("b", 0, false, (1, 0)), ("c", 1, true, (2, 1)), ("d", 0, false, (3, 1)),],
+        "{diagnostics:#?}"
+    );
+    assert_eq!(errors(&file), 0);
+    assert_eq!(automaton(&file, "A").members.len(), 4);
+    let lines: Vec<usize> =
+        diagnostics.iter().map(|d| text[..d.span().start as usize].matches('\n').count() + 1).collect();
+    assert_eq!(lines, [2, 4, 4, 4, 5, 6, 8, 8, 13, 15], "{diagnostics:#?}");
 }

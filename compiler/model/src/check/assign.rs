@@ -1,13 +1,10 @@
-//! Assignments of edges: to single values, to several at once, and to elements that an index names.
+//! Assignments of edges: what may be assigned, and clocks.
 
 use hrdsl_syntax::ast::{self, Access, BinaryOp, ExprKind as Syntax, Name};
 
-use super::{Checker, Env, automaton::Scope, edge::and};
+use super::{Checker, Env, automaton::Scope};
 use crate::{
-    ClockId, Dim, Expr, ExprKind, Kind, Leaf, Type, Update, Value,
-    noun::Noun,
-    report::{automata, types},
-    types::Layout,
+    ClockId, Dim, Expr, Kind, Leaf, Place, Type, Update, noun::Noun, report::automata, types::Layout,
 };
 
 impl Checker<'_> {
@@ -49,16 +46,10 @@ impl Checker<'_> {
                 }
             },
         };
-        let place = Place { name: target.text.clone(), layout, only_if: None };
-        let places = self.targets(place, access, target, env);
-        let several = places.len() > 1 || places.iter().any(|p| !matches!(p.layout, Layout::Scalar(_)));
-        for place in places {
-            if several {
-                self.assign_parts(scope, &place, op, value, target, env, updates);
-            } else {
-                self.assign(scope, &place, op, value, target, env, updates);
-            }
-        }
+        env.effects = true;
+        let assigned = self.assigned(target, (layout, access), op, value, env);
+        env.effects = false;
+        updates.extend(assigned.into_iter().filter_map(set));
     }
 
     /// Whether the parts of a name are not those of a variable.
@@ -99,178 +90,13 @@ impl Checker<'_> {
             Leaf::Local(_) | Leaf::Signal(_) => Type::Bool,
         }
     }
-
-    /// What `a[i].x` may be: each element that the index can name, under the condition that it does.
-    fn targets(&mut self, place: Place, access: &[Access], target: &Name, env: &mut Env) -> Vec<Place> {
-        let mut places = vec![place];
-        for step in access {
-            let mut inner = Vec::new();
-            for place in places {
-                match (step, &place.layout) {
-                    (Access::Index(e), Layout::Array(of, n)) => {
-                        let at = self.expr_of(e, Kind::Int, env);
-                        if !self.index_fits(&at, usize::from(*n), env) {
-                            return Vec::new();
-                        }
-                        let element = |i: u16, only_if| Place {
-                            name: format!("{}[{i}]", place.name),
-                            layout: (**of).clone(),
-                            only_if,
-                        };
-                        match at.constant() {
-                            Some(Value::Int(i)) => {
-                                inner.push(element(u16::try_from(i).unwrap_or(0), place.only_if.clone()));
-                            }
-                            Some(_) | None => inner.extend((0..*n).map(|i| {
-                                let here = super::item::is_at(&at, usize::from(i));
-                                element(i, Some(place.only_if.clone().map_or(here.clone(), |c| and(c, here))))
-                            })),
-                        }
-                    }
-                    (Access::Field(name), layout) => match self.field_of(layout, name) {
-                        Some(layout) => inner.push(Place {
-                            name: format!("{}{}", place.name, layout.0),
-                            layout: layout.1,
-                            only_if: place.only_if.clone(),
-                        }),
-                        None => return Vec::new(),
-                    },
-                    (Access::Index(_), Layout::Unknown) => return Vec::new(),
-                    (Access::Index(_), layout) => {
-                        let message = format!("{} has no elements", self.shown_layout(layout));
-                        self.report(types::no_elements(message, target.span));
-                        return Vec::new();
-                    }
-                }
-            }
-            places = inner;
-        }
-        places
-    }
-
-    /// One single value is set.
-    #[allow(clippy::too_many_arguments, reason = "all of an assignment")]
-    fn assign(
-        &mut self,
-        scope: &Scope,
-        place: &Place,
-        op: Option<BinaryOp>,
-        value: &ast::Expr,
-        target: &Name,
-        env: &mut Env,
-        updates: &mut Vec<Update>,
-    ) {
-        let Some(leaf) = env.find(&place.name).and_then(|l| l.leaf) else { return };
-        let value = self.new_value(leaf, self.type_of(scope, leaf), op, value, target, env);
-        updates.extend(set(leaf, value));
-    }
-
-    /// Several single values are set, or one of several: nothing that is set may be read on the way.
-    #[allow(clippy::too_many_arguments, reason = "all of an assignment")]
-    fn assign_parts(
-        &mut self,
-        scope: &Scope,
-        place: &Place,
-        op: Option<BinaryOp>,
-        value: &ast::Expr,
-        target: &Name,
-        env: &mut Env,
-        updates: &mut Vec<Update>,
-    ) {
-        let mut leaves = Vec::new();
-        self.leaves(&place.name, &place.layout, &mut leaves);
-        let mut values = Vec::new();
-        match (op, leaves.as_slice()) {
-            (None, _) => self.item_for(value, &place.layout, env).flatten(&mut values),
-            (Some(_), [(name, ty)]) => {
-                let Some(leaf) = env.find(name).and_then(|l| l.leaf) else { return };
-                values.push(self.new_value(leaf, *ty, op, value, target, env));
-            }
-            (Some(_), _) => {
-                let got = self.shown_layout(&place.layout);
-                let issue = types::other_shape("one number", &got, target.span);
-                return self.report(issue.help("`+=` and `-=` change one number: name a part of it"));
-            }
-        }
-        if values.len() != leaves.len() {
-            // A part is of a type that has a diagnostic.
-            return;
-        }
-        let slots: Vec<Option<Leaf>> =
-            leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();
-        let whole = leaves.len() > 1;
-        for (i, (slot, value)) in slots.iter().zip(values).enumerate() {
-            let Some(leaf) = *slot else { continue };
-            let reads = |e: &Expr, of: &[Option<Leaf>]| {
-                let mut found = false;
-                e.each(&mut |e| found |= matches!(e.kind, ExprKind::Leaf(l) if of.contains(&Some(l))));
-                found
-            };
-            let early = whole && reads(&value, &slots[..i]);
-            let index = place.only_if.as_ref().is_some_and(|c| self.reads_variable(c, target, env));
-            if early || index {
-                return self.report(automata::read_while_set(&target.text, value.span));
-            }
-            let value = match &place.only_if {
-                None => value,
-                Some(condition) => {
-                    let ty = self.type_of(scope, leaf).kind();
-                    let old = Expr { kind: ExprKind::Leaf(leaf), ty, span: target.span };
-                    let span = value.span;
-                    self.conditional(condition.clone(), value, old, span, env)
-                }
-            };
-            updates.extend(set(leaf, value));
-        }
-    }
-
-    /// Whether an expression reads a part of this variable.
-    fn reads_variable(&self, e: &Expr, target: &Name, env: &Env) -> bool {
-        let mut leaves = Vec::new();
-        if let Some(layout) = env.layout(&target.text) {
-            self.leaves(&target.text, layout, &mut leaves);
-        }
-        let slots: Vec<Option<Leaf>> =
-            leaves.iter().map(|(name, _)| env.find(name).and_then(|l| l.leaf)).collect();
-        let mut found = false;
-        e.each(&mut |e| found |= matches!(e.kind, ExprKind::Leaf(l) if slots.contains(&Some(l))));
-        found
-    }
-
-    /// `v`, or for `x += v` the sum.
-    fn new_value(
-        &mut self,
-        leaf: Leaf,
-        ty: Type,
-        op: Option<BinaryOp>,
-        value: &ast::Expr,
-        target: &Name,
-        env: &mut Env,
-    ) -> Expr {
-        let Some(op) = op else { return self.expr_for(value, ty, env) };
-        if !ty.kind().is_number() {
-            self.report(types::mismatch(Kind::Int, ty.kind(), None, target.span));
-        }
-        let by = self.expr_of(value, Kind::Int, env);
-        let span = target.span.to(value.span);
-        let old = Expr { kind: ExprKind::Leaf(leaf), ty: ty.kind(), span: target.span };
-        Expr { kind: ExprKind::Binary(op, Box::new(old), Box::new(by)), ty: Kind::Int, span }
-    }
 }
 
-/// A variable or a part of one that an assignment sets.
-struct Place {
-    /// `a[0].x`
-    name: String,
-    layout: Layout,
-    /// Set only if this holds; else it keeps its value.
-    only_if: Option<Expr>,
-}
-
-fn set(leaf: Leaf, value: Expr) -> Option<Update> {
-    match leaf {
+fn set((place, value): (Place, Expr)) -> Option<Update> {
+    match place.leaf {
+        Leaf::Local(_) | Leaf::Signal(_) => None,
+        Leaf::Own(_) | Leaf::Shared(_) if !place.indices.is_empty() => Some(Update::Element(place, value)),
         Leaf::Own(i) => Some(Update::Own(i, value)),
         Leaf::Shared(i) => Some(Update::Shared(i, value)),
-        Leaf::Local(_) | Leaf::Signal(_) => None,
     }
 }

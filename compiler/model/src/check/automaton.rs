@@ -5,7 +5,7 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sort};
 
-use super::{Checker, Declared, Env, table::Table};
+use super::{Checker, Declared, Env, env::Elements, table::Table};
 use crate::{
     ActorId, AutomatonId, ClockOp, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync,
     noun::Noun, report::automata, types::Layout,
@@ -38,13 +38,16 @@ fn emissions(steps: &[StimulusStep]) -> usize {
 
 impl Checker<'_> {
     pub(super) fn automata(&mut self) {
+        self.shared_functions();
         self.templates_of(Sort::Automaton, |c, template| {
             let ItemKind::Automaton(syntax) = template.kind else { return };
             let index = c.s.automata.len();
+            let functions = c.s.functions.len();
             let plain = Declared { syntax, given: None, instance: None };
             c.push_automaton(&plain, template.name, template.name.span);
             c.automaton(index, syntax);
             c.s.automata.truncate(index);
+            c.s.functions.truncate(functions);
         });
         for (index, automaton) in self.automaton_decls.clone().into_iter().enumerate() {
             let place = automaton.instance.map(|i| (&i.name, i.span));
@@ -65,7 +68,12 @@ impl Checker<'_> {
             clocks: Table::default(),
             vars: Table::default(),
             locations: Table::default(),
-            env: Env { noun: Some(Noun::Variable), shared: self.shared_scope.clone(), ..Env::default() },
+            env: Env {
+                noun: Some(Noun::Variable),
+                shared: self.shared_scope.clone(),
+                elements: Elements::Variables,
+                ..Env::default()
+            },
         };
         self.unread_members = super::unread::in_automaton(automaton);
         for member in &automaton.members {
@@ -83,6 +91,7 @@ impl Checker<'_> {
                 | Member::Error => {}
             }
         }
+        self.own_functions(index, automaton, &mut scope.env);
         self.locations(index, automaton, &mut scope);
         for member in &automaton.members {
             if let Member::Edge(edge) = &member.kind {
@@ -91,6 +100,7 @@ impl Checker<'_> {
             }
         }
         self.automaton_scopes.insert(index, scope.env.own.clone());
+        self.say_impure();
         self.unread_members = false;
         self.made(&self.s.automata[index], automaton.name.span).into_iter().for_each(|i| self.report(i));
     }

@@ -35,6 +35,7 @@ impl Checker<'_> {
         let mut sent: Option<(Span, Option<Sync>)> = None;
         for action in &edge.actions {
             match &action.kind {
+                Action::Send(call) if self.calls_function(call, &mut env, &mut updates) => {}
                 Action::Send(call) => {
                     match (&sent, &edge.on) {
                         (Some((first, _)), _) => self.report(automata::two_sends(call.span, *first)),

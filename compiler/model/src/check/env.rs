@@ -6,7 +6,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::Name;
 
 use super::{Checker, table::Map};
-use crate::{Kind, Leaf, Type, Var, noun::Noun, report::names::duplicate, types::Layout};
+use crate::{FunctionId, Kind, Leaf, Type, Var, noun::Noun, report::names::duplicate, types::Layout};
 
 /// A name of the place's own scope.
 #[derive(Clone, Debug)]
@@ -31,6 +31,30 @@ pub(crate) struct Scope {
     pub clocks: Map<String, Local>,
     /// As in [`Env::layouts`].
     pub layouts: Map<String, Layout>,
+    pub functions: Map<String, Callable>,
+}
+
+/// What a call of a function of automata needs to know.
+#[derive(Clone, Debug)]
+pub(crate) struct Callable {
+    pub id: FunctionId,
+    /// A parameter whose type has a diagnostic is of unknown layout.
+    pub params: Rc<[(String, Layout)]>,
+    /// `None`: it has no value; of a type with a diagnostic nothing is known.
+    pub result: Option<Option<Type>>,
+    /// Its name, where it is declared.
+    pub span: Span,
+}
+
+/// Which arrays are indexed at run time. The others are taken apart, by indices that lie in them for certain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Elements {
+    #[default]
+    None,
+    /// Those of the automaton's and the shared variables.
+    Variables,
+    /// And those of locals: in a function.
+    Locals,
 }
 
 impl Scope {
@@ -66,6 +90,9 @@ pub(crate) struct Env {
     pub layouts: Vec<(String, Layout)>,
     /// Names that are bound by something with a diagnostic: nothing is said about what they stand for.
     pub broken: Vec<String>,
+    pub elements: Elements,
+    /// A function that is called may change variables.
+    pub effects: bool,
     /// Measurements are allowed; names of the world have this prefix (`robot.` inside of a part, else empty).
     pub world: Option<String>,
     /// Names that start with an upper-case letter are an agent's variables.
@@ -100,6 +127,15 @@ impl Env {
             Leaf::Shared(i) => self.shared.names.get_index(usize::from(i)).map(|(_, local)| local),
             Leaf::Local(_) | Leaf::Signal(_) => self.locals.iter().find(|l| l.leaf == Some(leaf)),
         }
+    }
+
+    /// The function of automata of this name.
+    pub fn function(&self, name: &str) -> Option<&Callable> {
+        self.own.functions.get(name).or_else(|| self.shared.functions.get(name))
+    }
+
+    pub fn function_names(&self) -> impl Iterator<Item = &str> {
+        self.own.functions.keys().chain(self.shared.functions.keys()).map(String::as_str)
     }
 
     /// All names, those of the place itself first.

@@ -59,8 +59,16 @@ impl<'a> Checker<'a> {
             Syntax::Tuple(parts) => {
                 return self.tuple(parts, span, env);
             }
-            Syntax::Index { of, index } => return self.index(of, index, span, env),
+            Syntax::Index { of, index } => {
+                return match self.element(e, env) {
+                    Some(item) => item,
+                    None => self.index(of, index, span, env),
+                };
+            }
             Syntax::Field { of, name } => {
+                if let Some(item) = self.element(e, env) {
+                    return item;
+                }
                 let item = self.item(of, env);
                 return self.field(item, name);
             }
@@ -264,6 +272,13 @@ impl<'a> Checker<'a> {
 
     fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
         let name = &callee.names[0];
+        // One of an automaton has its name before it, in a query.
+        let whole = callee.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
+        let whole = Name { text: whole, ..name.clone() };
+        if let Some(value) = self.applied_function(&whole, args, span, env)
+        {
+            return Item::One(value);
+        }
         if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {
             self.used_types.insert(name.text.clone());
             return self.record(id, name, args, span, env);

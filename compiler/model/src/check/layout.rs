@@ -218,7 +218,7 @@ impl<'a> Checker<'a> {
     }
 
     /// How many single values there are.
-    fn size(&self, layout: &Layout) -> usize {
+    pub(super) fn size(&self, layout: &Layout) -> usize {
         match layout {
             Layout::Scalar(_) => 1,
             Layout::Unknown => 0,

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     Expr, ExprKind,
     noun::Noun,
-    report::{agents::unbound, automata::clock_misused, names, types},
+    report::{agents::unbound, automata::clock_misused, functions, names, types},
 };
 
 impl<'a> Checker<'a> {
@@ -66,7 +66,11 @@ impl<'a> Checker<'a> {
                 }
                 Some(_) => self.without_value(name, env),
                 None => {
-                    self.report(clock_misused(&name.text, name.span));
+                    self.report(if self.functions.open.is_some() {
+                        functions::clock(&name.text, name.span)
+                    } else {
+                        clock_misused(&name.text, name.span)
+                    });
                     Expr::error(name.span)
                 }
             }));

@@ -278,11 +278,17 @@ impl Checker<'_> {
             self.report(hrdsl_source::Diagnostic { message, ..issue });
             return;
         }
+        if let [name] = callee.names.as_slice()
+            && self.function_elsewhere(name)
+        {
+            return;
+        }
         let mut all: Vec<String> = FUNCTIONS.iter().map(|f| f.0.to_owned()).collect();
         if env.world.is_some() {
             all.extend(MEASURES.map(str::to_owned));
         }
         all.extend(self.record_names.names().map(str::to_owned));
+        all.extend(env.function_names().map(str::to_owned));
         let callee = Name { text: name, span: callee.span };
         self.unknown(Noun::Function, &callee, &all, None);
     }

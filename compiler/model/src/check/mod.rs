@@ -11,6 +11,7 @@ mod due;
 mod edge;
 mod env;
 mod expr;
+mod function;
 mod given;
 mod internal;
 mod internal_table;
@@ -20,12 +21,14 @@ mod list;
 mod lookup;
 mod measure;
 mod message;
+mod place;
 mod places;
 mod plan;
 mod query;
 mod range;
 mod requirement;
 mod rule;
+mod statement;
 mod steps;
 mod stimulus;
 mod suite;
@@ -192,6 +195,8 @@ pub(crate) struct Checker<'a> {
     shared_names: Table,
     /// What every automaton sees of them.
     shared_scope: Rc<env::Scope>,
+    /// What is known of the functions that are being checked.
+    functions: function::Functions,
     networks: Table,
     queries: Table,
     requirement_names: Table,
@@ -270,6 +275,7 @@ impl<'a> Checker<'a> {
             shared: Table::default(),
             shared_names: Table::default(),
             shared_scope: Rc::default(),
+            functions: function::Functions::default(),
             networks: Table::default(),
             queries: Table::default(),
             requirement_names: Table::default(),

@@ -65,6 +65,10 @@ impl Checker<'_> {
                 | ItemKind::Error => {}
             }
         }
+        for (name, span) in std::mem::take(&mut self.functions.declared).into_values() {
+            let used = self.functions.used.contains(&name.span);
+            self.declared("the function", &name, span, used);
+        }
         let agents = self.agent_decls.iter();
         self.s.places.agents =
             agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();

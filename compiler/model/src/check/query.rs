@@ -48,6 +48,7 @@ impl Checker<'_> {
                 self.s.queries.extend(resolved.filter(|_| new));
             }
         }
+        self.say_impure();
     }
 
     fn query(&mut self, query: &ast::Query, span: Span) -> Option<Query> {
@@ -122,6 +123,9 @@ impl Checker<'_> {
             }
             for (name, layout) in &scope.layouts {
                 own.layouts.insert(format!("{of}.{name}"), layout.clone());
+            }
+            for (name, function) in &scope.functions {
+                own.functions.insert(format!("{of}.{name}"), function.clone());
             }
             for clock in scope.clocks.keys() {
                 add_clock(&mut net.clocks, format!("{of}.{clock}"));

@@ -19,6 +19,9 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
         | ExprKind::Term(_)
         | ExprKind::Error => None,
         ExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),
+        // The elements of an array are of one type.
+        ExprKind::Element(place) => env.of_leaf(place.leaf).and_then(|l| l.range),
+        ExprKind::Apply(_, _, ty) => ty.range(),
         ExprKind::Unary(UnaryOp::Neg, a) => {
             let (lo, hi) = of(a, env)?;
             Some((hi.checked_neg()?, lo.checked_neg()?))

@@ -55,7 +55,6 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         // The language's own words.
         Noun::Role
         | Noun::Unit
-        | Noun::Function
         | Noun::RequirementKind
         | Noun::Method
         | Noun::Explore
@@ -73,7 +72,7 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         // Declared in one piece with the place that uses them.
         Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
         Noun::Annotation | Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location | Noun::Member => members,
-        Noun::Variable => items || members,
+        Noun::Variable | Noun::Function => items || members,
         Noun::Actor
         | Noun::Type
         | Noun::Enum

@@ -285,7 +285,7 @@ impl<'a> Checker<'a> {
 }
 
 /// What a variable holds that is given no value.
-fn nearest_to_zero(ty: Type) -> Value {
+pub(super) fn nearest_to_zero(ty: Type) -> Value {
     match ty {
         Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => Value::Bool(false),
         Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),

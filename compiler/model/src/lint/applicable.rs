@@ -493,7 +493,13 @@ impl<'a> Place<'a> {
             ExprKind::List(items, rest) => {
                 format!("list({})", all(&items.iter().chain(rest.as_deref()).collect::<Vec<_>>())?)
             }
-            ExprKind::Const(_) | ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => "?".to_owned(),
+            // Elements and functions are automata's alone.
+            ExprKind::Const(_)
+            | ExprKind::Leaf(_)
+            | ExprKind::Term(_)
+            | ExprKind::Element(_)
+            | ExprKind::Apply(..)
+            | ExprKind::Error => "?".to_owned(),
         }))
     }
 }

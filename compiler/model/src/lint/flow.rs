@@ -3,8 +3,8 @@
 use std::{collections::VecDeque, rc::Rc};
 
 use crate::{
-    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, Leaf, LocationId, ReceiveArg, Scenario,
-    Sync, Update,
+    Automaton, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, ExprKind, FunctionId, Leaf, LocationId,
+    ReceiveArg, Scenario, Sync, Update,
     lint::interval::{Env, Interval},
 };
 
@@ -19,6 +19,8 @@ struct Ranges {
     shared: Vec<Interval>,
     /// By event.
     params: Vec<Vec<Interval>>,
+    /// By function: the variables that it may assign.
+    assigns: Vec<Vec<Leaf>>,
 }
 
 /// What is known about one automaton.
@@ -37,6 +39,7 @@ pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
     let ranges = Rc::new(Ranges {
         shared: scenario.shared.iter().map(|v| Interval::of(v.ty)).collect(),
         params: scenario.events.iter().map(params).collect(),
+        assigns: scenario.functions.iter().map(|f| f.assigns.clone()).collect(),
     });
     scenario.automata.iter().map(|a| Flow::of(a, Rc::clone(&ranges))).collect()
 }
@@ -163,16 +166,55 @@ impl Flow {
         let (leaf, e, range) = match update {
             Update::Own(i, e) => (Leaf::Own(*i), e, self.own.get(usize::from(*i))),
             Update::Shared(i, e) => (Leaf::Shared(*i), e, self.ranges.shared.get(usize::from(*i))),
-            Update::Reset(_) => return None,
+            Update::Element(..) | Update::Call(..) | Update::Reset(_) => return None,
         };
         Some((leaf, e, range.copied().unwrap_or(Interval::ALL)))
+    }
+
+    /// What an update may set besides [`Self::set_by`]: of elements and in functions any value.
+    pub fn disturb(&self, env: &mut Env<'_>, update: &Update) {
+        let mut set: Vec<Leaf> = Vec::new();
+        let mut called = |e: &Expr| {
+            e.each(&mut |part| {
+                if let ExprKind::Apply(f, ..) = part.kind {
+                    set.extend(self.assigned_by(f));
+                }
+            });
+        };
+        match update {
+            Update::Own(_, e) | Update::Shared(_, e) => called(e),
+            Update::Element(place, e) => {
+                called(e);
+                set.extend(place.leaves());
+            }
+            Update::Call(f, args) => {
+                args.iter().for_each(called);
+                set.extend(self.assigned_by(*f));
+            }
+            Update::Reset(_) => {}
+        }
+        for leaf in set {
+            let range = match leaf {
+                Leaf::Own(i) => self.own.get(usize::from(i)),
+                Leaf::Shared(i) => self.ranges.shared.get(usize::from(i)),
+                Leaf::Local(_) | Leaf::Signal(_) => None,
+            };
+            env.assign(leaf, range.copied().unwrap_or(Interval::ALL));
+        }
+    }
+
+    fn assigned_by(&self, function: FunctionId) -> &[Leaf] {
+        self.ranges.assigns.get(usize::from(function.0)).map_or(&[], Vec::as_slice)
     }
 
     /// The variables after an edge; a value outside of its range does not get there.
     fn after(&self, edge: &Edge) -> Option<Vec<Interval>> {
         let mut env = self.taken(edge)?;
-        for (leaf, e, range) in edge.updates.iter().filter_map(|u| self.set_by(u)) {
-            env.assign(leaf, env.eval(e).meet(range)?);
+        for update in &edge.updates {
+            self.disturb(&mut env, update);
+            if let Some((leaf, e, range)) = self.set_by(update) {
+                env.assign(leaf, env.eval(e).meet(range)?);
+            }
         }
         let mut after = env.own.to_vec();
         for (leaf, known) in &env.less {

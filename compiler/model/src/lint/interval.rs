@@ -207,6 +207,11 @@ impl<'a> Env<'a> {
         match &e.kind {
             ExprKind::Const(value) => Interval::value(*value),
             ExprKind::Leaf(leaf) => self.get(*leaf),
+            ExprKind::Element(place) => {
+                let all = place.leaves().into_iter().map(|l| self.get(l));
+                all.reduce(Interval::join).unwrap_or(Interval::ALL)
+            }
+            ExprKind::Apply(_, _, ty) => Interval::of(*ty),
             ExprKind::Term(_) | ExprKind::Error if e.ty == Kind::Bool => Interval::MAYBE,
             ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => Interval::ALL,
             ExprKind::Unary(UnaryOp::Neg, a) => self.eval(a).neg(),
@@ -301,6 +306,8 @@ impl<'a> Env<'a> {
                 | ExprKind::If(..)
                 | ExprKind::Call(..)
                 | ExprKind::List(..)
+                | ExprKind::Element(_)
+                | ExprKind::Apply(..)
                 | ExprKind::Error,
                 _,
             ) => self.leave(e, Interval::bool(Some(want))),
@@ -359,6 +366,8 @@ impl<'a> Env<'a> {
             | ExprKind::If(..)
             | ExprKind::Call(..)
             | ExprKind::List(..)
+            | ExprKind::Element(_)
+            | ExprKind::Apply(..)
             | ExprKind::Error => true,
         }
     }
@@ -385,6 +394,8 @@ fn same(a: &Expr, b: &Expr) -> bool {
             | ExprKind::If(..)
             | ExprKind::Call(..)
             | ExprKind::List(..)
+            | ExprKind::Element(_)
+            | ExprKind::Apply(..)
             | ExprKind::Error,
             _,
         ) => false,

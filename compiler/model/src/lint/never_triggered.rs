@@ -93,6 +93,8 @@ fn truth(scenario: &Scenario, e: &Expr, depth: u32) -> Option<bool> {
         | ExprKind::Unary(UnaryOp::Neg, _)
         | ExprKind::Call(..)
         | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
         | ExprKind::Error => None,
     }
 }
@@ -145,9 +147,12 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
                 (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => return None,
             }
         }
-        ExprKind::Unary(UnaryOp::Not, _) | ExprKind::Binary(..) | ExprKind::List(..) | ExprKind::Error => {
-            return None;
-        }
+        ExprKind::Unary(UnaryOp::Not, _)
+        | ExprKind::Binary(..)
+        | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
+        | ExprKind::Error => return None,
     };
     (!lo.is_nan() && !hi.is_nan()).then_some((lo, hi))
 }

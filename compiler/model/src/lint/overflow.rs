@@ -8,7 +8,7 @@ use super::{
     interval::{Env, Interval},
 };
 use crate::{
-    Agent, Arg, Automaton, Context, Event, EventId, Expr, ExprKind, Leaf, Param, Scenario, Step, StepKind,
+    Agent, Arg, Automaton, Context, Event, EventId, Expr, Leaf, Param, Scenario, Step, StepKind,
     StimulusStep, Sync, TriggerOn, Type, Update,
 };
 
@@ -72,10 +72,14 @@ impl<'a> Checker<'a> {
                 self.args(&env, args, self.params(*event));
             }
             for update in &edge.updates {
+                flow.disturb(&mut env, update);
+                if let Update::Element(place, e) = update {
+                    self.element(&env, place.leaf, e, automaton);
+                }
                 let var = match update {
                     Update::Own(i, _) => automaton.vars.get(usize::from(*i)),
                     Update::Shared(i, _) => self.scenario.shared.get(usize::from(*i)),
-                    Update::Reset(_) => None,
+                    Update::Element(..) | Update::Call(..) | Update::Reset(_) => None,
                 };
                 let (Some(var), Some((leaf, e, range))) = (var, flow.set_by(update)) else { continue };
                 // One assignment sets an element of which only the index tells which it is.
@@ -86,6 +90,19 @@ impl<'a> Checker<'a> {
                     None => break,
                 }
             }
+        }
+    }
+
+    /// What becomes of an element that an index chooses; all are of one type.
+    fn element(&mut self, env: &Env<'_>, leaf: Leaf, e: &Expr, automaton: &Automaton) {
+        let var = match leaf {
+            Leaf::Own(i) => automaton.vars.get(usize::from(i)),
+            Leaf::Shared(i) => self.scenario.shared.get(usize::from(i)),
+            Leaf::Local(_) | Leaf::Signal(_) => None,
+        };
+        if let Some(var) = var {
+            let name = var.name.split('[').next().unwrap_or(&var.name);
+            self.fits(env, e, var.ty, &format!("`{name}`"));
         }
     }
 
@@ -282,11 +299,7 @@ fn context(env: &mut Env<'_>, c: &Context, agent: &Agent) -> bool {
 /// Whether an expression reads something without a range.
 fn reads_open(env: &Env<'_>, e: &Expr) -> bool {
     let mut open = false;
-    e.each(&mut |part| {
-        if let ExprKind::Leaf(leaf) = part.kind {
-            open |= env.get(leaf).is_open();
-        }
-    });
+    e.each_leaf(&mut |leaf| open |= env.get(leaf).is_open());
     open
 }
 

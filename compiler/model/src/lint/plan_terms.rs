@@ -181,6 +181,8 @@ pub(crate) fn same_expr(a: &Expr, b: &Expr, vars: &mut dyn FnMut(u16, u16) -> bo
             | ExprKind::If(..)
             | ExprKind::Call(..)
             | ExprKind::List(..)
+            | ExprKind::Element(_)
+            | ExprKind::Apply(..)
             | ExprKind::Error,
             _,
         ) => false,
@@ -192,7 +194,12 @@ pub(crate) fn fold(e: &Expr, vars: &dyn Fn(u16) -> Option<Value>) -> Option<Valu
     match &e.kind {
         ExprKind::Const(value) => Some(*value),
         ExprKind::Leaf(Leaf::Local(var)) => vars(*var),
-        ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => None,
+        ExprKind::Leaf(_)
+        | ExprKind::Term(_)
+        | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
+        | ExprKind::Error => None,
         ExprKind::Unary(op, a) => value::unary(*op, fold(a, vars)?).ok(),
         ExprKind::Binary(op, a, b) => value::binary(*op, fold(a, vars)?, fold(b, vars)?).ok(),
         ExprKind::If(c, a, b) => match fold(c, vars)? {

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Performative, Player, Role, Scenario, StepKind, Subject, Sync, Update, Var,
+    Performative, Player, Role, Routine, Scenario, StepKind, Subject, Sync, Update, Var,
 };
 
 pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
@@ -188,8 +188,7 @@ impl Uses {
 
 /// Marks the variables that an expression reads; `but` is the one it is for.
 fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
-    e.each(&mut |part| {
-        let ExprKind::Leaf(leaf) = part.kind else { return };
+    e.each_leaf(&mut |leaf| {
         if Some(leaf) == but {
             return;
         }
@@ -203,8 +202,14 @@ fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
 
 fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     let mut shared = Uses::new(scenario.shared.len());
+    let owned = |owner: Option<AutomatonId>| -> Vec<&Routine> {
+        scenario.functions.iter().filter(|f| f.owner == owner).collect()
+    };
+    in_functions(&owned(None), &mut Uses::new(0), &mut shared);
     for (index, automaton) in scenario.automata.iter().enumerate() {
         let (mut own, clocks) = uses_of(automaton, &mut shared);
+        let id = u16::try_from(index).ok().map(AutomatonId);
+        in_functions(&owned(id), &mut own, &mut shared);
         let places = scenario.places.automata.get(index);
         for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[*i]) {
             let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.span);
@@ -256,6 +261,28 @@ fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
     first
 }
 
+fn sets(leaf: Leaf, own: &mut Uses, shared: &mut Uses) {
+    match leaf {
+        Leaf::Own(i) => own.set[usize::from(i)] = true,
+        Leaf::Shared(i) => shared.set[usize::from(i)] = true,
+        Leaf::Local(_) | Leaf::Signal(_) => {}
+    }
+}
+
+/// What functions read and assign, whether they are called or not.
+fn in_functions(functions: &[&Routine], own: &mut Uses, shared: &mut Uses) {
+    for function in functions {
+        for leaf in &function.reads {
+            match leaf {
+                Leaf::Own(i) => own.read[usize::from(*i)] = true,
+                Leaf::Shared(i) => shared.read[usize::from(*i)] = true,
+                Leaf::Local(_) | Leaf::Signal(_) => {}
+            }
+        }
+        function.assigns.iter().for_each(|l| sets(*l, own, shared));
+    }
+}
+
 /// The uses of an automaton's own variables, and of its clocks.
 fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
     let mut own = Uses::new(automaton.vars.len());
@@ -284,6 +311,12 @@ fn uses_of(automaton: &Automaton, shared: &mut Uses) -> (Uses, Uses) {
                     shared.set[usize::from(*i)] = true;
                     reads(e, &mut own, shared, Some(Leaf::Shared(*i)));
                 }
+                Update::Element(place, e) => {
+                    reads(e, &mut own, shared, None);
+                    place.indices.iter().for_each(|i| reads(&i.at, &mut own, shared, None));
+                    place.leaves().into_iter().for_each(|l| sets(l, &mut own, shared));
+                }
+                Update::Call(_, args) => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
                 Update::Reset(clock) => clocks.set[usize::from(clock.0)] = true,
             }
         }

@@ -3,6 +3,7 @@
 pub(crate) mod agents;
 pub(crate) mod automata;
 pub(crate) mod coverage;
+pub(crate) mod functions;
 pub(crate) mod names;
 pub(crate) mod queries;
 pub(crate) mod requirements;

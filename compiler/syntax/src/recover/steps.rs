@@ -74,7 +74,7 @@ impl Recovery<'_, '_> {
         }
     }
 
-    fn end_of_step(&self, at: usize, end: usize) -> usize {
+    pub(super) fn end_of_step(&self, at: usize, end: usize) -> usize {
         let mut depth = 0_usize;
         for i in at..end {
             match self.tokens[i].kind {
@@ -176,7 +176,7 @@ impl Recovery<'_, '_> {
     }
 
     /// The braces of the blocks of an `if`, `while`, `for` or `fork`; none if it is another step, or has no block.
-    fn blocks(&self, at: usize, end: usize) -> Vec<(usize, usize)> {
+    pub(super) fn blocks(&self, at: usize, end: usize) -> Vec<(usize, usize)> {
         let mut blocks = Vec::new();
         let word = self.tokens[at].kind;
         if !matches!(word, Kind::If | Kind::While | Kind::For | Kind::Fork) {

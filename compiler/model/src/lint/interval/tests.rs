@@ -71,7 +71,12 @@ pub(crate) fn run(e: &Expr, own: &[i64]) -> Option<Value> {
     match &e.kind {
         ExprKind::Const(v) => Some(*v),
         ExprKind::Leaf(Leaf::Own(i)) => Some(Value::Int(own[usize::from(*i)])),
-        ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => None,
+        ExprKind::Leaf(_)
+        | ExprKind::Term(_)
+        | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
+        | ExprKind::Error => None,
         ExprKind::Unary(op, a) => value::unary(*op, run(a, own)?).ok(),
         ExprKind::Binary(BinaryOp::And, a, b) => Some(Value::Bool(truth(a)? && truth(b)?)),
         ExprKind::Binary(BinaryOp::Or, a, b) => Some(Value::Bool(truth(a)? || truth(b)?)),

@@ -169,6 +169,7 @@ impl Marker<'_> {
             }
             StatementKind::Call(call) => self.call(call),
             StatementKind::Return(value) => self.maybe(value.as_ref()),
+            StatementKind::Error => {}
             StatementKind::If { condition, then, otherwise } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
