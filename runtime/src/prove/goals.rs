@@ -1,7 +1,7 @@
 //! Goals decided under the assumptions of a program, by up to three searches.
 
 use hrdsl_ir::{Program, ta::Formula};
-use hrdsl_ta::{Counter, Error, Exhausted, Goal, GoalKind, Limit, Outcome, Report, StateFormula};
+use hrdsl_ta::{Counter, Error, Exhausted, Goal, GoalKind, Limit, Outcome, Report};
 
 use super::{Observed, Run, Settings, Watch, keeps_assumptions, settings::search};
 
@@ -41,7 +41,7 @@ enum Windows {
 /// The goal that a formula holds.
 #[must_use]
 pub fn of_formula(formula: &Formula) -> Goal {
-    Goal { what: GoalKind::Condition(StateFormula::from(formula)), settled: false }
+    Goal { what: GoalKind::Formula(formula.clone()), settled: false }
 }
 
 /// Decides goals about a network: each is reached by a run that keeps the assumptions, or by none, or open.

@@ -118,9 +118,7 @@ pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Se
 
 /// The monitor itself must see the violation.
 fn judged(program: &Program, requirement: &Monitor, monitor: usize, witness: &Witness) -> Result<(), String> {
-    let trace = witness.trace();
-    let verdict = Checker::new(program);
-    let verdicts = shown(verdict, &trace);
+    let verdicts = verdicts(program, &trace(witness));
     match verdicts.get(monitor) {
         Some(v) if v.outcome == hrdsl_monitor::Outcome::Fail => Ok(()),
         Some(v) => Err(format!(
@@ -131,12 +129,21 @@ fn judged(program: &Program, requirement: &Monitor, monitor: usize, witness: &Wi
     }
 }
 
-fn shown(mut checker: Checker, trace: &Trace) -> Vec<hrdsl_monitor::Verdict> {
+/// What the monitors say of a trace.
+pub(crate) fn verdicts(program: &Program, trace: &Trace) -> Vec<hrdsl_monitor::Verdict> {
+    let mut checker = Checker::new(program);
     for (index, step) in trace.steps.iter().enumerate() {
         checker.step(index, step);
     }
     checker.end(trace.end);
     checker.verdicts()
+}
+
+/// The events of a run, and its end: what it shows may need time after the last of them.
+pub(crate) fn trace(witness: &Witness) -> Trace {
+    let mut trace = witness.trace();
+    trace.end = trace.end.max(witness.end.div_euclid(witness.ticks.max(1)));
+    trace
 }
 
 /// Whether the run keeps the assumptions of the program.

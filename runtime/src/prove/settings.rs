@@ -2,8 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use hrdsl_ir::suite::{Delays, WitnessKind};
-use hrdsl_ta::{Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing};
+use hrdsl_ir::{
+    suite::{Delays, WitnessKind},
+    ta::Formula,
+};
+use hrdsl_ta::{Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing, Witness};
 pub use hrdsl_ta::Order;
 
 use super::Observed;
@@ -55,6 +58,17 @@ impl Settings {
     }
 }
 
+fn formula(goal: &Goal) -> Option<Formula> {
+    match &goal.what {
+        GoalKind::Formula(f) => Some(f.clone()),
+        GoalKind::Edge { .. }
+        | GoalKind::Location { .. }
+        | GoalKind::Pair { .. }
+        | GoalKind::Use { .. }
+        | GoalKind::Condition(_) => None,
+    }
+}
+
 pub(crate) fn search(
     observed: &Observed,
     goals: &[Goal],
@@ -68,6 +82,7 @@ pub(crate) fn search(
         limits: limits.to_vec(),
         pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
         uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
+        formulas: goals.iter().filter_map(formula).collect(),
         ..Observe::default()
     };
     let model = Model::new(&observed.program, &observed.network, &observe)?;
@@ -77,9 +92,31 @@ pub(crate) fn search(
     };
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
-        if let Outcome::Reached(found) = outcome {
-            *found = chosen(&model, goal, found, settings)?;
+        if let Outcome::Reached(found) = outcome
+            && let Some(run) = chosen(&model, goal, found, settings)?
+        {
+            *found = run;
         }
     }
     Ok(report)
+}
+
+/// The run that the settings ask for, instead of the one that was found; `None`: that one.
+fn chosen(
+    model: &Model<'_>,
+    goal: &Goal,
+    found: &Witness,
+    settings: &Settings,
+) -> Result<Option<Box<Witness>>, Error> {
+    let by_time = !matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. });
+    if settings.witness == WitnessKind::Fastest
+        && by_time
+        && let Some(run) = hrdsl_ta::fastest(model, goal, settings.budget, settings.timing())?
+    {
+        return Ok(Some(run));
+    }
+    if settings.delays == Delays::Earliest {
+        return Ok(None);
+    }
+    hrdsl_ta::retimed(model, found, goal, settings.timing()).map(|run| Some(Box::new(run)))
 }

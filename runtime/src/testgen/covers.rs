@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use hrdsl_ir::{Program, ta::LocationId};
-use hrdsl_monitor::Checker;
 use hrdsl_ta::Witness;
-use hrdsl_trace::{Observer as _, Trace};
+
+use crate::prove;
 
 /// What happened in a run, as goals ask for it.
 pub struct Seen {
@@ -57,7 +57,7 @@ impl Seen {
                 }
             }
         }
-        for verdict in judged(program, &witness.trace()) {
+        for verdict in prove::verdicts(program, &prove::trace(witness)) {
             seen.violated.push(verdict.failures > 0);
             seen.triggered.push(verdict.triggered > 0);
         }
@@ -76,13 +76,4 @@ impl Seen {
             Shown::Nothing => false,
         }
     }
-}
-
-fn judged(program: &Program, trace: &Trace) -> Vec<hrdsl_monitor::Verdict> {
-    let mut checker = Checker::new(program);
-    for (index, step) in trace.steps.iter().enumerate() {
-        checker.step(index, step);
-    }
-    checker.end(trace.end);
-    checker.verdicts()
 }

@@ -8,7 +8,7 @@ use hrdsl_ir::{
 };
 use hrdsl_ta::{Counter, Goal, GoalKind, StateFormula};
 
-use super::covers::Shown;
+use super::{covers::Shown, flow};
 use crate::prove;
 
 /// A goal with its name for people. It is reached if one of the ways to it is.
@@ -55,7 +55,8 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<Named> {
         }
         SearchGoal::Locations => each_automaton(program, network, locations),
         SearchGoal::Edges => each_automaton(program, network, edges),
-        SearchGoal::Pairs | SearchGoal::Uses => Vec::new(),
+        SearchGoal::Pairs => each_automaton(program, network, flow::pairs),
+        SearchGoal::Uses => flow::uses(program, network),
         SearchGoal::Violation { monitor } => requirement(program, *monitor, "violation", Shown::Violation),
         SearchGoal::Trigger { monitor } => requirement(program, *monitor, "trigger", Shown::Trigger),
         SearchGoal::Query { query } => {

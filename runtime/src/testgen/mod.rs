@@ -15,6 +15,7 @@ mod concrete;
 mod covers;
 mod expand;
 mod extract;
+mod flow;
 mod goals;
 mod minimise;
 mod model;

@@ -8,7 +8,7 @@ use hrdsl_ir::{
     suite::{PlayerRef, SearchGoal, Suite},
     ta::Network,
 };
-use hrdsl_ta::Error;
+use hrdsl_ta::{Error, Goal, GoalKind};
 
 use super::{
     AbstractTest, GoalReport, GoalStatus, Harvest,
@@ -16,7 +16,7 @@ use super::{
     expand::{Named, counters, goals},
     extract,
 };
-use crate::prove::{Decided, Fate, Observed, Run, Settings, decide, of_formula};
+use crate::prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, of_formula};
 
 /// Decides all goals and takes the environment's part of each witness.
 ///
@@ -42,7 +42,7 @@ pub fn harvest(
     for (named, fate) in named.iter().zip(&fates) {
         let (status, reason) = said(fate, states);
         if let Fate::Reached(run) = fate {
-            harvest.tests.push(test(program, network, suite, &awaits, named, run));
+            harvest.tests.push(test(program, suite, &awaits, named, run));
         }
         harvest.goals.push(GoalReport { goal: named.name.clone(), status, reason, test: None });
     }
@@ -52,13 +52,11 @@ pub fn harvest(
 
 fn test(
     program: &Program,
-    network: &Network,
     suite: &Suite,
     awaits: &extract::Awaits,
     named: &Named,
     run: &Run,
 ) -> AbstractTest {
-    let _ = network;
     let trace = run.witness.trace();
     AbstractTest {
         steps: extract::steps(program, awaits, &trace, suite.patience),
@@ -100,7 +98,27 @@ fn said(fate: &Fate, states: usize) -> (GoalStatus, String) {
     }
 }
 
-/// Decides all goals: those of the network alone in one exploration, and those of each requirement in one of its own.
+/// What a search must keep besides the state, so that goals that need more do not burden the others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Needs {
+    Nothing,
+    LastEdges,
+    LastDefinitions,
+}
+
+fn needs(goal: &Goal) -> Needs {
+    match goal.what {
+        GoalKind::Pair { .. } => Needs::LastEdges,
+        GoalKind::Use { .. } => Needs::LastDefinitions,
+        GoalKind::Edge { .. }
+        | GoalKind::Location { .. }
+        | GoalKind::Condition(_)
+        | GoalKind::Formula(_) => Needs::Nothing,
+    }
+}
+
+/// Decides all goals: those of the network alone in one exploration, pairs and uses in one each, and those of each
+/// requirement in one of its own.
 fn fates(
     program: &Program,
     network: &Network,
@@ -109,8 +127,24 @@ fn fates(
     notes: &mut Vec<String>,
 ) -> Result<(Vec<Fate>, usize), Error> {
     let plain = Observed::new(program, network);
-    let questions: Vec<_> = named.iter().flat_map(|n| n.ways.iter().cloned()).collect();
-    let decided = decide(program, &plain, &questions, &counters(program), settings)?;
+    let questions: Vec<Goal> = named.iter().flat_map(|n| n.ways.iter().cloned()).collect();
+    let mut decided = Decided { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut ways: Vec<Fate> = vec![Fate::Unreachable; questions.len()];
+    for need in [Needs::Nothing, Needs::LastEdges, Needs::LastDefinitions] {
+        let of: Vec<usize> = (0..questions.len()).filter(|q| needs(&questions[*q]) == need).collect();
+        if of.is_empty() {
+            continue;
+        }
+        let some: Vec<Goal> = of.iter().map(|q| questions[*q].clone()).collect();
+        let counters = if need == Needs::Nothing { counters(program) } else { Vec::new() };
+        let more = decide(program, &plain, &some, &counters, settings, &Watch::default())?;
+        decided.states += more.states;
+        decided.visited += more.visited;
+        decided.searches += more.searches;
+        for (question, fate) in of.into_iter().zip(more.fates) {
+            ways[question] = fate;
+        }
+    }
     let alone = named.iter().filter(|n| n.monitor.is_none()).count();
     notes.push(format!(
         "network `{}`: {} symbolic states stored, {} visited, for {alone} goals in {}",
@@ -122,7 +156,7 @@ fn fates(
             n => format!("{n} explorations"),
         }
     ));
-    let (states, mut ways) = (decided.states, decided.fates.into_iter());
+    let (states, mut ways) = (decided.states, ways.into_iter());
     let mut fates = Vec::new();
     for goal in named {
         fates.push(match goal.monitor {
@@ -164,6 +198,6 @@ fn of_requirement(
         Some(verdicts.triggered)
     };
     let Some(formula) = formula else { return Ok(Fate::Unreachable) };
-    let Decided { mut fates, .. } = decide(program, &observed, &[of_formula(&formula)], &[], settings)?;
+    let Decided { mut fates, .. } = decide(program, &observed, &[of_formula(&formula)], &[], settings, &Watch::default())?;
     Ok(fates.pop().unwrap_or(Fate::Unreachable))
 }

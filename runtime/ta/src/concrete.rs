@@ -18,17 +18,11 @@ use hrdsl_ir::{
 
 use crate::{
     ModelError,
+    code::Medium,
     error::EdgeName,
     query::nanos,
     semantics::{Binders, Move, argument_fault, bad_argument, bind, choices, range_fault},
 };
-
-/// What a synchronisation goes over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Medium {
-    Event(EventId),
-    Channel(ChannelId),
-}
 
 /// The state of some automata at an instant; time is in ticks.
 #[derive(Clone)]

@@ -76,32 +76,135 @@ impl fmt::Debug for Bound {
     }
 }
 
+/// A bound as matrices keep it: [`Bound`]'s packed number in few bits, with the greatest number for no bound.
+///
+/// INVARIANT: numbers stay so small that the sum of three bounds does not overflow: who chooses the width sees to it.
+pub trait Number:
+    Copy + Ord + Default + fmt::Debug + std::hash::Hash + Send + Sync + Into<i64> + 'static
+{
+    const INFINITY: Self;
+    /// `≤ 0`
+    const LE_ZERO: Self;
+    /// Less than all bounds.
+    const LEAST: Self;
+    /// How many of them are worked on at once.
+    const LANES: usize;
+
+    /// The bound must be within the width.
+    fn of(bound: Bound) -> Self;
+
+    fn bound(self) -> Bound {
+        if self == Self::INFINITY { Bound::INFINITY } else { Bound(self.into()) }
+    }
+
+    /// The sum of bounds.
+    fn plus(self, other: Self) -> Self;
+
+    /// The bound with a number of units more; not for no bound.
+    fn shifted(self, units: i64) -> Self;
+
+    /// `row[l] = min(row[l], to + through[l])`; `to` must be a bound.
+    fn relax(row: &mut [Self], to: Self, through: &[Self]);
+
+    /// As a word of a hash.
+    fn word(self) -> u64 {
+        let n: i64 = self.into();
+        n as u64
+    }
+}
+
+macro_rules! number {
+    ($t:ty, $lanes:expr) => {
+        impl Number for $t {
+            const INFINITY: Self = <$t>::MAX;
+            const LE_ZERO: Self = 1;
+            const LEAST: Self = <$t>::MIN;
+            const LANES: usize = $lanes;
+
+            #[inline]
+            fn of(bound: Bound) -> Self {
+                if bound.is_infinite() { Self::INFINITY } else { bound.0 as $t }
+            }
+
+            #[inline]
+            fn plus(self, other: Self) -> Self {
+                if self == Self::INFINITY || other == Self::INFINITY {
+                    Self::INFINITY
+                } else {
+                    self.wrapping_add(other).wrapping_sub((self | other) & 1)
+                }
+            }
+
+            #[inline]
+            fn shifted(self, units: i64) -> Self {
+                self.wrapping_add((2 * units) as $t)
+            }
+
+            #[inline]
+            fn relax(row: &mut [Self], to: Self, through: &[Self]) {
+                // The sum is strict if one of the two is.
+                let (base, mask) = (to & !1, if to & 1 == 1 { !0 } else { !1 });
+                for (old, &rest) in row.iter_mut().zip(through) {
+                    let sum = base.wrapping_add(rest & mask);
+                    let sum = if rest == Self::INFINITY { rest } else { sum };
+                    *old = if sum < *old { sum } else { *old };
+                }
+            }
+        }
+    };
+}
+
+number!(i16, 8);
+number!(i32, 4);
+number!(i64, 2);
+
 /// A set of clock valuations, given by `x_i - x_j ≺ m[i][j]` for all `i`, `j`.
+///
+/// Rows are padded to whole lanes; the padding has no bounds.
 ///
 /// INVARIANT: canonical (each entry is the tightest that follows from all), unless the set is empty; then the first
 /// entry is less than `≤ 0`.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Dbm {
+pub struct Dbm<N = i64> {
     dim: usize,
-    m: Box<[Bound]>,
+    stride: usize,
+    m: Vec<N>,
 }
 
-impl Dbm {
+/// A row, copied.
+type Row<N> = SmallVec<[N; 32]>;
+
+impl<N: Number> Dbm<N> {
     /// All clocks are zero. `dim` counts the reference clock.
     #[must_use]
     pub fn zero(dim: usize) -> Self {
-        Self { dim, m: vec![Bound::LE_ZERO; dim * dim].into_boxed_slice() }
+        let mut all = Self { dim: 0, stride: 0, m: Vec::new() };
+        all.resize(dim);
+        for i in 0..dim {
+            let row = i * all.stride;
+            all.m[row..row + dim].fill(N::LE_ZERO);
+        }
+        all
     }
 
     /// All valuations without negative clocks.
     #[must_use]
     pub fn universe(dim: usize) -> Self {
-        let mut all = Self { dim, m: vec![Bound::INFINITY; dim * dim].into_boxed_slice() };
+        let mut all = Self { dim: 0, stride: 0, m: Vec::new() };
+        all.resize(dim);
         for i in 0..dim {
             all.put(i, i, Bound::LE_ZERO);
             all.put(0, i, Bound::LE_ZERO);
         }
         all
+    }
+
+    /// Makes room for so many clocks; the entries are without bounds afterwards.
+    pub(crate) fn resize(&mut self, dim: usize) {
+        self.dim = dim;
+        self.stride = dim.div_ceil(N::LANES) * N::LANES;
+        self.m.clear();
+        self.m.resize(self.stride * dim, N::INFINITY);
     }
 
     /// The number of clocks, the reference included.
@@ -113,22 +216,67 @@ impl Dbm {
     /// The bound of `x_i - x_j`.
     #[must_use]
     pub fn at(&self, i: usize, j: usize) -> Bound {
-        self.m[i * self.dim + j]
+        self.entry(i, j).bound()
+    }
+
+    #[inline]
+    pub(crate) fn entry(&self, i: usize, j: usize) -> N {
+        self.m[i * self.stride + j]
+    }
+
+    pub(crate) fn row(&self, i: usize) -> &[N] {
+        &self.m[i * self.stride..i * self.stride + self.dim]
+    }
+
+    /// With the padding.
+    pub(crate) fn row_mut(&mut self, i: usize) -> &mut [N] {
+        &mut self.m[i * self.stride..(i + 1) * self.stride]
+    }
+
+    fn copied(&self, i: usize) -> Row<N> {
+        SmallVec::from_slice(&self.m[i * self.stride..(i + 1) * self.stride])
     }
 
     /// Sets one entry, whatever it was; [`close`](Self::close) must follow before anything else.
     pub(crate) fn put(&mut self, i: usize, j: usize, b: Bound) {
-        self.m[i * self.dim + j] = b;
+        self.set(i, j, N::of(b));
     }
 
-    /// Becomes a copy of a matrix of the same dimension, without allocation.
-    pub(crate) fn copy_from(&mut self, other: &Dbm) {
-        self.m.copy_from_slice(&other.m);
+    pub(crate) fn set(&mut self, i: usize, j: usize, n: N) {
+        self.m[i * self.stride + j] = n;
+    }
+
+    /// Becomes a copy, without allocation if there is room.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.dim = other.dim;
+        self.stride = other.stride;
+        self.m.clear();
+        self.m.extend_from_slice(&other.m);
+    }
+
+    /// The entries row by row, without padding.
+    pub(crate) fn store(&self, out: &mut Vec<N>) {
+        for i in 0..self.dim {
+            out.extend_from_slice(self.row(i));
+        }
+    }
+
+    /// From entries as [`store`](Self::store) gives them.
+    pub(crate) fn load(&mut self, dim: usize, flat: &[N]) {
+        self.resize(dim);
+        let stride = self.stride;
+        for (row, from) in self.m.chunks_exact_mut(stride.max(1)).zip(flat.chunks_exact(dim.max(1))) {
+            row[..dim].copy_from_slice(from);
+        }
     }
 
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.m[0] < Bound::LE_ZERO
+        self.m[0] < N::LE_ZERO
+    }
+
+    pub(crate) fn make_empty(&mut self) {
+        self.m[0] = N::of(Bound::LT_ZERO);
     }
 
     /// The bytes it takes on the heap.
@@ -139,16 +287,17 @@ impl Dbm {
 
     /// Makes it canonical (Floyd, Warshall). Returns whether it is not empty.
     pub fn close(&mut self) -> bool {
-        let n = self.dim;
-        let mut through: SmallVec<[Bound; 16]> = SmallVec::new();
-        for k in 0..n {
-            through.clear();
-            through.extend_from_slice(&self.m[k * n..(k + 1) * n]);
-            for row in self.m.chunks_exact_mut(n) {
-                relax(row, row[k], &through);
+        let stride = self.stride.max(1);
+        for k in 0..self.dim {
+            let through = self.copied(k);
+            for row in self.m.chunks_exact_mut(stride) {
+                let to = row[k];
+                if to != N::INFINITY {
+                    N::relax(row, to, &through);
+                }
             }
-            if (0..n).any(|i| self.at(i, i) < Bound::LE_ZERO) {
-                self.m[0] = Bound::LT_ZERO;
+            if (0..self.dim).any(|i| self.entry(i, i) < N::LE_ZERO) {
+                self.make_empty();
                 return false;
             }
         }
@@ -158,7 +307,7 @@ impl Dbm {
     /// Whether some valuation keeps `x_i - x_j ≺ b`.
     #[must_use]
     pub fn meets(&self, i: usize, j: usize, b: Bound) -> bool {
-        b.plus(self.at(j, i)) >= Bound::LE_ZERO
+        N::of(b).plus(self.entry(j, i)) >= N::LE_ZERO
     }
 
     /// Adds `x_i - x_j ≺ b` and closes again, in quadratic time. Returns whether it is not empty.
@@ -166,18 +315,45 @@ impl Dbm {
         if self.is_empty() {
             return false;
         }
-        if b >= self.at(i, j) {
+        let b = N::of(b);
+        if b >= self.entry(i, j) {
             return true;
         }
-        if !self.meets(i, j, b) {
-            self.m[0] = Bound::LT_ZERO;
+        if b.plus(self.entry(j, i)) < N::LE_ZERO {
+            self.make_empty();
             return false;
         }
-        self.put(i, j, b);
-        let n = self.dim;
-        let through: SmallVec<[Bound; 16]> = SmallVec::from_slice(&self.m[j * n..(j + 1) * n]);
-        for row in self.m.chunks_exact_mut(n) {
-            relax(row, row[i].plus(b), &through);
+        self.set(i, j, b);
+        let through = self.copied(j);
+        let stride = self.stride.max(1);
+        for row in self.m.chunks_exact_mut(stride) {
+            let to = row[i];
+            if to != N::INFINITY {
+                N::relax(row, to.plus(b), &through);
+            }
+        }
+        true
+    }
+
+    /// Adds upper bounds of several clocks at once, and closes again. Returns whether it is not empty.
+    ///
+    /// INVARIANT: a shortest path uses one bound `x_j ≺ b` at most, since all of them end at the reference clock.
+    pub(crate) fn constrain_above(&mut self, bounds: &[(usize, N)]) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        if bounds.iter().any(|&(j, b)| b.plus(self.entry(0, j)) < N::LE_ZERO) {
+            self.make_empty();
+            return false;
+        }
+        let through = self.copied(0);
+        let stride = self.stride.max(1);
+        for row in self.m.chunks_exact_mut(stride) {
+            let old = row[0];
+            let new = bounds.iter().map(|&(j, b)| row[j].plus(b)).min().unwrap_or(old);
+            if new < old {
+                N::relax(row, new, &through);
+            }
         }
         true
     }
@@ -188,7 +364,7 @@ impl Dbm {
             return;
         }
         for i in 1..self.dim {
-            self.put(i, 0, Bound::INFINITY);
+            self.set(i, 0, N::INFINITY);
         }
     }
 
@@ -198,23 +374,39 @@ impl Dbm {
             return;
         }
         for k in 0..self.dim {
-            let (row, column) = (self.at(0, k), self.at(k, 0));
-            self.put(x, k, row);
-            self.put(k, x, column);
+            let (row, column) = (self.entry(0, k), self.entry(k, 0));
+            self.set(x, k, row);
+            self.set(k, x, column);
         }
-        self.put(x, x, Bound::LE_ZERO);
+        self.set(x, x, N::LE_ZERO);
+    }
+
+    /// Becomes a zone of other clocks: clock `k` of it has the value of clock `from[k].0` of `old`, plus `from[k].1`.
+    ///
+    /// Clock 0 of `old` stands for zero; `from[0]` must be `(0, 0)`.
+    pub(crate) fn gather(&mut self, old: &Self, from: &[(u16, i64)]) {
+        self.resize(from.len());
+        let shifted = from.iter().any(|f| f.1 != 0);
+        for (i, &(x, a)) in from.iter().enumerate() {
+            let source = &old.m[usize::from(x) * old.stride..usize::from(x) * old.stride + old.dim];
+            let row = &mut self.m[i * self.stride..];
+            for (to, &(y, b)) in row.iter_mut().zip(from) {
+                let n = source[usize::from(y)];
+                *to = if shifted && n != N::INFINITY { n.shifted(a - b) } else { n };
+            }
+        }
     }
 
     /// Whether each valuation of `other` is one of this.
     #[must_use]
-    pub fn includes(&self, other: &Dbm) -> bool {
+    pub fn includes(&self, other: &Self) -> bool {
         other.is_empty() || (!self.is_empty() && self.m.iter().zip(&other.m).all(|(a, b)| a >= b))
     }
 
     /// Keeps what both have. Returns whether it is not empty.
-    pub fn intersect(&mut self, other: &Dbm) -> bool {
+    pub fn intersect(&mut self, other: &Self) -> bool {
         if self.is_empty() || other.is_empty() {
-            self.m[0] = Bound::LT_ZERO;
+            self.make_empty();
             return false;
         }
         for (a, b) in self.m.iter_mut().zip(&other.m) {
@@ -238,14 +430,11 @@ impl Dbm {
     }
 }
 
-/// Tightens the bounds of `x - l` for all `l`, by that of `x - y` and those of `y - l`.
-fn relax(row: &mut [Bound], to: Bound, through: &[Bound]) {
-    if to.is_infinite() {
-        return;
-    }
-    for (old, &rest) in row.iter_mut().zip(through) {
-        *old = (*old).min(to.plus(rest));
-    }
+/// Whether no entry of the one is less than that of the other: inclusion of zones without padding.
+#[must_use]
+pub(crate) fn dominates<N: Number>(greater: &[N], less: &[N]) -> bool {
+    let (a, b) = (greater.chunks(32), less.chunks(32));
+    a.zip(b).all(|(a, b)| !a.iter().zip(b).fold(false, |bad, (a, b)| bad | (a < b)))
 }
 
 #[cfg(test)]
@@ -304,7 +493,7 @@ mod tests {
 
     #[test]
     fn strict_bounds_meet_nowhere() {
-        let mut z = Dbm::universe(2);
+        let mut z = Dbm::<i64>::universe(2);
         assert!(z.constrain(1, 0, Bound::lt(3)));
         assert!(!z.constrain(0, 1, Bound::le(-3)));
         assert!(z.is_empty());

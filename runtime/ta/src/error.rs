@@ -48,15 +48,15 @@ pub enum ModelError {
     /// An update leaves the range of a variable.
     #[error("{edge}: `{variable}` becomes {value}, outside {lo}..{hi}")]
     Range { edge: Box<EdgeName>, variable: String, value: i64, lo: i64, hi: i64 },
-    /// An update sets a clock to less than zero.
-    #[error("{edge}: `{clock}` becomes less than zero")]
-    NegativeClock { edge: Box<EdgeName>, clock: String },
-    /// An invariant has no value.
-    #[error("the invariant of `{automaton}.{location}`: {error}")]
-    Invariant { automaton: String, location: String, error: EvalError },
     /// An argument of a sent event or of an offer is outside the range of its parameter, or no value of its enumeration.
     #[error("{edge}: argument `{parameter}` of `{event}` is {value}")]
     Argument { edge: Box<EdgeName>, event: String, parameter: String, value: Value },
+    /// A clock would become less than zero.
+    #[error("{edge}: the clock `{clock}` becomes less than zero")]
+    NegativeClock { edge: Box<EdgeName>, clock: String },
+    /// The part of an invariant over variables, or a bound in it, has no value.
+    #[error("automaton `{automaton}`, invariant of `{location}`: {error}")]
+    Invariant { automaton: String, location: String, error: EvalError },
     /// A player's invariant (or urgent location) lets no time pass, yet time passed: nothing it could do was enabled.
     #[error("automaton `{automaton}` may not stay in `{location}` and has no enabled edge")]
     Timelock { automaton: String, location: String },

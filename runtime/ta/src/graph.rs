@@ -3,47 +3,34 @@
 //! A node is a discrete state and a zone, after time has passed if it may. Unlike the search for goals, which may keep of a
 //! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see [`Detail`].
 
+use std::{ops::ControlFlow, rc::Rc};
+
 use hrdsl_ir::{
-    EventId, Nanos, Value,
-    expr::EvalError,
-    ta::{ChannelId, FunctionId, LocationId},
+    Nanos, Value,
+    exec::{self, Functions, Memory},
+    expr::{EvalError, Scope},
+    ta::{FunctionId, LocationId},
 };
-use smallvec::SmallVec;
 
 use crate::{
-    ModelError, StateFormula,
+    Abstraction, ModelError, StateFormula,
     abstraction::{Bounds, KEEP, NONE, extra, split},
+    code::{Fault, Ty},
     dbm::{Bound, Dbm},
-    federation::{Federation, forget, keep, past},
-    network::{Constraint, Model},
-    query::{Symbolic, View, as_bounds, nanos},
-    semantics::Move,
+    expand::Taken,
+    extrapolation::Frame,
+    federation::{Federation, keep, past},
+    network::{Constraint, Member, Model, Times},
+    query::{Symbolic, View, as_bounds},
+    semantics::{Always, Effect, Firing, Found, Reset, Scratch},
 };
-
-/// What a transition goes over.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Label {
-    Internal,
-    Event(EventId, Vec<Value>),
-    Channel(ChannelId, Vec<Value>),
-}
-
-/// `clock := from + plus`, in units; `from` is 0 for none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SetClock {
-    pub clock: u16,
-    pub from: u16,
-    pub plus: i64,
-}
 
 /// Something that may happen in a discrete state.
 #[derive(Clone)]
 pub(crate) struct Action {
-    pub label: Label,
-    pub moves: SmallVec<[Move; 2]>,
-    pub guard: SmallVec<[Constraint; 4]>,
-    /// In order.
-    pub sets: SmallVec<[SetClock; 4]>,
+    pub taken: Rc<Taken>,
+    /// Where the transition would make a clock negative, and the fault that this is.
+    pub below: Vec<(Constraint, ModelError)>,
     /// The discrete state after it; it may be one that the invariants over variables forbid.
     pub target: Result<Vec<i64>, Box<ModelError>>,
 }
@@ -98,7 +85,7 @@ impl<'m, 'p> Graph<'m, 'p> {
             model,
             detail,
             raised: Bounds::none(model.dim + spare),
-            diagonals: model.diagonals(),
+            diagonals: model.extrapolation.differences(),
             greatest: Vec::new(),
             spare,
         };
@@ -107,9 +94,17 @@ impl<'m, 'p> Graph<'m, 'p> {
         }
         let mut fault = None;
         for formula in formulas {
-            formula.each_clock(&mut |c| match model.span(&c.bound) {
-                Ok((lo, hi)) => graph.note(c, lo, hi),
-                Err(e) => fault = Some(e),
+            formula.each_clock(&mut |c| {
+                let (lo, hi) = model.span(&c.bound);
+                if usize::from(c.clock.0.max(c.minus.map_or(0, |m| m.0))) + 1 >= model.dim {
+                    let what = "a formula speaks of a clock that is not there";
+                    fault = Some(ModelError::Question(what.into()));
+                } else if hi - lo > 64 && c.minus.is_some() {
+                    let what = "a difference of clocks is compared with a time of too many values";
+                    fault = Some(ModelError::Question(what.into()));
+                } else {
+                    graph.note(c, lo, hi);
+                }
             });
             if formula.asks_deadlock() {
                 graph.detail = Detail::Tell;
@@ -138,7 +133,7 @@ impl<'m, 'p> Graph<'m, 'p> {
     }
 
     fn greatest(&self) -> Vec<i64> {
-        let mut all = self.model.greatest();
+        let mut all = self.model.extrapolation.greatest(self.model.dim);
         all.resize(self.dim(), KEEP);
         for (g, l) in all.iter_mut().zip(&self.raised.lower).take(self.model.dim) {
             *g = (*g).max(*l).max(0);
@@ -202,12 +197,42 @@ impl<'m, 'p> Graph<'m, 'p> {
         }
     }
 
-    /// The clocks right after a transition, before time passes; `false`: it is not possible.
-    pub(crate) fn take(&self, action: &Action, target: &Stay, zone: &mut Dbm) -> bool {
-        if !action.guard.iter().all(|c| keep(zone, *c)) {
-            return false;
+    /// What a transition of a state leads to.
+    ///
+    /// # Errors
+    /// If it is a fault.
+    pub(crate) fn target(&self, state: &[i64], taken: &Taken) -> Result<Vec<i64>, ModelError> {
+        self.model.target(state, taken)
+    }
+
+    /// Where a transition leads to from some clocks: the state, what staying there means, and the clocks right after it,
+    /// before time passes. `None`: it is not possible.
+    ///
+    /// # Errors
+    /// The fault of the model that the transition is.
+    pub(crate) fn follow<'a>(
+        &self,
+        action: &'a Action,
+        zone: &Dbm,
+    ) -> Result<Option<(&'a [i64], Stay, Dbm)>, ModelError> {
+        let mut zone = zone.clone();
+        if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
+            return Ok(None);
         }
-        action.sets.iter().for_each(|s| set(zone, *s));
+        let target = action.target.as_ref().map_err(|e| (**e).clone())?;
+        let meets = |c: &Constraint| zone.meets(usize::from(c.i), usize::from(c.j), c.bound);
+        if let Some((_, fault)) = action.below.iter().find(|(c, _)| meets(c)) {
+            return Err(fault.clone());
+        }
+        let Some(stay) = self.stay(target)? else { return Ok(None) };
+        Ok(self.take(action, &stay, &mut zone).then_some((target.as_slice(), stay, zone)))
+    }
+
+    /// `false`: the target's invariant forbids it.
+    fn take(&self, action: &Action, target: &Stay, zone: &mut Dbm) -> bool {
+        if !action.taken.resets.is_empty() {
+            *zone = set(zone, &self.sources(&action.taken.resets));
+        }
         target.invariant.iter().all(|c| keep(zone, *c))
     }
 
@@ -238,6 +263,15 @@ impl<'m, 'p> Graph<'m, 'p> {
         out(zone);
     }
 
+    /// For each clock: what it is after a transition, as a clock before it and what is added.
+    fn sources(&self, sets: &[Reset]) -> Vec<(usize, i64)> {
+        let mut sources: Vec<(usize, i64)> = (0..self.dim()).map(|x| (x, 0)).collect();
+        for s in sets {
+            sources[usize::from(s.clock)] = (usize::from(s.from), s.by);
+        }
+        sources
+    }
+
     pub(crate) fn here<'s>(&'s self, state: &'s [i64]) -> Here<'s, 'm, 'p> {
         Here { graph: self, state }
     }
@@ -248,12 +282,25 @@ impl<'m, 'p> Graph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
         let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
+        self.deadlocked_by(&self.actions(state), &stay, zone)
+    }
+
+    /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
+    ///
+    /// # Errors
+    /// If an invariant has no value.
+    pub(crate) fn deadlocked_by(
+        &self,
+        actions: &[Action],
+        stay: &Stay,
+        zone: &Dbm,
+    ) -> Result<Federation, ModelError> {
         let mut left = Federation::of(zone.clone());
-        for action in self.actions(state) {
+        for action in actions {
             if left.is_empty() {
                 break;
             }
-            if let Some(from) = self.leaves(&action, &stay)? {
+            if let Some(from) = self.leaves(action, stay)? {
                 left = left.minus(&from);
             }
         }
@@ -269,53 +316,49 @@ impl<'m, 'p> Graph<'m, 'p> {
             if !there.invariant.iter().all(|c| keep(&mut zone, *c)) {
                 return Ok(None);
             }
-            for s in action.sets.iter().rev() {
-                if !unset(&mut zone, *s) {
-                    return Ok(None);
-                }
+            if !action.taken.resets.is_empty() {
+                zone = unset(&zone, &self.sources(&action.taken.resets));
             }
         }
-        if !action.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
+        if !action.taken.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
             return Ok(None);
         }
         Ok(Some(if stay.waits { past(&zone) } else { zone }))
     }
 }
 
-/// Sets a clock to a value, or to another clock's and more.
-pub(crate) fn set(zone: &mut Dbm, s: SetClock) {
-    let (x, y) = (usize::from(s.clock), usize::from(s.from));
+/// The clocks after a transition: clock `i` is what `sources[i].0` was, plus `sources[i].1`.
+///
+/// INVARIANT: `x'ᵢ - x'ⱼ = xₛᵢ - xₛⱼ + bᵢ - bⱼ`, and the matrix was canonical, so it is again.
+pub(crate) fn set(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut after = zone.clone();
     if zone.is_empty() {
-        return;
+        return after;
     }
-    if x != y {
-        *zone = forget(zone, x);
-        zone.constrain(x, y, Bound::le(s.plus));
-        zone.constrain(y, x, Bound::le(-s.plus));
-        return;
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            after.put(i, j, zone.at(x, y).plus(Bound::le(a - b)));
+        }
     }
-    // It grows by a constant.
-    for k in (0..zone.dim()).filter(|&k| k != x) {
-        let (row, column) = (zone.at(x, k), zone.at(k, x));
-        zone.put(x, k, row.plus(Bound::le(s.plus)));
-        zone.put(k, x, column.plus(Bound::le(-s.plus)));
-    }
-    // INVARIANT: no clock is negative, whatever `plus` is.
-    zone.constrain(0, x, Bound::LE_ZERO);
+    // No clock is negative; a transition that makes one so is a fault.
+    (1..sources.len()).for_each(|i| {
+        after.constrain(0, i, Bound::LE_ZERO);
+    });
+    after
 }
 
-/// What an assignment of a clock brings into the zone; `false`: nothing.
-fn unset(zone: &mut Dbm, s: SetClock) -> bool {
-    let (x, y) = (usize::from(s.clock), usize::from(s.from));
-    if x == y {
-        set(zone, SetClock { plus: -s.plus, ..s });
-        return !zone.is_empty();
+/// The clocks before a transition that sets them into the zone.
+fn unset(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut before = Dbm::universe(zone.dim());
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            let bound = zone.at(i, j).plus(Bound::le(b - a));
+            if !bound.is_infinite() {
+                before.constrain(x, y, bound);
+            }
+        }
     }
-    if !zone.constrain(x, y, Bound::le(s.plus)) || !zone.constrain(y, x, Bound::le(-s.plus)) {
-        return false;
-    }
-    *zone = forget(zone, x);
-    true
+    before
 }
 
 /// A discrete state as formulas see it.
@@ -358,51 +401,126 @@ impl Symbolic for Here<'_, '_, '_> {
 // ── What the network tells ──
 
 impl Model<'_> {
+    /// All that may happen in a discrete state, in the network's order.
     fn actions(&self, state: &[i64]) -> Vec<Action> {
-        self.candidates(state)
-            .into_iter()
-            .map(|c| Action {
-                label: c.event.map_or(Label::Internal, |(e, args)| Label::Event(e, args)),
-                moves: c.moves,
-                guard: c.guard,
-                sets: c.resets.iter().map(|&clock| SetClock { clock, from: 0, plus: 0 }).collect(),
-                target: c.target,
-            })
-            .collect()
+        let (mut scratch, mut stack, mut effect) = (Scratch::default(), Vec::new(), Effect::default());
+        let mut own = state.to_vec();
+        let mut out = Vec::new();
+        let mut found = |found: Found| -> ControlFlow<()> {
+            out.extend(match found {
+                Found::Firing(firing) => self.action(state, &firing, &mut stack, &mut effect),
+                Found::Fault { member, edge, fault, guard } => {
+                    let error = self.fault(usize::from(member), usize::from(edge), fault);
+                    let (parts, args, resets) = (Vec::new(), Vec::new(), Vec::new());
+                    let taken = Taken { parts, medium: None, args, guard: guard.to_vec(), resets };
+                    Some(Action { taken: Rc::new(taken), below: Vec::new(), target: Err(Box::new(error)) })
+                }
+            });
+            ControlFlow::Continue(())
+        };
+        let _ = self.enumerate(&mut own, &Always, &mut scratch, &mut found);
+        out
+    }
+
+    /// `None`: a limit forbids it.
+    fn action(
+        &self,
+        state: &[i64],
+        firing: &Firing,
+        stack: &mut Vec<i64>,
+        effect: &mut Effect,
+    ) -> Option<Action> {
+        let named = |(m, e, f): (u16, u16, Fault)| self.fault(usize::from(m), usize::from(e), f);
+        let target = match self.effect(state, firing, stack, effect) {
+            Ok(false) => return None,
+            Ok(true) => Ok(effect.target.clone()),
+            Err(fault) => Err(Box::new(named(fault))),
+        };
+        let below = effect.below.iter().map(|b| {
+            let bound = Bound::lt(-b.reset.by);
+            let fault = Fault::Negative { clock: b.reset.clock };
+            (Constraint { i: b.reset.from, j: 0, bound }, named((b.member, b.edge, fault)))
+        });
+        let below = below.collect();
+        let taken = Taken {
+            parts: firing.parts.to_vec(),
+            medium: firing.medium,
+            args: firing.args.to_vec(),
+            guard: firing.guard.to_vec(),
+            resets: if target.is_ok() { effect.resets.clone() } else { Vec::new() },
+        };
+        Some(Action { taken: Rc::new(taken), below, target })
+    }
+
+    fn target(&self, state: &[i64], taken: &Taken) -> Result<Vec<i64>, ModelError> {
+        let mut effect = Effect::default();
+        let Taken { parts, medium, args, guard, .. } = taken;
+        let firing = Firing { parts, medium: *medium, args, guard };
+        match self.effect(state, &firing, &mut Vec::new(), &mut effect) {
+            Ok(_) => Ok(effect.target),
+            Err((m, e, f)) => Err(self.fault(usize::from(m), usize::from(e), f)),
+        }
     }
 
     fn stay(&self, state: &[i64]) -> Result<Option<Stay>, ModelError> {
-        Ok(Some(Stay { invariant: self.invariant(state).collect(), waits: self.may_delay(state) }))
+        let (mut own, mut stack, mut invariant) = (state.to_vec(), Vec::new(), Vec::new());
+        if !self.invariant(&mut own, &mut stack, &mut invariant)? {
+            return Ok(None);
+        }
+        let waits = self.may_delay(&mut own, &mut Scratch::default());
+        Ok(Some(Stay { invariant, waits }))
     }
 
     fn bounds(&self, state: &[i64], out: &mut Bounds) {
-        self.extrapolation.bounds(&state[..self.members.len()], out);
-    }
-
-    fn diagonals(&self) -> Vec<Constraint> {
-        self.extrapolation.diagonals()
-    }
-
-    /// The greatest constant of each clock.
-    fn greatest(&self) -> Vec<i64> {
-        self.extrapolation.greatest(self.dim)
+        let mut frame = Frame::default();
+        self.extrapolation.frame(state, Abstraction::LowerUpper, &mut frame);
+        for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
+            let x = usize::from(clock);
+            (out.lower[x], out.upper[x]) = (lu.lower, lu.upper);
+        }
     }
 
     /// The least and greatest that a time of a formula can be, in units.
-    fn span(&self, time: &hrdsl_ir::ta::Time) -> Result<(i64, i64), ModelError> {
-        let n = nanos(time, &NoSlots).map_err(crate::query::no_value)?;
-        Ok((n / self.unit, n / self.unit))
+    fn span(&self, time: &hrdsl_ir::ta::Time) -> (i64, i64) {
+        let names = self.slot_scope();
+        let term = |t: &hrdsl_ir::ta::TimeTerm| {
+            (t.factor / self.unit, self.library.compile(&names, &t.value, Ty::Int))
+        };
+        let terms = time.terms.iter().map(term).collect();
+        Times { units: time.nanos / self.unit, terms }.span(&self.library, &[])
     }
 
-    fn apply(&self, _: &[i64], _: FunctionId, _: &[Value]) -> Result<Value, EvalError> {
-        Err(EvalError::Type)
+    /// The value of a function in a state: with its owner's variables if it has one.
+    fn apply(&self, state: &[i64], function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        let owner = self.program.functions.get(usize::from(function.0)).ok_or(EvalError::Type)?.owner;
+        let owner = owner.and_then(|id| self.program.automata.get(usize::from(id.0)));
+        let own = owner.and_then(|a| self.members.iter().find(|m| std::ptr::eq(m.automaton, a)));
+        let memory = Known { model: self, state, own };
+        let count = self.shared + own.map_or(0, |m| m.automaton.vars.len());
+        let base = u16::try_from(count).unwrap_or(u16::MAX);
+        let functions = Functions::new(self.program);
+        exec::View::new(&functions, &memory, base, &[]).apply(function, args)
     }
 }
 
-struct NoSlots;
+/// The variables that a function knows.
+struct Known<'a, 'p> {
+    model: &'a Model<'p>,
+    state: &'a [i64],
+    own: Option<&'a Member<'p>>,
+}
 
-impl hrdsl_ir::expr::Scope for NoSlots {
-    fn var(&self, _: u16) -> Option<Value> {
-        None
+impl Memory for Known<'_, '_> {
+    fn read(&self, slot: u16) -> Option<Value> {
+        let slot = usize::from(slot);
+        let at = match slot.checked_sub(self.model.shared) {
+            None => slot,
+            Some(own) => self.own?.base + own,
+        };
+        (at < self.model.slots.len()).then(|| self.model.slot_value(self.state, at)).flatten()
+    }
+
+    fn write(&mut self, _: u16, _: Value) -> Result<(), EvalError> {
+        Err(EvalError::Type)
     }
 }

@@ -33,7 +33,37 @@ pub enum GoalKind {
         automaton: usize,
         location: LocationId,
     },
+    /// The automaton takes these two of its edges one after the other, whatever others do in between.
+    Pair {
+        automaton: usize,
+        first: usize,
+        second: usize,
+    },
+    /// The edge `user` (automaton, edge) reads the slot, which the edge `definition` was the last to assign to; `None`: the
+    /// slot still has its initial value.
+    Use {
+        slot: usize,
+        definition: Option<(usize, usize)>,
+        user: (usize, usize),
+    },
     Condition(StateFormula),
+    /// A formula over locations, variables and clocks; it holds where the zone meets it.
+    Formula(hrdsl_ir::ta::Formula),
+}
+
+impl Goal {
+    /// The formula that its states meet; `None`, if it is met by transitions.
+    #[must_use]
+    pub fn formula(&self) -> Option<StateFormula> {
+        match &self.what {
+            GoalKind::Edge { .. } | GoalKind::Pair { .. } | GoalKind::Use { .. } => None,
+            GoalKind::Location { automaton, location } => {
+                Some(StateFormula::At { automaton: *automaton, location: *location })
+            }
+            GoalKind::Condition(f) => Some(f.clone()),
+            GoalKind::Formula(f) => Some(f.into()),
+        }
+    }
 }
 
 /// A formula over a state's locations, variables, clocks and counters.

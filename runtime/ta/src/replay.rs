@@ -13,7 +13,8 @@ use hrdsl_ir::{
 
 use crate::{
     Counter, Limit, ModelError, StateFormula, Witness, WitnessStep,
-    concrete::{Machine, Medium, compare},
+    code::Medium,
+    concrete::{Machine, compare},
     query::{Slots, View, any_matches, nanos},
     semantics::{Move, choices},
 };

@@ -10,7 +10,7 @@ use hrdsl_ir::{Nanos, suite::Delays, value::SECOND};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::{graph::SetClock, network::Constraint};
+use crate::{network::Constraint, semantics::Reset};
 
 /// How long a transition waits beyond its earliest time if nothing bounds it, with delays that are not the earliest.
 pub const DAWDLE: Nanos = SECOND;
@@ -96,10 +96,13 @@ impl Schedule {
         self.constraints.push(AtLeast { later: i.0, earlier: j.0, by });
     }
 
-    /// Sets a clock now.
-    pub(crate) fn set(&mut self, s: SetClock) {
-        let (at, value) = if s.from == 0 { (self.now, 0) } else { self.set[usize::from(s.from)] };
-        self.set[usize::from(s.clock)] = (at, value + s.plus);
+    /// Sets clocks now, all at once.
+    pub(crate) fn set(&mut self, sets: &[Reset]) {
+        let before = self.set.clone();
+        for s in sets {
+            let (at, value) = if s.from == 0 { (self.now, 0) } else { before[usize::from(s.from)] };
+            self.set[usize::from(s.clock)] = (at, value + s.by);
+        }
     }
 
     /// Times that keep all constraints; `None`: there are none. `unit` is in nanoseconds.
@@ -295,7 +298,7 @@ mod tests {
         let mut s = Schedule::new(3);
         s.next(true);
         s.require(Constraint { i: 0, j: 1, bound: Bound::le(-2) });
-        s.set(SetClock { clock: 2, from: 0, plus: 3 });
+        s.set(&[Reset { clock: 2, from: 0, by: 3 }]);
         s.next(true);
         s.require(Constraint { i: 1, j: 0, bound: Bound::lt(7) });
         s.require(Constraint { i: 0, j: 2, bound: Bound::le(-4) });
@@ -325,7 +328,7 @@ mod tests {
     fn a_copied_clock_keeps_its_age() {
         let mut s = Schedule::new(3);
         s.next(true);
-        s.set(SetClock { clock: 2, from: 1, plus: 1 });
+        s.set(&[Reset { clock: 2, from: 1, by: 1 }]);
         s.next(true);
         // y = x + 1, so y == 6 when x == 5.
         s.require(Constraint { i: 0, j: 2, bound: Bound::le(-6) });

@@ -1,25 +1,23 @@
-//! Breadth-first search of the zone graph for many goals at once, with one list of passed and waiting states.
+//! The search of the zone graph for many goals at once, with one list of passed and waiting states.
 //!
-//! A symbolic state is stored unless one of the same discrete part includes its zone, and it drives out those whose zones
-//! it includes: of these only the way to them is kept, for witnesses. When nothing waits any more, a goal that was not met
-//! is proved unreachable.
+//! It goes in rounds: some of the waiting states are expanded, each on its own and against what is stored when the round
+//! begins; then what they lead to is stored, in their order. So nothing depends on the number of threads. A symbolic state
+//! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
+//! the way to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use std::{collections::VecDeque, rc::Rc};
-
-use hrdsl_ir::{
-    Program, Value,
-    expr::EvalError,
-    ta::{LocationId, Network},
-};
-use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
+use hrdsl_ir::{Program, ta::Network};
+use rayon::prelude::*;
 
 use crate::{
-    Budget, Counter, Error, Goal, GoalKind, Limit, Model, ModelError, StateFormula, Witness,
-    dbm::Dbm,
-    query::View,
-    semantics::{Candidate, Move},
-    witness, zone,
+    Abstraction, Budget, Counter, Error, Goal, Limit, Model, ModelError, Observe, Witness,
+    dbm::Number,
+    expand::{Batch, Context, Taken, Worker},
+    goals::Goals,
+    network::Width,
+    order::Waiting,
+    slice,
+    store::{Layout, NIL, Store},
+    witness,
 };
 
 /// How a goal ended.
@@ -33,11 +31,13 @@ pub enum Outcome {
     Open(Exhausted),
 }
 
-/// Which part of the budget was used up.
+/// What ended a search before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exhausted {
     States,
     Memory,
+    /// The caller had enough: see [`explore`].
+    Stopped,
 }
 
 /// What a search found.
@@ -53,11 +53,103 @@ pub struct Report {
     pub discrete_states: usize,
     /// Symbolic transitions computed.
     pub transitions: usize,
+    /// The most bytes that states took at any time.
+    pub peak_bytes: usize,
     /// Nothing was left to explore. Without goals a search goes on to this end or to that of its budget.
     pub complete: bool,
 }
 
-/// Compiles a network and searches it.
+/// In which order waiting states are expanded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    /// The oldest first: if committed states are kept, witnesses are the shortest.
+    Breadth,
+    /// The newest first.
+    Depth,
+    /// The newest first, those of one state in an order drawn from the seed.
+    RandomDepth,
+    /// By a topological order of the locations, and states that cover others first (Herbreteau and Tran, "Improving
+    /// Search Order for Reachability Testing in Timed Automata", 2015).
+    #[default]
+    Topological,
+}
+
+/// When a state covers another of the same discrete part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Subsumption {
+    /// Its zone has all valuations of the other.
+    Inclusion,
+    /// The zones are the same.
+    Equality,
+    /// It can simulate the other, as far as lower and upper bounds of clocks tell: aLU (Herbreteau, Srivathsan and
+    /// Walukiewicz, "Better Abstractions for Timed Automata", LICS 2012).
+    #[default]
+    Simulation,
+}
+
+/// How to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    pub order: Order,
+    pub subsumption: Subsumption,
+    pub abstraction: Abstraction,
+    /// Threads; results do not depend on it.
+    pub threads: usize,
+    /// States with a committed location are stored, too; otherwise transitions out of them are a part of those into them.
+    pub keep_committed: bool,
+    /// Variables that nothing depends on are left out of the state.
+    pub reduce: bool,
+    pub budget: Budget,
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            order: Order::default(),
+            subsumption: Subsumption::default(),
+            abstraction: Abstraction::default(),
+            threads: 1,
+            keep_committed: false,
+            reduce: true,
+            budget: Budget::default(),
+            seed: 0,
+        }
+    }
+}
+
+impl Options {
+    /// The plain zone graph by ExtraLU+ and inclusion, breadth first, of all states.
+    #[must_use]
+    pub fn reference() -> Self {
+        Self {
+            order: Order::Breadth,
+            subsumption: Subsumption::Inclusion,
+            keep_committed: true,
+            reduce: false,
+            ..Self::default()
+        }
+    }
+
+    /// Witnesses have as few transitions as any.
+    #[must_use]
+    pub fn shortest() -> Self {
+        Self { order: Order::Breadth, keep_committed: true, ..Self::default() }
+    }
+}
+
+/// How far a search is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    pub stored: usize,
+    pub visited: usize,
+    pub waiting: usize,
+    pub bytes: usize,
+    /// Goals that are not met yet.
+    pub open: usize,
+}
+
+/// Compiles a network and searches it breadth first for shortest witnesses.
 ///
 /// # Errors
 /// If the model is malformed, or a fault of it is met, or the engine contradicts itself.
@@ -69,295 +161,312 @@ pub fn check(
     limits: &[Limit],
     budget: Budget,
 ) -> Result<Report, Error> {
-    let model = Model::new(program, network, counters, limits)?;
-    explore(&model, goals, budget)
+    let observe = Observe { counters: counters.to_vec(), limits: limits.to_vec(), ..Observe::default() };
+    let model = Model::new(program, network, &observe)?;
+    explore(&model, goals, &Options { budget, ..Options::shortest() }, &|_| true)
 }
 
-/// Searches a compiled network. It ends when each goal is met, all is explored, or the budget is used up.
+/// Searches a compiled network. It ends when each goal is met, all is explored, the budget is used up, or `go_on` (asked
+/// once a round) says so.
 ///
 /// A fault of the model is met only if it comes before that end.
 ///
 /// # Errors
 /// If a fault of the model is met, or the engine contradicts itself.
-pub fn explore(model: &Model, goals: &[Goal], budget: Budget) -> Result<Report, Error> {
-    let mut search = Search::new(model, goals)?;
-    let exhausted = search.run(budget)?;
-    let mut outcomes = Vec::new();
-    for (goal, hit) in goals.iter().zip(&search.hits) {
-        outcomes.push(match (hit, exhausted) {
-            (Some(path), _) => Outcome::Reached(Box::new(search.witness(path, Some(goal))?)),
-            (None, Some(what)) => Outcome::Open(what),
-            (None, None) => Outcome::Unreachable,
-        });
+pub fn explore(
+    model: &Model,
+    goals: &[Goal],
+    options: &Options,
+    go_on: &dyn Fn(&Progress) -> bool,
+) -> Result<Report, Error> {
+    match model.width {
+        Width::Bits16 => Search::<i16>::new(model, goals, options)?.explore(go_on),
+        Width::Bits32 => Search::<i32>::new(model, goals, options)?.explore(go_on),
+        Width::Bits64 => Search::<i64>::new(model, goals, options)?.explore(go_on),
     }
-    Ok(Report {
-        goals: outcomes,
-        states_stored: search.stored,
-        states_visited: search.visited,
-        discrete_states: search.discrete.len(),
-        transitions: search.transitions,
-        complete: exhausted.is_none() && search.waiting.is_empty(),
-    })
 }
 
-const ROOT: u32 = u32::MAX;
-
-/// A symbolic state.
-struct Node {
-    discrete: u32,
-    parent: u32,
-    /// Which of the parent's candidates led here.
-    choice: u32,
-    /// `None`: a greater one of the same discrete state drove it out.
-    zone: Option<Dbm>,
+/// A way to a goal: a node, then perhaps one transition more of its expansion. No node: the initial state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Path {
+    pub node: u32,
+    pub via: Option<u32>,
 }
 
-/// A way to a goal: a node, then perhaps one candidate more. The root of no node is the initial state.
-#[derive(Clone, Copy)]
-struct Path {
-    node: u32,
-    last: Option<u32>,
-}
-
-struct Discrete {
-    packed: Rc<[u64]>,
-    nodes: SmallVec<[u32; 2]>,
-}
-
-struct Search<'m, 'p> {
+struct Search<'m, 'p, N> {
     model: &'m Model<'p>,
     goals: &'m [Goal],
+    options: Options,
+    compiled: Goals,
     hits: Vec<Option<Path>>,
-    open: usize,
-    nodes: Vec<Node>,
-    discrete: Vec<Discrete>,
-    numbers: FxHashMap<Rc<[u64]>, u32>,
-    waiting: VecDeque<u32>,
-    packed: Vec<u64>,
-    bytes: usize,
-    stored: usize,
+    open: Vec<bool>,
+    left: usize,
+    store: Store<N>,
+    waiting: Waiting,
+    workers: Vec<Worker<'m, 'p, N>>,
+    batches: Vec<Batch<N>>,
+    pool: Option<rayon::ThreadPool>,
     visited: usize,
     transitions: usize,
-    /// Which goals are edges: they are looked at for each transition, the others for each discrete state.
-    edge_goals: FxHashMap<(usize, usize), Vec<usize>>,
-    state_goals: Vec<usize>,
+    peak: usize,
 }
 
-impl<'m, 'p> Search<'m, 'p> {
-    fn new(model: &'m Model<'p>, goals: &'m [Goal]) -> Result<Self, Error> {
-        let mut edge_goals: FxHashMap<(usize, usize), Vec<usize>> = FxHashMap::default();
-        let mut state_goals = Vec::new();
-        for (i, goal) in goals.iter().enumerate() {
-            model.check_goal(goal)?;
-            match &goal.what {
-                GoalKind::Edge { automaton, edge } => {
-                    edge_goals.entry((*automaton, *edge)).or_default().push(i);
-                }
-                GoalKind::Location { .. } | GoalKind::Condition(_) => state_goals.push(i),
-            }
+/// States of one round.
+const ROUND: usize = 1024;
+/// States that one thread expands in one go.
+const CHUNK: usize = 16;
+
+impl<'m, 'p, N: Number> Search<'m, 'p, N> {
+    fn new(model: &'m Model<'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Error> {
+        let compiled = Goals::new(model, goals)?;
+        let matters =
+            if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
+        let mut options = *options;
+        // With differences of clocks a simulation by bounds of single clocks is none.
+        if model.extrapolation.diagonals.is_some() && options.subsumption == Subsumption::Simulation {
+            options.subsumption = Subsumption::Inclusion;
         }
+        let pool = if options.threads > 1 {
+            let built = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
+            Some(built.map_err(|e| Error::Internal(format!("no threads: {e}")))?)
+        } else {
+            None
+        };
         Ok(Self {
             model,
             goals,
+            compiled,
             hits: vec![None; goals.len()],
-            open: goals.len(),
-            nodes: Vec::new(),
-            discrete: Vec::new(),
-            numbers: FxHashMap::default(),
-            waiting: VecDeque::new(),
-            packed: Vec::new(),
-            bytes: 0,
-            stored: 0,
+            open: vec![true; goals.len()],
+            left: goals.len(),
+            store: Store::new(Layout::new(model, &matters)),
+            waiting: Waiting::new(model, options.order, options.seed),
+            workers: (0..options.threads.max(1)).map(|_| Worker::new(model, options.abstraction)).collect(),
+            batches: Vec::new(),
+            pool,
+            options,
             visited: 0,
             transitions: 0,
-            edge_goals,
-            state_goals,
+            peak: 0,
         })
     }
 
-    fn run(&mut self, budget: Budget) -> Result<Option<Exhausted>, Error> {
-        let mut scratch = Dbm::zero(self.model.dim);
-        let mut state = self.model.initial();
-        if !zone::initial(self.model, &state, &mut scratch) {
-            return Err(ModelError::Initial.into());
+    fn explore(mut self, go_on: &dyn Fn(&Progress) -> bool) -> Result<Report, Error> {
+        let exhausted = self.run(go_on)?;
+        let mut outcomes = Vec::new();
+        for i in 0..self.goals.len() {
+            outcomes.push(match (self.hits[i], exhausted) {
+                (Some(path), _) => Outcome::Reached(Box::new(self.witness(path, Some(i))?)),
+                (None, Some(what)) => Outcome::Open(what),
+                (None, None) => Outcome::Unreachable,
+            });
         }
-        self.insert(&state, &mut scratch, ROOT, 0)?;
-        while let Some(id) = self.waiting.pop_front() {
-            if !self.goals.is_empty() && self.open == 0 {
-                // So that the report does not claim to be complete.
-                self.waiting.push_front(id);
-                return Ok(None);
-            }
-            let used_up = if self.nodes.len() >= budget.states.min(ROOT as usize) {
-                Some(Exhausted::States)
-            } else {
-                (self.bytes >= budget.bytes).then_some(Exhausted::Memory)
-            };
-            let node = &self.nodes[id as usize];
-            let Some(zone) = node.zone.clone() else { continue };
-            if used_up.is_some() {
-                return Ok(used_up);
-            }
-            self.model.unpack(&self.discrete[node.discrete as usize].packed, &mut state);
-            self.visited += 1;
-            self.expand(id, &state, &zone, &mut scratch)?;
-        }
-        Ok(None)
+        Ok(Report {
+            goals: outcomes,
+            states_stored: self.store.stored,
+            states_visited: self.visited,
+            discrete_states: self.store.discrete_states(),
+            transitions: self.transitions,
+            peak_bytes: self.peak,
+            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes),
+        })
     }
 
-    fn expand(&mut self, id: u32, state: &[i64], zone: &Dbm, scratch: &mut Dbm) -> Result<(), Error> {
-        let model = self.model;
-        for (choice, candidate) in (0..).zip(model.candidates(state)) {
-            if !zone::may_pass(zone, &candidate) {
-                continue;
+    fn decided(&self) -> bool {
+        !self.goals.is_empty() && self.left == 0
+    }
+
+    fn run(&mut self, go_on: &dyn Fn(&Progress) -> bool) -> Result<Option<Exhausted>, Error> {
+        self.begin()?;
+        let mut round = Vec::new();
+        loop {
+            self.measure();
+            if self.decided() || self.waiting.is_empty(&self.store.nodes) {
+                return Ok(None);
             }
-            scratch.copy_from(zone);
-            if !zone::guard(scratch, &candidate) {
-                continue;
+            let bytes = self.store.bytes() + self.waiting.bytes();
+            let budget = self.options.budget;
+            if self.store.nodes.len() >= budget.states || !self.store.has_room(0) {
+                return Ok(Some(Exhausted::States));
             }
-            let target = match &candidate.target {
-                Ok(target) => target,
-                Err(error) => return Err(self.fault(id, error)),
+            if bytes >= budget.bytes {
+                return Ok(Some(Exhausted::Memory));
+            }
+            let progress = Progress {
+                stored: self.store.stored,
+                visited: self.visited,
+                waiting: self.waiting.len(),
+                bytes,
+                open: self.left,
             };
-            if !zone::advance(model, &candidate.resets, target, scratch) {
-                continue;
+            if !go_on(&progress) {
+                return Ok(Some(Exhausted::Stopped));
             }
-            self.transitions += 1;
-            self.edges_taken(id, choice, &candidate);
-            self.insert(target, scratch, id, choice)?;
+            self.waiting.take(&self.store.nodes, ROUND, &mut round);
+            self.expand(&round);
+            if let Some(what) = self.merge(&round)? {
+                return Ok(Some(what));
+            }
         }
+    }
+
+    fn measure(&mut self) {
+        let batches: usize = self.batches.iter().map(Batch::bytes).sum();
+        self.peak = self.peak.max(self.store.bytes() + self.waiting.bytes() + batches);
+    }
+
+    /// The initial state.
+    fn begin(&mut self) -> Result<(), Error> {
+        let mut batch = Batch::default();
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
+        self.workers[0].begin(&context, &mut batch).map_err(Error::from)?;
+        self.batches = vec![batch];
+        self.merge(&[])?;
         Ok(())
     }
 
-    fn fault(&self, id: u32, error: &ModelError) -> Error {
-        match self.witness(&Path { node: id, last: None }, None) {
-            Ok(witness) => Error::Model { error: error.clone(), witness: Some(Box::new(witness)) },
+    /// Expands the states of a round, each chunk of them into a batch.
+    fn expand(&mut self, round: &[u32]) {
+        let chunks = round.len().div_ceil(CHUNK);
+        self.batches.resize_with(self.batches.len().max(chunks), Batch::default);
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
+        let work = |worker: &mut Worker<'m, 'p, N>, nodes: &[u32], batch: &mut Batch<N>| {
+            batch.clear();
+            for &node in nodes {
+                if worker.expand(&context, node, batch).is_err() {
+                    break;
+                }
+            }
+        };
+        for batch in &mut self.batches[chunks..] {
+            batch.clear();
+        }
+        match &self.pool {
+            Some(pool) if chunks > 1 => {
+                let workers = &mut self.workers;
+                let share = chunks.div_ceil(workers.len());
+                let batches = self.batches[..chunks].par_chunks_mut(share);
+                let nodes = round.par_chunks(share * CHUNK);
+                pool.install(|| {
+                    workers.par_iter_mut().zip(batches).zip(nodes).for_each(|((worker, batches), nodes)| {
+                        for (batch, nodes) in batches.iter_mut().zip(nodes.chunks(CHUNK)) {
+                            work(worker, nodes, batch);
+                        }
+                    });
+                });
+            }
+            Some(_) | None => {
+                for (batch, nodes) in self.batches.iter_mut().zip(round.chunks(CHUNK)) {
+                    work(&mut self.workers[0], nodes, batch);
+                }
+            }
+        }
+    }
+
+    /// Stores what a round led to, in order.
+    fn merge(&mut self, round: &[u32]) -> Result<Option<Exhausted>, Error> {
+        self.measure();
+        let first = self.store.nodes.len() as u32;
+        let mut batches = std::mem::take(&mut self.batches);
+        let mut end = None;
+        for batch in &mut batches {
+            self.visited += batch.visited;
+            self.transitions += batch.transitions;
+            for hit in &batch.hits {
+                if self.open[hit.goal] {
+                    self.open[hit.goal] = false;
+                    self.left -= 1;
+                    self.hits[hit.goal] = Some(hit.path);
+                }
+            }
+            if end.is_none() {
+                end = self.absorb(batch, first);
+            }
+            if let Some((error, path)) = batch.fault.take()
+                && !self.decided()
+            {
+                return Err(self.fault(error, path));
+            }
+            if self.decided() {
+                break;
+            }
+        }
+        self.batches = batches;
+        self.waiting.settle(&self.store.nodes);
+        let _ = round;
+        Ok(end)
+    }
+
+    fn absorb(&mut self, batch: &Batch<N>, first: u32) -> Option<Exhausted> {
+        let simulates = self.options.subsumption == Subsumption::Simulation;
+        let worker = &mut self.workers[0];
+        for item in &batch.items {
+            if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {
+                continue;
+            }
+            let packed = batch.packed(item, self.store.layout.words);
+            let zone = batch.zone(item);
+            let known =
+                if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
+            let mut lost = false;
+            let discrete = match known {
+                None => self.store.add_discrete(item.hash, packed),
+                Some(d) => {
+                    // What was there before the round was looked at already.
+                    let Some(covers) =
+                        worker.compare(&self.store, self.options.subsumption, d, first, zone, item.dim)
+                    else {
+                        continue;
+                    };
+                    for n in covers.iter().chain(batch.covered(item)) {
+                        if !self.store.nodes[*n as usize].covered {
+                            self.waiting.covered(*n);
+                            self.store.cover(*n);
+                            lost = true;
+                        }
+                    }
+                    d
+                }
+            };
+            if lost {
+                self.store.unlink(discrete);
+            }
+            if self.store.nodes.len() >= self.options.budget.states || !self.store.has_room(zone.len()) {
+                return Some(Exhausted::States);
+            }
+            let id = self.store.add(item.parent, item.via, discrete, zone);
+            self.waiting.push(id, lost, item.level);
+        }
+        None
+    }
+
+    fn fault(&mut self, error: ModelError, path: Path) -> Error {
+        match self.witness(path, None) {
+            Ok(witness) => Error::Model { error, witness: Some(Box::new(witness)) },
             Err(internal) => internal,
         }
     }
 
-    /// Extrapolates and stores a symbolic state, unless it is included in a stored one.
-    fn insert(&mut self, state: &[i64], zone: &mut Dbm, parent: u32, choice: u32) -> Result<(), Error> {
-        let model = self.model;
-        model.pack(state, &mut self.packed);
-        let (discrete, new) = match self.numbers.get(self.packed.as_slice()) {
-            Some(&n) => (n, false),
-            None => (self.number(), true),
-        };
-        let first = self.nodes.len();
-        model.extrapolation.apply(&state[..model.members.len()], zone, &mut |piece| {
-            let known = &mut self.discrete[discrete as usize].nodes;
-            let covered = known
-                .iter()
-                .any(|&n| self.nodes[n as usize].zone.as_ref().is_some_and(|old| old.includes(piece)));
-            if covered {
-                return;
-            }
-            known.retain(|n| {
-                let old = &mut self.nodes[*n as usize].zone;
-                let keep = old.as_ref().is_some_and(|old| !piece.includes(old));
-                if !keep && let Some(gone) = old.take() {
-                    self.stored -= 1;
-                    self.bytes -= gone.heap_bytes();
-                }
-                keep
-            });
-            // INVARIANT: the budget keeps the number of nodes below the root's mark.
-            let id = self.nodes.len() as u32;
-            known.push(id);
-            self.bytes += piece.heap_bytes() + size_of::<Node>() + size_of::<u32>();
-            self.stored += 1;
-            self.nodes.push(Node { discrete, parent, choice, zone: Some(piece.clone()) });
-            self.waiting.push_back(id);
-        });
-        if new && self.nodes.len() > first {
-            self.state_reached(state, first as u32)?;
-        }
-        Ok(())
-    }
-
-    /// Gives the packed state its number.
-    fn number(&mut self) -> u32 {
-        let n = self.discrete.len() as u32;
-        let packed: Rc<[u64]> = Rc::from(self.packed.as_slice());
-        self.bytes += size_of_val(&*packed) + 2 * size_of::<Discrete>();
-        self.numbers.insert(packed.clone(), n);
-        self.discrete.push(Discrete { packed, nodes: SmallVec::new() });
-        n
-    }
-
-    fn edges_taken(&mut self, node: u32, choice: u32, candidate: &Candidate) {
-        if self.edge_goals.is_empty() {
-            return;
-        }
-        for Move { automaton, edge, .. } in &candidate.moves {
-            for goal in self.edge_goals.remove(&(*automaton, *edge)).unwrap_or_default() {
-                self.hits[goal] = Some(Path { node, last: Some(choice) });
-                self.open -= 1;
-            }
-        }
-    }
-
-    fn state_reached(&mut self, state: &[i64], node: u32) -> Result<(), Error> {
-        let settled = !self.model.any_committed(state);
-        let view = StateView { model: self.model, state };
-        let mut left = Vec::with_capacity(self.state_goals.len());
-        for &i in &self.state_goals {
-            let goal = &self.goals[i];
-            let holds = (settled || !goal.settled)
-                && goal_holds(goal, &view)
-                    .map_err(|e| ModelError::Question(format!("goal {i} has no value: {e}")))?;
-            if holds {
-                self.hits[i] = Some(Path { node, last: None });
-                self.open -= 1;
-            } else {
-                left.push(i);
-            }
-        }
-        self.state_goals = left;
-        Ok(())
-    }
-
-    fn witness(&self, path: &Path, goal: Option<&Goal>) -> Result<Witness, Error> {
-        let mut choices: Vec<u32> = path.last.into_iter().collect();
+    /// The path's transitions, made concrete and replayed.
+    fn witness(&mut self, path: Path, goal: Option<usize>) -> Result<Witness, Error> {
+        let mut vias = Vec::new();
         let mut at = path.node;
-        while self.nodes[at as usize].parent != ROOT {
-            choices.push(self.nodes[at as usize].choice);
-            at = self.nodes[at as usize].parent;
+        vias.extend(path.via.map(|via| (path.node, via)));
+        while at != NIL && self.store.nodes[at as usize].parent != NIL {
+            let node = self.store.nodes[at as usize];
+            vias.push((node.parent, node.via));
+            at = node.parent;
         }
-        choices.reverse();
-        witness::build(self.model, &choices, goal, crate::Timing::default())
-    }
-}
-
-/// Whether a state meets a goal; of edges it cannot tell.
-pub(crate) fn goal_holds(goal: &Goal, view: &dyn View) -> Result<bool, EvalError> {
-    match &goal.what {
-        GoalKind::Edge { .. } => Ok(false),
-        GoalKind::Location { automaton, location } => {
-            StateFormula::At { automaton: *automaton, location: *location }.holds(view)
+        vias.reverse();
+        let context =
+            Context { store: &self.store, goals: &self.compiled, open: &self.open, options: &self.options };
+        let mut taken: Vec<Taken> = Vec::new();
+        // A way through committed states that are not stored begins at the initial state itself.
+        for (node, via) in vias {
+            self.workers[0].retrace(&context, node, via, &mut taken)?;
         }
-        GoalKind::Condition(f) => f.holds(view),
-    }
-}
-
-struct StateView<'a, 'p> {
-    model: &'a Model<'p>,
-    state: &'a [i64],
-}
-
-impl View for StateView<'_, '_> {
-    fn location(&self, automaton: usize) -> Option<LocationId> {
-        self.model.members.get(automaton)?;
-        u16::try_from(self.state[automaton]).ok().map(LocationId)
-    }
-
-    fn slot(&self, slot: u16) -> Option<Value> {
-        let slot = usize::from(slot);
-        if slot < self.model.slots.len() { self.model.slot_value(self.state, slot) } else { None }
-    }
-
-    fn counter(&self, counter: usize) -> i64 {
-        self.state[self.model.counter_at(counter)]
+        witness::build(self.model, taken, goal.map(|g| &self.goals[g]), crate::Timing::default())
     }
 }

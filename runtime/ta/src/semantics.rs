@@ -1,24 +1,28 @@
 //! The discrete half of the transition relation: what may happen in a discrete state, and under which clock guards.
 //!
-//! Which transitions there are depends on the discrete state only; each carries the clock constraints under which it is
-//! possible. So a transition is named by its number among those of its state, and a path by such numbers.
+//! Transitions are enumerated in a fixed order: by automaton in the order of the network, its edges in source order, their
+//! selects (the first slowest), then the partners and their edges and selects (the last partner fastest); joint channels
+//! come last, in the order of the program. Who enumerates may give a test for clock constraints: what fails it is left out.
 //!
 //! A broadcast never waits for receivers: each other automaton with an enabled receiving edge takes part by one of them.
 //! Where the receiver's edges have clock guards, it takes part where one of them holds and stays away where none does,
-//! which is a union of zones: one transition for each part of it.
+//! which is a union of zones: one transition for each part of it. The same holds for optional parties of joint channels.
+
+use std::ops::ControlFlow;
 
 use hrdsl_ir::{
-    EventId, Expr, Type, Value,
+    ArgPattern, EventId, Type, Value,
     expr::EvalError,
-    ta::{LocationKind, ReceiveArg, Sync, Update, Var},
+    ta::{LocationKind, ReceiveArg, Var},
 };
 use smallvec::SmallVec;
 
 use crate::{
     ModelError,
+    code::{Env, Fault, Medium},
+    compile,
     error::EdgeName,
-    network::{Constraint, Model},
-    query::any_matches,
+    network::{Arrow, Constraint, Model, Op, Part, Signal},
 };
 
 /// The values of an edge's selects, then of the parameters it binds.
@@ -34,24 +38,78 @@ pub struct Move {
     pub binders: Binders,
 }
 
-/// Something that may happen in a discrete state.
-pub(crate) struct Candidate {
-    pub event: Option<(EventId, Vec<Value>)>,
-    /// The sender's first.
-    pub moves: SmallVec<[Move; 2]>,
-    pub guard: SmallVec<[Constraint; 4]>,
-    pub resets: SmallVec<[u16; 4]>,
-    /// The discrete state after it.
-    pub target: Result<Vec<i64>, Box<ModelError>>,
+/// One automaton's part in a transition, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Take {
+    pub member: u16,
+    pub edge: u16,
+    pub binders: SmallVec<[i64; 4]>,
 }
 
-/// What one automaton may do about an event.
+/// Something that may happen in a discrete state.
+pub(crate) struct Firing<'a> {
+    /// In the order of their updates.
+    pub parts: &'a [Take],
+    pub medium: Option<Medium>,
+    pub args: &'a [i64],
+    /// The clock constraints under which it may happen.
+    pub guard: &'a [Constraint],
+}
+
+/// What an enumeration comes upon.
+pub(crate) enum Found<'a> {
+    Firing(Firing<'a>),
+    /// Something of the edge has no value, if these constraints hold.
+    Fault {
+        member: u16,
+        edge: u16,
+        fault: Fault,
+        guard: &'a [Constraint],
+    },
+}
+
+/// What one automaton may do about something that others do.
 enum Response {
-    Take(Move),
+    Take(Take, SmallVec<[Constraint; 2]>),
     /// It stays away where these hold.
     Absent(SmallVec<[Constraint; 4]>),
-    /// Its guard has no value.
-    Fault(Move, Box<ModelError>),
+    /// Its guard has no value where these hold.
+    Fault(Take, SmallVec<[Constraint; 2]>, Fault),
+}
+
+/// A clock after a transition: the value of `from` before it (0: zero) plus `by`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reset {
+    pub clock: u16,
+    pub from: u16,
+    pub by: i64,
+}
+
+/// What an update may make negative: `from + by` at an edge's update of a clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Below {
+    pub reset: Reset,
+    pub member: u16,
+    pub edge: u16,
+}
+
+/// What a transition does besides its guard.
+#[derive(Default)]
+pub(crate) struct Effect {
+    /// The discrete state after it.
+    pub target: Vec<i64>,
+    pub resets: Vec<Reset>,
+    pub below: Vec<Below>,
+}
+
+/// Memory that enumerations use again and again.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    pub stack: Vec<i64>,
+    parts: Vec<Take>,
+    args: Vec<i64>,
+    guard: Vec<Constraint>,
+    written: Vec<u32>,
 }
 
 /// All combinations of the selects' values, the first select slowest.
@@ -75,279 +133,568 @@ pub(crate) fn choices(selects: &[Var]) -> Vec<Binders> {
 pub(crate) fn bind(pattern: &[ReceiveArg], args: &[Value], binders: &mut Binders) -> bool {
     for (p, &v) in pattern.iter().zip(args) {
         match p {
-            ReceiveArg::Match(hrdsl_ir::ArgPattern::Any) => {}
-            ReceiveArg::Match(hrdsl_ir::ArgPattern::Is(want)) if want.key() == v.key() => {}
-            ReceiveArg::Match(hrdsl_ir::ArgPattern::Is(_)) => return false,
+            ReceiveArg::Match(ArgPattern::Any) => {}
+            ReceiveArg::Match(ArgPattern::Is(want)) if want.key() == v.key() => {}
+            ReceiveArg::Match(ArgPattern::Is(_)) => return false,
             ReceiveArg::Bind => binders.push(v),
         }
     }
     true
 }
 
-impl Model<'_> {
-    /// All that may happen in a discrete state, in a fixed order: by sender, edge, selects, then the receivers' choices.
-    pub(crate) fn candidates(&self, state: &[i64]) -> Vec<Candidate> {
-        let mut out = Vec::new();
+/// The least of all combinations of selects; `false`: there is none.
+fn first(selects: &[(i64, i64)], out: &mut SmallVec<[i64; 4]>) -> bool {
+    out.clear();
+    out.extend(selects.iter().map(|s| s.0));
+    selects.iter().all(|s| s.0 <= s.1)
+}
+
+/// The next combination, the last select fastest.
+fn next(selects: &[(i64, i64)], chosen: &mut [i64]) -> bool {
+    for (n, s) in chosen.iter_mut().zip(selects).rev() {
+        if *n < s.1 {
+            *n += 1;
+            return true;
+        }
+        *n = s.0;
+    }
+    false
+}
+
+/// Whether a constraint may hold, as far as the one who enumerates cares.
+pub(crate) trait May {
+    fn may(&self, c: Constraint) -> bool;
+}
+
+/// No constraint is looked at.
+pub(crate) struct Always;
+
+impl May for Always {
+    fn may(&self, _: Constraint) -> bool {
+        true
+    }
+}
+
+/// The state of an enumeration.
+struct Enumeration<'a, 'p, M, F> {
+    model: &'a Model<'p>,
+    state: &'a mut [i64],
+    committed: bool,
+    may: &'a M,
+    found: &'a mut F,
+    s: &'a mut Scratch,
+}
+
+type Flow = ControlFlow<()>;
+
+impl<'p> Model<'p> {
+    /// Calls `found` with all that may happen, until it breaks off. The state is not changed.
+    pub(crate) fn enumerate<M: May, F: FnMut(Found) -> Flow>(
+        &self,
+        state: &mut [i64],
+        may: &M,
+        scratch: &mut Scratch,
+        found: &mut F,
+    ) -> Flow {
         let committed = self.any_committed(state);
+        let mut e = Enumeration { model: self, state, committed, may, found, s: scratch };
         for m in 0..self.members.len() {
-            for &e in &self.place(state, m).active {
-                self.edge_candidates(state, committed, m, usize::from(e), &mut out);
+            for &edge in &self.place(e.state, m).active {
+                e.active(m, usize::from(edge))?;
             }
         }
-        out
+        for joint in 0..self.joints.len() {
+            e.joint(joint)?;
+        }
+        ControlFlow::Continue(())
     }
 
-    fn edge_candidates(
-        &self,
-        state: &[i64],
-        committed: bool,
-        member: usize,
-        e: usize,
-        out: &mut Vec<Candidate>,
-    ) {
-        let edge = self.members[member].edges[e].edge;
-        for binders in choices(&edge.selects) {
-            let step = Move { automaton: member, edge: e, binders };
-            match self.guard(state, &step) {
-                Ok(false) => continue,
-                Ok(true) => {}
-                Err(error) => {
-                    out.push(self.faulty(smallvec::smallvec![step], None, error));
-                    continue;
-                }
-            }
-            match &edge.sync {
-                Sync::Internal => self.push(state, committed, smallvec::smallvec![step], &[], None, out),
-                Sync::Send { event, args } => match self.arguments(state, &step, *event, args) {
-                    Ok(args) => self.broadcast(state, committed, step, (*event, args), out),
-                    Err(error) => out.push(self.faulty(smallvec::smallvec![step], None, error)),
-                },
-                // INVARIANT: `active` has no receiving edges.
-                Sync::Receive { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
-            }
-        }
+    fn is_committed(&self, state: &[i64], member: usize) -> bool {
+        self.place(state, member).kind == LocationKind::Committed
     }
 
-    fn broadcast(
+    /// What the transition does; `Ok(false)`: a limit forbids it.
+    pub(crate) fn effect(
         &self,
         state: &[i64],
-        committed: bool,
-        sender: Move,
-        event: (EventId, Vec<Value>),
-        out: &mut Vec<Candidate>,
-    ) {
-        let others = (0..self.members.len()).filter(|&m| m != sender.automaton);
-        let options: Vec<Vec<Response>> =
-            others.map(|m| self.responses(state, m, &event)).filter(|r| !r.is_empty()).collect();
-        // An odometer over the receivers' options, the last receiver fastest.
-        let mut at = vec![0; options.len()];
-        loop {
-            let mut moves: SmallVec<[Move; 2]> = smallvec::smallvec![sender.clone()];
-            let mut absent: SmallVec<[Constraint; 4]> = SmallVec::new();
-            let mut fault = None;
-            for (responses, &i) in options.iter().zip(&at) {
-                match &responses[i] {
-                    Response::Take(m) => moves.push(m.clone()),
-                    Response::Absent(cs) => absent.extend_from_slice(cs),
-                    Response::Fault(m, error) => {
-                        moves.push(m.clone());
-                        fault = Some(error.clone());
-                    }
-                }
-            }
-            match fault {
-                Some(error) => out.push(self.faulty(moves, Some(event.clone()), error)),
-                None => self.push(state, committed, moves, &absent, Some(event.clone()), out),
-            }
-            let Some(next) = (0..at.len()).rev().find(|&i| at[i] + 1 < options[i].len()) else { return };
-            at[next] += 1;
-            at[next + 1..].fill(0);
-        }
-    }
-
-    /// What an automaton may do about an event; nothing: it has no edge for it.
-    fn responses(
-        &self,
-        state: &[i64],
-        member: usize,
-        (event, args): &(EventId, Vec<Value>),
-    ) -> Vec<Response> {
-        let mut out = Vec::new();
-        let mut absent: Vec<SmallVec<[Constraint; 4]>> = vec![SmallVec::new()];
-        for &e in &self.place(state, member).receiving {
-            let arrow = &self.members[member].edges[usize::from(e)];
-            let Sync::Receive { event: wanted, args: pattern } = &arrow.edge.sync else { continue };
-            let mut bound = Binders::new();
-            if wanted != event || !bind(pattern, args, &mut bound) {
-                continue;
-            }
-            let before = out.len();
-            for mut binders in choices(&arrow.edge.selects) {
-                binders.extend_from_slice(&bound);
-                let step = Move { automaton: member, edge: usize::from(e), binders };
-                match self.guard(state, &step) {
-                    Ok(false) => {}
-                    Ok(true) => out.push(Response::Take(step)),
-                    Err(error) => out.push(Response::Fault(step, error)),
-                }
-            }
-            if out.len() > before {
-                // To stay away, one of the constraints of each enabled edge must fail.
-                absent = absent
-                    .iter()
-                    .flat_map(|cs| {
-                        arrow.guard.iter().map(|c| {
-                            let mut more = cs.clone();
-                            more.push(c.negated());
-                            more
-                        })
-                    })
-                    .collect();
-            }
-        }
-        if !out.is_empty() {
-            out.extend(absent.into_iter().map(Response::Absent));
-        }
-        out
-    }
-
-    /// Adds a transition, unless a committed location or a limit forbids it.
-    fn push(
-        &self,
-        state: &[i64],
-        committed: bool,
-        moves: SmallVec<[Move; 2]>,
-        absent: &[Constraint],
-        event: Option<(EventId, Vec<Value>)>,
-        out: &mut Vec<Candidate>,
-    ) {
-        let leaves_committed =
-            moves.iter().any(|m| self.place(state, m.automaton).kind == LocationKind::Committed);
-        if committed && !leaves_committed {
-            return;
-        }
-        let mut target = state.to_vec();
-        if let Some((event, args)) = &event
-            && !self.count(&mut target, *event, args)
+        firing: &Firing,
+        stack: &mut Vec<i64>,
+        effect: &mut Effect,
+    ) -> Result<bool, (u16, u16, Fault)> {
+        effect.target.clear();
+        effect.target.extend_from_slice(state);
+        effect.resets.clear();
+        effect.below.clear();
+        if let Some(Medium::Event(event)) = firing.medium
+            && !self.count(&mut effect.target, event, firing.args)
         {
-            return;
+            return Ok(false);
         }
-        let mut guard = self.guards(&moves);
-        guard.extend_from_slice(absent);
-        let resets =
-            moves.iter().flat_map(|m| &self.members[m.automaton].edges[m.edge].resets).copied().collect();
-        let target = self.update(&mut target, &moves).map(|()| target);
-        out.push(Candidate { event, moves, guard, resets, target });
+        for take in firing.parts {
+            self.take(take, stack, effect).map_err(|f| (take.member, take.edge, f))?;
+        }
+        Ok(true)
+    }
+
+    fn take(&self, take: &Take, stack: &mut Vec<i64>, effect: &mut Effect) -> Result<(), Fault> {
+        let (m, e) = (usize::from(take.member), usize::from(take.edge));
+        let arrow = &self.members[m].edges[e];
+        effect.target[m] = arrow.to() as i64;
+        let mut written = Vec::new();
+        stack.clear();
+        stack.extend_from_slice(&take.binders);
+        let Effect { target, resets, below } = effect;
+        for op in &arrow.updates {
+            let mut env = Env::new(&self.library, target, stack);
+            env.written = self.uses.then_some(&mut written);
+            match op {
+                Op::Assign(place, value) => env.assign(place, value, None)?,
+                Op::Call(routine, args) => {
+                    env.call(*routine, args)?;
+                }
+                Op::Reset { clock, from, to } => {
+                    let by = to.eval(&mut env)?;
+                    let known = from.and_then(|y| resets.iter().find(|r| r.clock == y).copied());
+                    let reset = match (from, known) {
+                        (None, _) => Reset { clock: *clock, from: 0, by },
+                        (Some(y), None) => Reset { clock: *clock, from: *y, by },
+                        (Some(_), Some(r)) => Reset { clock: *clock, from: r.from, by: r.by + by },
+                    };
+                    if reset.by < 0 {
+                        if reset.from == 0 {
+                            return Err(Fault::Negative { clock: *clock });
+                        }
+                        below.push(Below { reset, member: take.member, edge: take.edge });
+                    }
+                    resets.retain(|r| r.clock != *clock);
+                    resets.push(reset);
+                }
+            }
+        }
+        if self.pairs {
+            target[self.last_edge_at(m)] = i64::from(arrow.number);
+        }
+        for at in written {
+            let slot = at as usize - self.members.len();
+            target[self.last_definition_at(slot)] = i64::from(arrow.number);
+        }
+        Ok(())
     }
 
     /// Counts an event; `false`: a limit forbids it.
-    fn count(&self, state: &mut [i64], event: EventId, args: &[Value]) -> bool {
-        for (i, limit) in self.limits.iter().enumerate() {
-            if any_matches(&limit.patterns, event, args) {
-                let n = &mut state[self.limit_at(i)];
-                if *n >= limit.at_most {
+    fn count(&self, state: &mut [i64], event: EventId, args: &[i64]) -> bool {
+        let watch = &self.watch[usize::from(event.0)];
+        let matches = |patterns: &[Vec<Option<i64>>]| {
+            patterns.iter().any(|p| p.iter().zip(args).all(|(want, n)| want.is_none_or(|w| w == *n)))
+        };
+        for (i, patterns) in &watch.limits {
+            if matches(patterns) {
+                let n = &mut state[self.limit_at(*i)];
+                if *n >= self.limits[*i].at_most {
                     return false;
                 }
                 *n += 1;
             }
         }
-        for (i, counter) in self.counters.iter().enumerate() {
-            if any_matches(&counter.patterns, event, args) {
-                let n = &mut state[self.counter_at(i)];
-                *n = (*n + 1).min(counter.cap);
+        for (i, patterns) in &watch.counters {
+            if matches(patterns) {
+                let n = &mut state[self.counter_at(*i)];
+                *n = (*n + 1).min(self.counters[*i].cap);
             }
         }
         true
     }
 
-    fn guards(&self, moves: &[Move]) -> SmallVec<[Constraint; 4]> {
-        moves.iter().flat_map(|m| &self.members[m.automaton].edges[m.edge].guard).copied().collect()
-    }
-
-    fn faulty(
+    /// The clock part of the invariants of a state; `Ok(false)`: the part over variables does not hold.
+    pub(crate) fn invariant(
         &self,
-        moves: SmallVec<[Move; 2]>,
-        event: Option<(EventId, Vec<Value>)>,
-        error: Box<ModelError>,
-    ) -> Candidate {
-        let guard = self.guards(&moves);
-        Candidate { event, moves, guard, resets: SmallVec::new(), target: Err(error) }
+        state: &mut [i64],
+        stack: &mut Vec<i64>,
+        out: &mut Vec<Constraint>,
+    ) -> Result<bool, ModelError> {
+        out.clear();
+        for m in 0..self.members.len() {
+            let spot = self.place(state, m);
+            out.extend_from_slice(&spot.invariant.fixed);
+            if spot.invariant.moving.is_empty() && spot.holds.is_none() {
+                continue;
+            }
+            let mut env = Env::new(&self.library, state, stack);
+            let held = match &spot.holds {
+                Some(holds) => holds.eval(&mut env).map(|n| n != 0),
+                None => Ok(true),
+            };
+            let mut evaluated = Vec::new();
+            let moving = held.and_then(|held| {
+                for c in &spot.invariant.moving {
+                    let n = c.time.eval(&mut env)?;
+                    crate::network::constraints(c.i, c.j, c.op, n, &mut |c| evaluated.push(c));
+                }
+                Ok(held)
+            });
+            match moving {
+                Ok(true) => out.append(&mut evaluated),
+                Ok(false) => return Ok(false),
+                Err(fault) => return Err(self.invariant_fault(m, state[m] as usize, fault)),
+            }
+        }
+        Ok(true)
     }
 
-    /// The moves' locations and updates, the sender's first.
-    fn update(&self, state: &mut [i64], moves: &[Move]) -> Result<(), Box<ModelError>> {
-        for m in moves {
-            let edge = self.members[m.automaton].edges[m.edge].edge;
-            state[m.automaton] = i64::from(edge.to.0);
-            for u in &edge.updates {
-                let Update::Assign { place, value } = u else { continue };
-                let at = self.own_slot(m.automaton, usize::from(place.slot));
-                let value = self.eval(state, m, value).and_then(|v| stored(self.slots[at], v));
-                let n = value.map_err(|e| self.evaluation(m, e))?;
-                let var = self.slots[at];
-                if n < var.lo || n > var.hi {
-                    return Err(Box::new(range_fault(self.edge_names(m), var, n)));
+    fn invariant_fault(&self, member: usize, location: usize, fault: Fault) -> ModelError {
+        let a = self.members[member].automaton;
+        let error = match fault {
+            Fault::Eval(error) => error,
+            Fault::Range { value, .. } => EvalError::Range(value),
+            Fault::Argument { .. } | Fault::Negative { .. } => EvalError::Type,
+        };
+        let location = a.locations[location].name.clone();
+        ModelError::Invariant { automaton: a.name.clone(), location, error }
+    }
+
+    /// Whether time may pass: no location is urgent or committed, and nothing is possible over an urgent channel.
+    pub(crate) fn may_delay(&self, state: &mut [i64], scratch: &mut Scratch) -> bool {
+        (0..self.members.len()).all(|m| !compile::stops_time(self.place(state, m).kind))
+            && !self.hurries(state, scratch)
+    }
+
+    /// Whether a transition over an urgent channel is possible, as far as variables tell.
+    fn hurries(&self, state: &mut [i64], scratch: &mut Scratch) -> bool {
+        let mut hurry = |_: Found| ControlFlow::Break(());
+        let any_joint = self.joints.iter().any(|j| j.urgent);
+        let offers = (0..self.members.len()).any(|m| !self.place(state, m).urgent.is_empty());
+        if !any_joint && !offers {
+            return false;
+        }
+        // A guard of a broadcast's receiver does not matter, nor does a fault: it is met when the transition is.
+        let mut e =
+            Enumeration { model: self, state, committed: false, may: &Always, found: &mut hurry, s: scratch };
+        for m in 0..self.members.len() {
+            for &edge in &self.place(e.state, m).urgent {
+                if e.active(m, usize::from(edge)).is_break() {
+                    return true;
                 }
-                state[self.slot_at(at)] = n;
             }
+        }
+        (0..self.joints.len()).any(|j| self.joints[j].urgent && e.joint(j).is_break())
+    }
+
+    /// A part of a transition as values.
+    pub(crate) fn moved(&self, take: &Take) -> Move {
+        let arrow = &self.members[usize::from(take.member)].edges[usize::from(take.edge)];
+        let constants = &self.library.constants;
+        let values = arrow.binders.iter().zip(&take.binders);
+        let binders = values.map(|(ty, &n)| ty.value(n, constants).unwrap_or(Value::Int(n))).collect();
+        Move { automaton: usize::from(take.member), edge: usize::from(take.edge), binders }
+    }
+}
+
+impl<M: May, F: FnMut(Found) -> Flow> Enumeration<'_, '_, M, F> {
+    fn arrow(&self, member: usize, edge: usize) -> &'_ Arrow<'_> {
+        &self.model.members[member].edges[edge]
+    }
+
+    /// Whether the edge's clocks allow it; its constraints are added to the guard.
+    fn clocks(&mut self, member: usize, edge: usize, binders: &[i64]) -> Result<bool, Fault> {
+        let model = self.model;
+        let arrow = &model.members[member].edges[edge];
+        let before = self.s.guard.len();
+        if arrow.guard.moving.is_empty() {
+            self.s.guard.extend_from_slice(&arrow.guard.fixed);
+        } else {
+            self.s.stack.clear();
+            self.s.stack.extend_from_slice(binders);
+            let mut env = Env::new(&model.library, self.state, &mut self.s.stack);
+            arrow.guard.eval(&mut env, &mut self.s.guard)?;
+        }
+        Ok(self.s.guard[before..].iter().all(|&c| self.may.may(c)))
+    }
+
+    /// Whether the edge's guard over variables holds.
+    fn data(&mut self, member: usize, edge: usize, binders: &[i64]) -> Result<bool, Fault> {
+        let model = self.model;
+        let Some(data) = &model.members[member].edges[edge].data else { return Ok(true) };
+        self.s.stack.clear();
+        self.s.stack.extend_from_slice(binders);
+        Ok(data.eval(&mut Env::new(&model.library, self.state, &mut self.s.stack))? != 0)
+    }
+
+    fn fault(&mut self, member: usize, edge: usize, fault: Fault) -> Flow {
+        let guard = std::mem::take(&mut self.s.guard);
+        let flow =
+            (self.found)(Found::Fault { member: member as u16, edge: edge as u16, fault, guard: &guard });
+        self.s.guard = guard;
+        flow
+    }
+
+    fn fire(&mut self, medium: Option<Medium>) -> Flow {
+        let state = &*self.state;
+        let takes = &self.s.parts;
+        let model = self.model;
+        if self.committed && !takes.iter().any(|t| model.is_committed(state, usize::from(t.member))) {
+            return ControlFlow::Continue(());
+        }
+        let (parts, args, guard) = (
+            std::mem::take(&mut self.s.parts),
+            std::mem::take(&mut self.s.args),
+            std::mem::take(&mut self.s.guard),
+        );
+        let flow = (self.found)(Found::Firing(Firing { parts: &parts, medium, args: &args, guard: &guard }));
+        (self.s.parts, self.s.args, self.s.guard) = (parts, args, guard);
+        flow
+    }
+
+    /// Whether a committed location forbids all that the edge begins.
+    fn forbidden(&self, member: usize, edge: usize) -> bool {
+        if !self.committed || self.model.is_committed(self.state, member) {
+            return false;
+        }
+        match &self.arrow(member, edge).sync {
+            Part::Internal | Part::In(_) | Part::Join { .. } => true,
+            Part::Out(signal) => !signal.partners.iter().any(|p| {
+                let at = self.state[usize::from(p.member)] as usize;
+                self.model.is_committed(self.state, usize::from(p.member)) && !p.edges[at].is_empty()
+            }),
+        }
+    }
+
+    fn active(&mut self, member: usize, edge: usize) -> Flow {
+        if self.forbidden(member, edge) {
+            return ControlFlow::Continue(());
+        }
+        let model = self.model;
+        let arrow = &model.members[member].edges[edge];
+        let mut binders = SmallVec::new();
+        let mut more = first(&arrow.selects, &mut binders);
+        while more {
+            self.begin(member, edge, &binders)?;
+            more = next(&arrow.selects, &mut binders);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn begin(&mut self, member: usize, edge: usize, binders: &SmallVec<[i64; 4]>) -> Flow {
+        let model = self.model;
+        self.s.guard.clear();
+        match self.clocks(member, edge, binders) {
+            Ok(true) => {}
+            Ok(false) => return ControlFlow::Continue(()),
+            Err(fault) => return self.fault(member, edge, fault),
+        }
+        match self.data(member, edge, binders) {
+            Ok(true) => {}
+            Ok(false) => return ControlFlow::Continue(()),
+            Err(fault) => return self.fault(member, edge, fault),
+        }
+        self.s.parts.clear();
+        self.s.args.clear();
+        self.s.parts.push(Take { member: member as u16, edge: edge as u16, binders: binders.clone() });
+        match &model.members[member].edges[edge].sync {
+            Part::Internal => self.fire(None),
+            Part::Out(signal) => {
+                if let Err(fault) = self.arguments(signal, binders) {
+                    return self.fault(member, edge, fault);
+                }
+                if signal.broadcast { self.broadcast(signal) } else { self.hand_shake(member, signal) }
+            }
+            // INVARIANT: `active` has no such edges.
+            Part::In(_) | Part::Join { .. } => ControlFlow::Continue(()),
+        }
+    }
+
+    fn arguments(&mut self, signal: &Signal, binders: &[i64]) -> Result<(), Fault> {
+        let model = self.model;
+        for (i, arg) in signal.args.iter().enumerate() {
+            self.s.stack.clear();
+            self.s.stack.extend_from_slice(binders);
+            let mut env = Env::new(&model.library, self.state, &mut self.s.stack);
+            let n = arg.code.eval(&mut env)?;
+            if n < arg.range.0 || n > arg.range.1 {
+                let value = arg.code.value_of(&mut env, n);
+                return Err(Fault::Argument { of: signal.medium, parameter: i as u16, value });
+            }
+            self.s.args.push(n);
         }
         Ok(())
     }
 
-    fn arguments(
-        &self,
-        state: &[i64],
-        step: &Move,
-        event: EventId,
-        args: &[Expr],
-    ) -> Result<Vec<Value>, Box<ModelError>> {
-        let values: Result<Vec<Value>, EvalError> = args.iter().map(|a| self.eval(state, step, a)).collect();
-        let values = values.map_err(|e| self.evaluation(step, e))?;
-        let declared = self.program.event(event);
-        match argument_fault(declared, &values) {
-            None => Ok(values),
-            Some((parameter, value)) => {
-                Err(Box::new(bad_argument(self.edge_names(step), &declared.name, parameter, value)))
+    fn hand_shake(&mut self, member: usize, signal: &Signal) -> Flow {
+        let model = self.model;
+        let own = !self.committed || model.is_committed(self.state, member);
+        for partner in &signal.partners {
+            let p = usize::from(partner.member);
+            let edges = &partner.edges[self.state[p] as usize];
+            if edges.is_empty() || !(own || model.is_committed(self.state, p)) {
+                continue;
             }
+            for &edge in edges {
+                self.meet(p, usize::from(edge), signal.medium)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn meet(&mut self, member: usize, edge: usize, medium: Medium) -> Flow {
+        let model = self.model;
+        let arrow = &model.members[member].edges[edge];
+        let Part::In(pattern) = &arrow.sync else { return ControlFlow::Continue(()) };
+        if !pattern.matches(&self.s.args) {
+            return ControlFlow::Continue(());
+        }
+        let guards = self.s.guard.len();
+        let mut chosen = SmallVec::new();
+        let mut more = first(&arrow.selects, &mut chosen);
+        while more {
+            let mut binders = chosen.clone();
+            binders.extend(pattern.binds.iter().map(|&i| self.s.args[usize::from(i)]));
+            let open = match self.clocks(member, edge, &binders) {
+                Ok(true) => self.data(member, edge, &binders),
+                other => other,
+            };
+            match open {
+                Ok(true) => {
+                    self.s.parts.push(Take { member: member as u16, edge: edge as u16, binders });
+                    self.fire(Some(medium))?;
+                    self.s.parts.pop();
+                }
+                Ok(false) => {}
+                Err(fault) => self.fault(member, edge, fault)?,
+            }
+            self.s.guard.truncate(guards);
+            more = next(&arrow.selects, &mut chosen);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn broadcast(&mut self, signal: &Signal) -> Flow {
+        let mut options: Vec<Vec<Response>> = Vec::new();
+        for partner in &signal.partners {
+            let p = usize::from(partner.member);
+            let edges = &partner.edges[self.state[p] as usize];
+            let responses = self.responses(p, edges, true);
+            if !responses.is_empty() {
+                options.push(responses);
+            }
+        }
+        self.combine(&options, Some(signal.medium))
+    }
+
+    /// What an automaton may do by one of these edges; nothing: it has no open edge.
+    fn responses(&mut self, member: usize, edges: &[u16], optional: bool) -> Vec<Response> {
+        let model = self.model;
+        let mut out = Vec::new();
+        let mut absent: Vec<SmallVec<[Constraint; 4]>> = vec![SmallVec::new()];
+        for &edge in edges {
+            let arrow = &model.members[member].edges[usize::from(edge)];
+            let binds: &[u16] = match &arrow.sync {
+                Part::In(pattern) if pattern.matches(&self.s.args) => &pattern.binds,
+                Part::In(_) => continue,
+                Part::Internal | Part::Out(_) | Part::Join { .. } => &[],
+            };
+            let guards = self.s.guard.len();
+            let mut chosen = SmallVec::new();
+            let mut more = first(&arrow.selects, &mut chosen);
+            while more {
+                let mut binders = chosen.clone();
+                binders.extend(binds.iter().map(|&i| self.s.args[usize::from(i)]));
+                let open = self.clocks(member, usize::from(edge), &binders);
+                let own: SmallVec<[Constraint; 2]> = SmallVec::from_slice(&self.s.guard[guards..]);
+                self.s.guard.truncate(guards);
+                let open = match open {
+                    Ok(true) => self.data(member, usize::from(edge), &binders),
+                    other => other,
+                };
+                let take = Take { member: member as u16, edge, binders };
+                if open != Ok(false) {
+                    // To stay away, one of the constraints of each enabled edge must fail.
+                    absent = absent.iter().flat_map(|cs| own.iter().map(|c| extended(cs, *c))).collect();
+                    absent.dedup();
+                    absent.retain(|cs| cs.iter().all(|&c| self.may.may(c)));
+                }
+                match open {
+                    Ok(true) => out.push(Response::Take(take, own)),
+                    Ok(false) => {}
+                    Err(fault) => out.push(Response::Fault(take, own, fault)),
+                }
+                more = next(&arrow.selects, &mut chosen);
+            }
+        }
+        if optional && !out.is_empty() {
+            out.extend(absent.into_iter().map(Response::Absent));
+        }
+        out
+    }
+
+    /// All combinations of what the partners may do, the last partner fastest.
+    fn combine(&mut self, options: &[Vec<Response>], medium: Option<Medium>) -> Flow {
+        let (parts, guards) = (self.s.parts.len(), self.s.guard.len());
+        let mut at: SmallVec<[usize; 8]> = SmallVec::from_elem(0, options.len());
+        loop {
+            let mut fault = None;
+            for (responses, &i) in options.iter().zip(&at) {
+                match &responses[i] {
+                    Response::Take(take, cs) => {
+                        self.s.parts.push(take.clone());
+                        self.s.guard.extend_from_slice(cs);
+                    }
+                    Response::Absent(cs) => self.s.guard.extend_from_slice(cs),
+                    Response::Fault(take, cs, f) => {
+                        self.s.guard.extend_from_slice(cs);
+                        fault = Some((take.member, take.edge, *f));
+                    }
+                }
+            }
+            match fault {
+                Some((member, edge, f)) => self.fault(usize::from(member), usize::from(edge), f)?,
+                None if self.s.parts.is_empty() => {}
+                None => self.fire(medium)?,
+            }
+            self.s.parts.truncate(parts);
+            self.s.guard.truncate(guards);
+            let Some(next) = (0..at.len()).rev().find(|&i| at[i] + 1 < options[i].len()) else {
+                return ControlFlow::Continue(());
+            };
+            at[next] += 1;
+            at[next + 1..].fill(0);
         }
     }
 
-    fn guard(&self, state: &[i64], step: &Move) -> Result<bool, Box<ModelError>> {
-        let Some(guard) = &self.members[step.automaton].edges[step.edge].edge.guard else { return Ok(true) };
-        let value = self.eval(state, step, guard).and_then(|v| v.as_bool().ok_or(EvalError::Type));
-        value.map_err(|e| self.evaluation(step, e))
-    }
-
-    fn eval(&self, state: &[i64], step: &Move, e: &Expr) -> Result<Value, EvalError> {
-        let known = self.shared + self.members[step.automaton].automaton.vars.len();
-        e.eval(&|i| {
-            let i = usize::from(i);
-            if i < known {
-                self.slot_value(state, self.own_slot(step.automaton, i))
-            } else {
-                step.binders.get(i - known).copied()
+    fn joint(&mut self, joint: usize) -> Flow {
+        let model = self.model;
+        let joint = &model.joints[joint];
+        let mut options: Vec<Vec<Response>> = Vec::new();
+        self.s.guard.clear();
+        self.s.parts.clear();
+        self.s.args.clear();
+        for &(member, optional) in &joint.parties {
+            let m = usize::from(member);
+            let is = |e: &u16| {
+                matches!(&model.members[m].edges[usize::from(*e)].sync,
+                    Part::Join { channel, .. } if *channel == joint.channel)
+            };
+            let spot = model.place(self.state, m);
+            let edges: SmallVec<[u16; 4]> = spot.joining.iter().copied().filter(is).collect();
+            let responses = if edges.is_empty() { Vec::new() } else { self.responses(m, &edges, optional) };
+            if !responses.is_empty() {
+                options.push(responses);
+            } else if !optional {
+                return ControlFlow::Continue(());
             }
-        })
-    }
-
-    /// The network's slot of what an automaton's expressions call `i`.
-    fn own_slot(&self, member: usize, i: usize) -> usize {
-        if i < self.shared { i } else { self.members[member].base + i - self.shared }
-    }
-
-    fn evaluation(&self, step: &Move, error: EvalError) -> Box<ModelError> {
-        Box::new(ModelError::Evaluation { edge: self.edge_names(step), error })
-    }
-
-    fn edge_names(&self, step: &Move) -> Box<EdgeName> {
-        let a = self.members[step.automaton].automaton;
-        EdgeName::of(a, &a.edges[step.edge])
+        }
+        if options.is_empty() {
+            return ControlFlow::Continue(());
+        }
+        self.combine(&options, Some(Medium::Channel(joint.channel)))
     }
 }
 
-/// The number that a variable keeps for a value.
-pub(crate) fn stored(var: &Var, value: Value) -> Result<i64, EvalError> {
-    var.number(value).ok_or(EvalError::Type)
+fn extended(cs: &SmallVec<[Constraint; 4]>, c: Constraint) -> SmallVec<[Constraint; 4]> {
+    let mut more = cs.clone();
+    let negated = c.negated();
+    if !more.contains(&negated) {
+        more.push(negated);
+    }
+    more
 }
 
 pub(crate) fn range_fault(edge: Box<EdgeName>, var: &Var, value: i64) -> ModelError {

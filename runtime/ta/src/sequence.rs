@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::{
     Ending, Story,
-    story::{Medium, Scene},
+    story::{Over, Scene},
 };
 
 impl Story {
@@ -71,7 +71,7 @@ impl Story {
             let Some((first, others)) = scene.parts.split_first() else { continue };
             for p in others {
                 let label = scene.over.as_deref().unwrap_or("");
-                let style = if scene.medium == Medium::HandShake { "solid" } else { "dashed" };
+                let style = if scene.medium == Over::HandShake { "solid" } else { "dashed" };
                 let ends = format!("{} -> {}", now(first.member), now(p.member));
                 let _ = writeln!(out, "  {ends} [label = {}, style = {style}];", quoted(label));
             }
@@ -106,8 +106,8 @@ fn mermaid_scene(scene: &Scene, out: &mut String) {
     if let Some(over) = &scene.over {
         // A hand-shake is one arrow that both wait for; what is broadcast does not wait.
         let arrow = match scene.medium {
-            Medium::HandShake | Medium::Joint | Medium::Internal => "->>",
-            Medium::Event | Medium::Broadcast => "-)",
+            Over::HandShake | Over::Joint | Over::Internal => "->>",
+            Over::Event | Over::Broadcast => "-)",
         };
         for p in others {
             let _ = writeln!(out, "  a{from}{arrow}a{}: {}", p.member, plain(over));

@@ -33,7 +33,7 @@ pub struct Scene {
     /// The event or channel, with its arguments.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<String>,
-    pub medium: Medium,
+    pub medium: Over,
     /// Who takes part, the one that starts it first.
     pub parts: Vec<Part>,
     /// What changed, as `q: 0 -> 1`.
@@ -46,7 +46,7 @@ pub struct Scene {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Medium {
+pub enum Over {
     Internal,
     Event,
     HandShake,
@@ -152,13 +152,13 @@ impl<'a> Teller<'a> {
         let (over, medium) = match (&step.event, &step.channel) {
             (Some((event, args)), _) => {
                 let event = self.program.events.get(usize::from(event.0));
-                (Some(applied(event.map_or("?", |e| &e.name), args)), Medium::Event)
+                (Some(applied(event.map_or("?", |e| &e.name), args)), Over::Event)
             }
             (None, Some((channel, args))) => {
                 let (name, medium) = self.channel(*channel);
                 (Some(applied(name, args)), medium)
             }
-            (None, None) => (None, Medium::Internal),
+            (None, None) => (None, Over::Internal),
         };
         let variables = step.variables.iter().map(|(slot, from, to)| {
             format!("{}: {from} -> {to}", self.slots.get(*slot).map_or("?", String::as_str))
@@ -174,14 +174,14 @@ impl<'a> Teller<'a> {
         }
     }
 
-    fn channel(&self, id: ChannelId) -> (&'a str, Medium) {
+    fn channel(&self, id: ChannelId) -> (&'a str, Over) {
         match self.program.channels.get(usize::from(id.0)) {
-            None => ("?", Medium::HandShake),
+            None => ("?", Over::HandShake),
             Some(c) => {
                 let medium = match c.kind {
-                    ChannelKind::HandShake => Medium::HandShake,
-                    ChannelKind::Broadcast => Medium::Broadcast,
-                    ChannelKind::Joint(_) => Medium::Joint,
+                    ChannelKind::HandShake => Over::HandShake,
+                    ChannelKind::Broadcast => Over::Broadcast,
+                    ChannelKind::Joint(_) => Over::Joint,
                 };
                 (&c.name, medium)
             }

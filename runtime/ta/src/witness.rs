@@ -2,6 +2,8 @@
 //!
 //! A path of transitions gets its times from a [schedule](crate::schedule): the earliest, the latest or sampled ones.
 
+use std::rc::Rc;
+
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
     ta::{ChannelId, LocationId, Network},
@@ -11,12 +13,14 @@ use serde::Serialize;
 
 use crate::{
     Error, Goal, GoalKind, StateFormula,
+    code::Medium,
+    compile::values,
     dbm::Dbm,
-    graph::{Action, Detail, Graph, Label, Stay},
+    expand::Taken,
+    graph::{Detail, Graph, Stay},
     network::{Constraint, Model},
     replay::{self, Final},
     schedule::{Schedule, Times, Timing},
-    search::goal_holds,
     semantics::Move,
 };
 
@@ -100,8 +104,8 @@ impl Witness {
 /// A part of a path: a transition, or time that passes into something.
 #[derive(Clone, Debug)]
 pub(crate) enum Stop {
-    /// The candidate of this number is taken where `before` holds, and `after` does right after it.
-    Take { choice: u32, before: Vec<Constraint>, after: Vec<Constraint> },
+    /// A transition is taken where `before` holds, and `after` does right after it.
+    Take { taken: Rc<Taken>, before: Vec<Constraint>, after: Vec<Constraint> },
     /// Some time passes, perhaps none; then these hold.
     Wait(Vec<Constraint>),
 }
@@ -116,27 +120,46 @@ pub(crate) fn bounds_of(zone: &Dbm) -> Vec<Constraint> {
 }
 
 /// The stops of transitions alone.
-pub(crate) fn takes(choices: &[u32]) -> Vec<Stop> {
-    choices.iter().map(|&choice| Stop::Take { choice, before: Vec::new(), after: Vec::new() }).collect()
+pub(crate) fn takes(path: impl IntoIterator<Item = Rc<Taken>>) -> Vec<Stop> {
+    let stop = |taken| Stop::Take { taken, before: Vec::new(), after: Vec::new() };
+    path.into_iter().map(stop).collect()
 }
 
-/// Makes the path (given by the candidates' numbers) concrete, replays it, and looks whether it meets the goal.
+/// Makes the path concrete, replays it, and looks whether it meets the goal.
 pub(crate) fn build(
     model: &Model,
-    choices: &[u32],
+    path: Vec<Taken>,
     goal: Option<&Goal>,
     timing: Timing,
 ) -> Result<Witness, Error> {
     let graph = Graph::new(model, Detail::Tell, &[], 0)?;
-    let stops = takes(choices);
-    let Some(GoalKind::Condition(f)) = goal.map(|g| &g.what).filter(|_| goal.is_some_and(timed)) else {
-        return concrete(&graph, &stops, Ending::Reached, goal, timing);
-    };
-    reach_in_time(&graph, stops, f, goal, timing)
+    let stops = takes(path.into_iter().map(Rc::new));
+    match goal.and_then(Goal::formula) {
+        Some(f) if f.is_timed() => reach_in_time(&graph, stops, &f, &[], goal, timing),
+        Some(_) | None => concrete(&graph, &stops, Ending::Reached, goal, timing),
+    }
 }
 
-fn timed(goal: &Goal) -> bool {
-    matches!(&goal.what, GoalKind::Condition(f) if f.is_timed())
+/// The path, and then the time that the formula needs, with what must hold then besides.
+pub(crate) fn reach_formula(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    besides: &[Constraint],
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, besides, None, timing)
+}
+
+/// The path, and then the time that a goal's formula needs.
+pub(crate) fn reach_goal(
+    graph: &Graph,
+    stops: Vec<Stop>,
+    f: &StateFormula,
+    goal: &Goal,
+    timing: Timing,
+) -> Result<Witness, Error> {
+    reach_in_time(graph, stops, f, &[], Some(goal), timing)
 }
 
 /// The path and then the time that the formula needs: the first of its zones that can be.
@@ -144,13 +167,14 @@ fn reach_in_time(
     graph: &Graph,
     stops: Vec<Stop>,
     f: &StateFormula,
+    besides: &[Constraint],
     goal: Option<&Goal>,
     timing: Timing,
 ) -> Result<Witness, Error> {
     let state = walk(graph, &stops)?.state;
     let mut all = Dbm::universe(graph.dim());
     let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
-    stay.invariant.iter().for_each(|c| {
+    stay.invariant.iter().chain(besides).for_each(|c| {
         crate::federation::keep(&mut all, *c);
     });
     let parts = f.part(&graph.here(&state), &all)?.into_zones();
@@ -234,13 +258,18 @@ fn believe(model: &Model, witness: &Witness, state: &[i64], goal: Option<&Goal>)
 }
 
 fn meets(goal: &Goal, witness: &Witness, end: &Final<'_>) -> Result<bool, Error> {
+    let settled = end.settled || !goal.settled;
     Ok(match &goal.what {
-        GoalKind::Edge { automaton, edge } => witness
+        GoalKind::Edge { automaton, edge }
+        | GoalKind::Pair { automaton, second: edge, .. }
+        | GoalKind::Use { user: (automaton, edge), .. } => witness
             .steps
             .last()
             .is_some_and(|s| s.moves.iter().any(|m| m.automaton == *automaton && m.edge == *edge)),
-        GoalKind::Condition(f) => (end.settled || !goal.settled) && end.meets(f)?,
-        GoalKind::Location { .. } => (end.settled || !goal.settled) && goal_holds(goal, end) == Ok(true),
+        GoalKind::Location { .. } | GoalKind::Condition(_) | GoalKind::Formula(_) => match goal.formula() {
+            Some(f) => settled && end.meets(&f)?,
+            None => false,
+        },
     })
 }
 
@@ -264,25 +293,23 @@ fn walk(graph: &Graph, stops: &[Stop]) -> Result<Walk, Error> {
         let now = w.schedule.next(stay.waits);
         // An invariant is convex: it holds all the while if it holds at both ends.
         stay.invariant.iter().for_each(|c| w.schedule.require(*c));
-        let (choice, after) = match stop {
+        let (taken, after) = match stop {
             Stop::Wait(there) => {
                 there.iter().for_each(|c| w.schedule.require(*c));
                 continue;
             }
-            Stop::Take { choice, before, after } => {
+            Stop::Take { taken, before, after } => {
                 before.iter().for_each(|c| w.schedule.require(*c));
-                (*choice, after)
+                (taken, after)
             }
         };
-        let action = graph.actions(&w.state).into_iter().nth(choice as usize);
-        let action = action.ok_or_else(|| internal("a path takes a transition that is not there"))?;
-        let target =
-            action.target.clone().map_err(|_| internal("a path takes a transition that is a fault"))?;
-        action.guard.iter().for_each(|c| w.schedule.require(*c));
-        action.sets.iter().for_each(|s| w.schedule.set(*s));
+        let target = graph.target(&w.state, taken);
+        let target = target.map_err(|_| internal("a path takes a transition that is a fault"))?;
+        taken.guard.iter().for_each(|c| w.schedule.require(*c));
+        w.schedule.set(&taken.resets);
         stay = allowed(graph, &target)?;
         stay.invariant.iter().chain(after).for_each(|c| w.schedule.require(*c));
-        w.steps.push(step(graph.model, &w.state, &target, action));
+        w.steps.push(step(graph.model, &w.state, &target, taken));
         w.at.push(now);
         w.state = target;
     }
@@ -293,25 +320,62 @@ fn allowed(graph: &Graph, state: &[i64]) -> Result<Stay, Error> {
     graph.stay(state)?.ok_or_else(|| internal("a path leads through a forbidden state"))
 }
 
-fn step(model: &Model, before: &[i64], after: &[i64], action: Action) -> WitnessStep {
+fn step(model: &Model, before: &[i64], after: &[i64], taken: &Taken) -> WitnessStep {
     let location = |n: i64| LocationId(u16::try_from(n).unwrap_or(u16::MAX));
     let changed = |i: &usize| before[*i] != after[*i];
     let locations = (0..model.members.len()).filter(changed);
     let slots = (0..model.slots.len()).filter(|&s| changed(&model.slot_at(s)));
     let value = |state: &[i64], slot: usize| model.slot_value(state, slot);
-    let (event, channel) = match action.label {
-        Label::Internal => (None, None),
-        Label::Event(e, args) => (Some((e, args)), None),
-        Label::Channel(c, args) => (None, Some((c, args))),
+    let args = |medium| values(model, medium, &taken.args);
+    let (event, channel) = match taken.medium {
+        None => (None, None),
+        Some(medium @ Medium::Event(e)) => (Some((e, args(medium))), None),
+        Some(medium @ Medium::Channel(c)) => (None, Some((c, args(medium)))),
     };
     WitnessStep {
         time: 0,
         event,
         channel,
-        moves: action.moves.to_vec(),
+        moves: taken.parts.iter().map(|t| model.moved(t)).collect(),
         locations: locations.map(|m| (m, location(before[m]), location(after[m]))).collect(),
         variables: slots
             .filter_map(|s| value(before, s).zip(value(after, s)).map(|(a, b)| (s, a, b)))
             .collect(),
     }
+}
+
+/// The same run with other delays: its path is found again by the moves and, among transitions of the same moves, by the
+/// clocks.
+///
+/// # Errors
+/// If the run is not one of the model.
+pub fn retimed(model: &Model, run: &Witness, goal: &Goal, timing: Timing) -> Result<Witness, Error> {
+    let graph = Graph::new(model, Detail::Tell, &[], 0)?;
+    let mut path: Vec<Taken> = Vec::new();
+    let mut state = graph.initial();
+    // Each clock is zero at a time, in ticks.
+    let scale = i128::from(model.unit) * i128::from(run.ticks);
+    let mut zero = vec![0i128; model.dim];
+    for s in &run.steps {
+        let now = i128::from(s.time);
+        let same = |t: &Taken, s: &WitnessStep| {
+            t.parts.len() == s.moves.len() && t.parts.iter().zip(&s.moves).all(|(t, m)| model.moved(t) == *m)
+        };
+        let value = |x: u16| if x == 0 { 0 } else { now - zero[usize::from(x)] };
+        let keeps = |c: &Constraint| {
+            let (d, b) = (value(c.i) - value(c.j), i128::from(c.bound.value()) * scale);
+            c.bound.is_infinite() || d < b || (d == b && !c.bound.is_strict())
+        };
+        let found =
+            graph.actions(&state).into_iter().find(|a| same(&a.taken, s) && a.taken.guard.iter().all(keeps));
+        let action = found.ok_or_else(|| internal("a run takes a transition that is not there"))?;
+        let before = zero.clone();
+        for set in &action.taken.resets {
+            let from = if set.from == 0 { now } else { before[usize::from(set.from)] };
+            zero[usize::from(set.clock)] = from - i128::from(set.by) * scale;
+        }
+        state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
+        path.push((*action.taken).clone());
+    }
+    build(model, path, Some(goal), timing)
 }

@@ -1,49 +1,307 @@
-//! The timed half of the transition relation: a zone before and after a transition, and the delay that follows.
+//! The symbolic transition relation: zones before and after transitions, and the delays that follow.
+//!
+//! A zone has only the clocks that matter in its discrete state ([`Frame`]). A transition takes them over, sets those that it
+//! resets, and forgets the rest, all in one step.
+
+use std::ops::ControlFlow;
 
 use crate::{
-    dbm::Dbm,
+    ModelError,
+    dbm::{Bound, Dbm, Number},
+    extrapolation::{Abstraction, Frame, extra_lu},
     network::{Constraint, Model},
-    semantics::Candidate,
+    semantics::{Below, Effect, Firing, Found, May, Reset, Scratch},
 };
 
-fn constrain(zone: &mut Dbm, c: Constraint) -> bool {
-    zone.constrain(usize::from(c.i), usize::from(c.j), c.bound)
+/// A symbolic state after a transition.
+pub(crate) struct Successor<'a, N> {
+    /// Its number among those of the same symbolic state.
+    pub number: u32,
+    pub firing: &'a Firing<'a>,
+    pub state: &'a mut Vec<i64>,
+    pub frame: &'a Frame,
+    /// Not extrapolated.
+    pub zone: &'a mut Dbm<N>,
+    pub resets: &'a [Reset],
 }
 
-/// The initial zone, with the delay; `false`: the invariants do not hold at the start.
-pub(crate) fn initial(model: &Model, state: &[i64], zone: &mut Dbm) -> bool {
-    *zone = Dbm::zero(model.dim);
-    enter(model, state, zone)
+/// Computes symbolic successors, with memory that it uses again and again.
+pub(crate) struct Stepper<'m, 'p, N> {
+    pub model: &'m Model<'p>,
+    pub abstraction: Abstraction,
+    scratch: Scratch,
+    w: Work<N>,
 }
 
-/// Keeps the valuations in which the transition is possible; `false`: there are none.
-pub(crate) fn guard(zone: &mut Dbm, candidate: &Candidate) -> bool {
-    candidate.guard.iter().all(|&c| constrain(zone, c))
+struct Work<N> {
+    effect: Effect,
+    stack: Vec<i64>,
+    scratch: Scratch,
+    guarded: Dbm<N>,
+    zone: Dbm<N>,
+    frame: Frame,
+    invariant: Vec<Constraint>,
+    above: Vec<(usize, N)>,
+    from: Vec<(u16, i64)>,
+    beyond: Vec<bool>,
+    /// The index in the zone before the transition, by clock of the network.
+    index: Vec<u16>,
 }
 
-/// Whether a transition is possible as far as each of its constraints alone tells: quick, and wrong in one direction only.
-pub(crate) fn may_pass(zone: &Dbm, candidate: &Candidate) -> bool {
-    candidate.guard.iter().all(|c| zone.meets(usize::from(c.i), usize::from(c.j), c.bound))
+/// The clock is not in the zone.
+const GONE: u16 = u16::MAX;
+
+/// Whether single constraints meet a zone: quick, and wrong in one direction only.
+struct Meets<'a, N> {
+    zone: &'a Dbm<N>,
+    index: &'a [u16],
 }
 
-/// Resets, enters the target, and delays there; `false`: the target's invariants forbid it.
-pub(crate) fn advance(model: &Model, resets: &[u16], target: &[i64], zone: &mut Dbm) -> bool {
-    for &x in resets {
-        zone.reset(usize::from(x));
+impl<N: Number> May for Meets<'_, N> {
+    fn may(&self, c: Constraint) -> bool {
+        let (i, j) = (self.index[usize::from(c.i)], self.index[usize::from(c.j)]);
+        i == GONE || j == GONE || self.zone.meets(usize::from(i), usize::from(j), c.bound)
     }
-    enter(model, target, zone)
 }
 
-fn enter(model: &Model, state: &[i64], zone: &mut Dbm) -> bool {
-    if !model.invariant(state).all(|c| constrain(zone, c)) {
-        return false;
+fn constrain<N: Number>(zone: &mut Dbm<N>, index: &[u16], c: Constraint) -> bool {
+    let (i, j) = (index[usize::from(c.i)], index[usize::from(c.j)]);
+    // INVARIANT: constraints speak of clocks that matter where they are looked at.
+    i == GONE || j == GONE || zone.constrain(usize::from(i), usize::from(j), c.bound)
+}
+
+fn set_index(index: &mut Vec<u16>, frame: &Frame, dim: usize) {
+    index.clear();
+    index.resize(dim, GONE);
+    for (i, &c) in frame.clocks.iter().enumerate() {
+        index[usize::from(c)] = i as u16;
     }
-    if model.may_delay(state) {
-        zone.up();
-        // Not empty: it has what was there before the delay.
-        model.invariant(state).for_each(|c| {
-            constrain(zone, c);
-        });
+}
+
+impl<'m, 'p, N: Number> Stepper<'m, 'p, N> {
+    pub(crate) fn new(model: &'m Model<'p>, abstraction: Abstraction) -> Self {
+        let w = Work {
+            effect: Effect::default(),
+            stack: Vec::new(),
+            scratch: Scratch::default(),
+            guarded: Dbm::zero(1),
+            zone: Dbm::zero(1),
+            frame: Frame::default(),
+            invariant: Vec::new(),
+            above: Vec::new(),
+            from: Vec::new(),
+            beyond: Vec::new(),
+            index: Vec::new(),
+        };
+        Self { model, abstraction, scratch: Scratch::default(), w }
     }
-    true
+
+    /// The symbolic state at the start, not extrapolated.
+    ///
+    /// # Errors
+    /// `Initial` if the invariants do not hold.
+    pub(crate) fn initial(&mut self) -> Result<(Vec<i64>, Frame, Dbm<N>), ModelError> {
+        let mut state = self.model.initial();
+        let mut frame = Frame::default();
+        self.model.extrapolation.frame(&state, self.abstraction, &mut frame);
+        self.w.effect.target.clone_from(&state);
+        self.w.zone = Dbm::zero(frame.dim());
+        set_index(&mut self.w.index, &frame, self.model.dim);
+        self.w.frame.clocks.clone_from(&frame.clocks);
+        self.w.frame.bounds.clone_from(&frame.bounds);
+        // Clocks that do not matter are zero, too.
+        let zero = |c: &Constraint| c.bound >= Bound::LE_ZERO;
+        if !self.model.invariant(&mut state, &mut self.w.stack, &mut self.w.invariant)?
+            || !self.w.invariant.iter().all(zero)
+            || !self.w.enter(self.model)?
+        {
+            return Err(ModelError::Initial);
+        }
+        Ok((state, frame, self.w.zone.clone()))
+    }
+
+    /// The clocks that matter in a state, with their bounds.
+    pub(crate) fn frame(&self, state: &[i64], out: &mut Frame) {
+        self.model.extrapolation.frame(state, self.abstraction, out);
+    }
+
+    /// Extrapolates a zone of a discrete state with this frame. Not with constraints on differences of clocks: see
+    /// [`pieces`](Self::pieces).
+    pub(crate) fn extrapolate(&mut self, frame: &Frame, zone: &mut Dbm<N>) {
+        extra_lu(frame, zone, &mut self.w.beyond);
+    }
+
+    /// Extrapolates a zone into one piece or, with constraints on differences of clocks, several.
+    pub(crate) fn pieces(&mut self, frame: &Frame, zone: &mut Dbm<N>, out: &mut dyn FnMut(&Dbm<N>)) {
+        match &self.model.extrapolation.diagonals {
+            None => {
+                extra_lu(frame, zone, &mut self.w.beyond);
+                out(zone);
+            }
+            Some(d) => d.apply(zone, out),
+        }
+    }
+
+    /// Calls `f` with each symbolic successor, in order, until it breaks off.
+    ///
+    /// # Errors
+    /// A fault of the model that the zone meets.
+    pub(crate) fn each<F>(
+        &mut self,
+        state: &mut [i64],
+        frame: &Frame,
+        zone: &Dbm<N>,
+        mut f: F,
+    ) -> Result<(), ModelError>
+    where
+        F: FnMut(Successor<N>) -> ControlFlow<()>,
+    {
+        let (model, abstraction) = (self.model, self.abstraction);
+        let mut index = std::mem::take(&mut self.w.index);
+        set_index(&mut index, frame, model.dim);
+        // The enumeration holds the state itself.
+        let before = state.to_vec();
+        let (w, scratch) = (&mut self.w, &mut self.scratch);
+        let mut number = 0;
+        let mut fault = None;
+        let mut found = |found: Found| -> ControlFlow<()> {
+            match w.found(model, abstraction, &before, zone, &index, &found) {
+                Ok(false) => ControlFlow::Continue(()),
+                Err(error) => {
+                    fault = Some(error);
+                    ControlFlow::Break(())
+                }
+                Ok(true) => {
+                    let Found::Firing(firing) = &found else { return ControlFlow::Continue(()) };
+                    number += 1;
+                    f(Successor {
+                        number: number - 1,
+                        firing,
+                        state: &mut w.effect.target,
+                        frame: &w.frame,
+                        zone: &mut w.zone,
+                        resets: &w.effect.resets,
+                    })
+                }
+            }
+        };
+        let _ = model.enumerate(state, &Meets { zone, index: &index }, scratch, &mut found);
+        self.w.index = index;
+        fault.map_or(Ok(()), Err)
+    }
+}
+
+impl<N: Number> Work<N> {
+    /// Whether there is a successor, which is then in `effect`, `frame` and `zone`.
+    fn found(
+        &mut self,
+        model: &Model,
+        abstraction: Abstraction,
+        state: &[i64],
+        zone: &Dbm<N>,
+        index: &[u16],
+        found: &Found,
+    ) -> Result<bool, ModelError> {
+        let (Found::Firing(Firing { guard, .. }) | Found::Fault { guard, .. }) = found;
+        self.guarded.copy_from(zone);
+        if !guard.iter().all(|&c| constrain(&mut self.guarded, index, c)) {
+            return Ok(false);
+        }
+        let firing = match found {
+            Found::Firing(firing) => firing,
+            Found::Fault { member, edge, fault, .. } => {
+                return Err(model.fault(usize::from(*member), usize::from(*edge), *fault));
+            }
+        };
+        let effect = model.effect(state, firing, &mut self.stack, &mut self.effect);
+        let named = |(m, e, f): (u16, u16, _)| model.fault(usize::from(m), usize::from(e), f);
+        if !effect.map_err(named)? {
+            return Ok(false);
+        }
+        for Below { reset, member, edge } in &self.effect.below {
+            let x = index[usize::from(reset.from)];
+            if x == GONE || self.guarded.meets(usize::from(x), 0, Bound::lt(-reset.by)) {
+                let fault = crate::code::Fault::Negative { clock: reset.clock };
+                return Err(named((*member, *edge, fault)));
+            }
+        }
+        model.extrapolation.frame(&self.effect.target, abstraction, &mut self.frame);
+        self.transfer(index);
+        if !model.invariant(&mut self.effect.target, &mut self.stack, &mut self.invariant)? {
+            return Ok(false);
+        }
+        self.enter(model)
+    }
+
+    /// The zone of the clocks that matter after the transition.
+    fn transfer(&mut self, index: &[u16]) {
+        self.from.clear();
+        let mut lost = false;
+        for &clock in &self.frame.clocks {
+            let reset = self.effect.resets.iter().find(|r| r.clock == clock);
+            let (x, by) = reset.map_or((clock, 0), |r| (r.from, r.by));
+            lost |= index[usize::from(x)] == GONE;
+            self.from.push((index[usize::from(x)], by));
+        }
+        if lost {
+            return self.transfer_some();
+        }
+        self.zone.gather(&self.guarded, &self.from);
+    }
+
+    /// As [`transfer`](Self::transfer), where nothing is known of some of the clocks.
+    fn transfer_some(&mut self) {
+        let unknown: Vec<usize> = (0..self.from.len()).filter(|&i| self.from[i].0 == GONE).collect();
+        for &i in &unknown {
+            self.from[i] = (0, 0);
+        }
+        self.zone.gather(&self.guarded, &self.from);
+        for &x in &unknown {
+            for k in 0..self.zone.dim() {
+                let above = self.zone.entry(k, 0);
+                self.zone.set(x, k, N::INFINITY);
+                self.zone.set(k, x, above);
+            }
+            self.zone.set(x, x, N::LE_ZERO);
+        }
+    }
+
+    /// Enters the target and delays there; `false`: its invariants forbid it.
+    fn enter(&mut self, model: &Model) -> Result<bool, ModelError> {
+        self.above.clear();
+        let mut others = false;
+        for &c in &self.invariant {
+            if c.j == 0
+                && let Some(x) = self.frame.index(c.i)
+            {
+                self.above.push((x, N::of(c.bound)));
+            } else {
+                others = true;
+            }
+        }
+        if !self.zone.constrain_above(&self.above) {
+            return Ok(false);
+        }
+        if others && !self.rest() {
+            return Ok(false);
+        }
+        if model.may_delay(&mut self.effect.target, &mut self.scratch) {
+            self.zone.up();
+            // Not empty: it has what was there before the delay.
+            self.zone.constrain_above(&self.above);
+            if others {
+                self.rest();
+            }
+        }
+        Ok(true)
+    }
+
+    /// The invariants that are not upper bounds of single clocks.
+    fn rest(&mut self) -> bool {
+        let (frame, zone) = (&self.frame, &mut self.zone);
+        self.invariant.iter().all(|c| {
+            let (Some(i), Some(j)) = (frame.index(c.i), frame.index(c.j)) else { return true };
+            c.j == 0 || zone.constrain(i, j, c.bound)
+        })
+    }
 }

@@ -165,7 +165,7 @@ fn what_the_budget_leaves_is_open() {
     let goals = [yes(1), yes(3)];
     for (budget, why) in [
         (Budget { states: 3, ..Budget::default() }, Exhausted::States),
-        (Budget { bytes: 300, ..Budget::default() }, Exhausted::Memory),
+        (Budget { bytes: 150, ..Budget::default() }, Exhausted::Memory),
     ] {
         let report = check(&p, &p.networks[0], &goals, &[], &[], budget).unwrap();
         assert_eq!(report.goals[1], Outcome::Open(why));

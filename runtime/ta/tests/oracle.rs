@@ -390,7 +390,9 @@ fn compare(p: &Program, most: i64) -> Result<(), TestCaseError> {
                 oracle.locations.contains(&(*automaton, location.0))
             }
             GoalKind::Edge { automaton, edge } => oracle.edges.contains(&(*automaton, *edge)),
-            GoalKind::Condition(_) => unreachable!(),
+            GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Formula(_) | GoalKind::Condition(_) => {
+                unreachable!()
+            }
         };
         match outcome {
             Outcome::Reached(w) => {

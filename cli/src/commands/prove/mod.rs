@@ -132,7 +132,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     }
     clock.finish();
     write_run(args, &rows)?;
-    let text = if args.json { show::json(program, &rows)? } else { show::human(program, &rows, args.trace) };
+    let text = if args.json { show::json(program, &rows)? } else { show::human(&rows, args.trace) };
     input::print(&text)?;
     Ok(verdict(&rows))
 }

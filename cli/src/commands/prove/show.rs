@@ -9,7 +9,7 @@ use crate::input::Fault;
 
 /// A table for each network: name, verdict, what it says, what it took; below it the bounds, and the runs if wanted.
 #[must_use]
-pub fn human(program: &Program, rows: &[Row], trace: bool) -> String {
+pub fn human(rows: &[Row], trace: bool) -> String {
     let wide = |f: &dyn Fn(&Row) -> usize| rows.iter().map(f).max().unwrap_or(0);
     let (name, verdict) = (wide(&|r| r.name.chars().count()), wide(&|r| r.verdict.words().len()));
     let mut out = String::new();
@@ -23,10 +23,11 @@ pub fn human(program: &Program, rows: &[Row], trace: bool) -> String {
         let what = if row.title.is_empty() { &row.text } else { &row.title };
         out += &format!("  {:name$}  {:verdict$}  {what}\n", row.name, row.verdict.words());
         let margin = " ".repeat(name + verdict + 6);
-        for (of, bound) in &row.bounds {
-            out += &format!("{margin}{of}: {bound}\n");
+        for bound in &row.bounds {
+            out += &format!("{margin}{bound}\n");
         }
-        let took = format!("{}, {}", states(row.states), seconds(row.time.as_secs_f64()));
+        let time = seconds(row.time.as_secs_f64());
+        let took = row.states.map_or(time.clone(), |n| format!("{}, {time}", states(n)));
         match &row.remark {
             Some(remark) => out += &format!("{margin}{remark}  ({took})\n"),
             None => out += &format!("{margin}({took})\n"),
@@ -37,7 +38,6 @@ pub fn human(program: &Program, rows: &[Row], trace: bool) -> String {
             }
         }
     }
-    let _ = program;
     out + &format!("\n{}\n", summary(rows))
 }
 
@@ -89,17 +89,12 @@ struct RowJson<'r> {
     verdict: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     remark: Option<&'r str>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    bounds: Vec<Bound<'r>>,
-    states: usize,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    bounds: &'r [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    states: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<&'r Story>,
-}
-
-#[derive(Serialize)]
-struct Bound<'r> {
-    of: &'r str,
-    bound: &'r str,
 }
 
 /// The same as one document; without times, so that it is the same each time.
@@ -130,7 +125,7 @@ fn of(row: &Row) -> RowJson<'_> {
         text: &row.text,
         verdict: row.verdict.key(),
         remark: row.remark.as_deref(),
-        bounds: row.bounds.iter().map(|(of, bound)| Bound { of, bound }).collect(),
+        bounds: &row.bounds,
         states: row.states,
         run: row.story.as_ref(),
     }

@@ -18,10 +18,11 @@ pub struct Row {
     pub verdict: Verdict,
     /// What else there is to say.
     pub remark: Option<String>,
-    /// For a `sup` or `inf`: of what, and the bound.
-    pub bounds: Vec<(String, String)>,
+    /// For a `sup` or `inf`: of each measure.
+    pub bounds: Vec<String>,
     pub story: Option<Story>,
-    pub states: usize,
+    /// Symbolic states stored, if that is known.
+    pub states: Option<usize>,
     pub time: Duration,
 }
 
@@ -95,7 +96,7 @@ impl Row {
             remark: remark.or_else(|| story.as_ref().map(shape)),
             bounds: Vec::new(),
             story,
-            states: proof.states,
+            states: Some(proof.states),
             time: Duration::ZERO,
         }
     }

@@ -1,0 +1,393 @@
+//! Each kind of query on small hand-made networks.
+
+mod common;
+
+use common::{E, add, automaton, bin, clock, edge, eq, event, location, n, normal, program, shared, v};
+use hrdsl_ir::{
+    Program, Span,
+    expr::BinaryOp,
+    suite::{Delays, WitnessKind},
+    ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, LocationKind, Measure, Query, Time},
+    value::SECOND,
+};
+use hrdsl_ta::{Answer, Ending, Manner, Quantity, Reach, Verdict, answer};
+
+fn query(ask: Ask) -> Query {
+    Query {
+        name: "q".into(),
+        title: "q".into(),
+        text: String::new(),
+        network: 0,
+        ask,
+        origin: Span::default(),
+    }
+}
+
+fn ask_with(p: &Program, ask: Ask, options: &Manner) -> Answer {
+    answer(p, &p.networks[0], &query(ask), options).unwrap()
+}
+
+fn ask(p: &Program, ask: Ask) -> Answer {
+    ask_with(p, ask, &Manner::default())
+}
+
+fn at(automaton: u16, l: LocationId) -> Formula {
+    Formula::At { automaton, location: l }
+}
+
+fn not(f: Formula) -> Formula {
+    Formula::Not(Box::new(f))
+}
+
+fn x(c: u16, op: ClockOp, s: i64) -> Formula {
+    Formula::Clock(clock(c, op, s))
+}
+
+fn ending(a: &Answer) -> Option<Ending> {
+    a.run.as_ref().map(|r| r.ending)
+}
+
+/// a [x <= 5] -> b when x >= 2
+struct Two {
+    p: Program,
+    a: LocationId,
+    b: LocationId,
+}
+
+fn two(bounded: bool) -> Two {
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let inv = [clock(0, ClockOp::Le, 5)];
+    let a = location(&mut m, "a", LocationKind::Normal, if bounded { &inv } else { &[] });
+    let b = normal(&mut m, "b");
+    edge(a, b).clock(0, ClockOp::Ge, 2).to(&mut m);
+    add(&mut p, m);
+    Two { p, a, b }
+}
+
+#[test]
+fn possibly_and_invariantly() {
+    let t = two(true);
+    let yes = ask(&t.p, Ask::Possibly(at(0, t.b)));
+    assert_eq!(yes.verdict, Verdict::Holds);
+    assert_eq!(yes.run.unwrap().end, 2 * SECOND);
+    assert_eq!(yes.why, "a run reaches it after 1 transition and 2 s");
+    let no = ask(&t.p, Ask::Invariantly(at(0, t.a)));
+    assert_eq!((no.verdict, no.run.is_some()), (Verdict::Fails, true));
+    let never = Formula::And(vec![at(0, t.a), at(0, t.b)]);
+    assert_eq!(ask(&t.p, Ask::Possibly(never.clone())).verdict, Verdict::Fails);
+    assert_eq!(ask(&t.p, Ask::Invariantly(not(never))).verdict, Verdict::Holds);
+}
+
+#[test]
+fn clocks_in_reachability() {
+    let t = two(true);
+    let in_a = |f| Formula::And(vec![at(0, t.a), f]);
+    let late = ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Ge, 5))));
+    assert_eq!(late.verdict, Verdict::Holds);
+    let run = late.run.unwrap();
+    assert_eq!((run.steps.len(), run.end), (0, 5 * SECOND));
+    assert_eq!(ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Gt, 5)))).verdict, Verdict::Fails);
+    assert_eq!(ask(&t.p, Ask::Invariantly(not(in_a(x(0, ClockOp::Gt, 5))))).verdict, Verdict::Holds);
+    // Greater than any constant of the model, and finer.
+    assert_eq!(ask(&t.p, Ask::Possibly(x(0, ClockOp::Gt, 1000))).verdict, Verdict::Holds);
+    let half = ClockConstraint {
+        clock: ClockId(0),
+        minus: None,
+        op: ClockOp::Eq,
+        bound: Time::constant(SECOND / 2),
+    };
+    let run = ask(&t.p, Ask::Possibly(Formula::Clock(half))).run.unwrap();
+    assert_eq!(run.end, SECOND / 2);
+}
+
+#[test]
+fn eventually_needs_an_invariant() {
+    let t = two(true);
+    assert_eq!(ask(&t.p, Ask::Eventually(at(0, t.b))).verdict, Verdict::Holds);
+    let t = two(false);
+    let no = ask(&t.p, Ask::Eventually(at(0, t.b)));
+    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert_eq!(no.why, "time can pass for ever in `M.a`, so no run has to go on from there");
+}
+
+#[test]
+fn a_missed_guard_is_a_time_lock() {
+    // a [x <= 5] -> b when x <= 2: who waits longer is stuck.
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let a = location(&mut m, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 5)]);
+    let b = normal(&mut m, "b");
+    edge(a, b).clock(0, ClockOp::Le, 2).to(&mut m);
+    edge(b, b).clock(0, ClockOp::Ge, 0).to(&mut m);
+    add(&mut p, m);
+    let no = ask(&p, Ask::Eventually(at(0, b)));
+    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Stuck)));
+    assert!(no.run.unwrap().end > 2 * SECOND);
+    let yes = ask(&p, Ask::Possibly(Formula::Deadlock));
+    let run = yes.run.unwrap();
+    assert_eq!((run.steps.len(), run.end), (0, 2 * SECOND + 1));
+    let free = Formula::Or(vec![not(Formula::Deadlock), Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)])]);
+    assert_eq!(ask(&p, Ask::Invariantly(free)).verdict, Verdict::Holds);
+    assert_eq!(ask(&p, Ask::Invariantly(not(Formula::Deadlock))).verdict, Verdict::Fails);
+}
+
+#[test]
+fn a_deadlock_may_come_from_the_target_s_invariant() {
+    // a -> b [y <= 1] with x reset only: after a second nothing is possible.
+    let mut p = program();
+    let mut m = automaton("M", &["x", "y"]);
+    let a = normal(&mut m, "a");
+    let b = location(&mut m, "b", LocationKind::Normal, &[clock(1, ClockOp::Le, 1)]);
+    edge(a, b).reset(0).to(&mut m);
+    edge(b, b).reset(1).to(&mut m);
+    add(&mut p, m);
+    let run = ask(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, at(0, a)]))).run.unwrap();
+    assert_eq!(run.end, SECOND + 1);
+    assert_eq!(
+        ask(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, x(1, ClockOp::Le, 1)]))).verdict,
+        Verdict::Fails
+    );
+}
+
+#[test]
+fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let a = location(&mut m, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 3)]);
+    let b = normal(&mut m, "b");
+    edge(a, a).clock(0, ClockOp::Ge, 3).reset(0).to(&mut m);
+    edge(a, b).clock(0, ClockOp::Ge, 3).to(&mut m);
+    add(&mut p, m);
+    let no = ask(&p, Ask::Eventually(at(0, b)));
+    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Again(0))));
+    assert_eq!(no.why, "a run goes round for ever through `M.a`, by 1 transition");
+    let yes = ask(&p, Ask::PotentiallyAlways(at(0, a)));
+    assert_eq!((yes.verdict, ending(&yes)), (Verdict::Holds, Some(Ending::Again(0))));
+    // The same in no time.
+    p.automata[0].locations[0].kind = LocationKind::Committed;
+    p.automata[0].edges[0].clock_guard.clear();
+    let zeno = ask(&p, Ask::PotentiallyAlways(at(0, a)));
+    assert_eq!(
+        zeno.why,
+        "a run stays in it: a run goes round for ever through `M.a`, by 1 transition, in which no time passes"
+    );
+}
+
+#[test]
+fn clocks_in_liveness() {
+    let t = two(true);
+    // Time passes through each cell, up to the invariant.
+    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Eq, 2))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Gt, 2))).verdict, Verdict::Holds);
+    // Which it need not do in a: it may leave at 2.
+    let three_in_a = Formula::And(vec![at(0, t.a), x(0, ClockOp::Ge, 3)]);
+    assert_eq!(ask(&t.p, Ask::Eventually(three_in_a.clone())).verdict, Verdict::Fails);
+    let or_b = Formula::Or(vec![three_in_a, at(0, t.b)]);
+    assert_eq!(ask(&t.p, Ask::Eventually(or_b)).verdict, Verdict::Holds);
+    // No run stays before 2, but one stays before 6 if it ends at 5.
+    assert_eq!(ask(&t.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 2))).verdict, Verdict::Fails);
+    let mut stops = two(true);
+    stops.p.automata[0].edges.clear();
+    let stays = ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 6)));
+    assert_eq!((stays.verdict, ending(&stays)), (Verdict::Holds, Some(Ending::Stuck)));
+    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, Verdict::Fails);
+    stops.p.automata[0].locations[0].invariant = vec![clock(0, ClockOp::Lt, 5)];
+    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, Verdict::Holds);
+    assert_eq!(ask(&stops.p, Ask::Eventually(x(0, ClockOp::Ge, 5))).verdict, Verdict::Fails);
+}
+
+#[test]
+fn leads_to() {
+    // idle -> busy [x <= 3] -> idle; and a trap behind busy at 3.
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let idle = normal(&mut m, "idle");
+    let busy = location(&mut m, "busy", LocationKind::Normal, &[clock(0, ClockOp::Le, 3)]);
+    let hole = normal(&mut m, "hole");
+    edge(idle, busy).reset(0).to(&mut m);
+    edge(busy, idle).clock(0, ClockOp::Ge, 1).to(&mut m);
+    add(&mut p, m);
+    let ask_it = |p: &Program| ask(p, Ask::LeadsTo(at(0, busy), at(0, idle)));
+    assert_eq!(ask_it(&p).verdict, Verdict::Holds);
+    assert_eq!(ask(&p, Ask::Eventually(at(0, busy))).verdict, Verdict::Fails);
+    let mut worse = p.clone();
+    edge(busy, hole).clock(0, ClockOp::Ge, 3).to(&mut worse.automata[0]);
+    let no = ask_it(&worse);
+    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert_eq!(no.run.unwrap().end, 3 * SECOND);
+    // Only from where the first holds with its clocks.
+    let late = Formula::And(vec![at(0, busy), x(0, ClockOp::Gt, 3)]);
+    assert_eq!(ask(&worse, Ask::LeadsTo(late, at(0, idle))).verdict, Verdict::Holds);
+}
+
+#[test]
+fn committed_loops_stay() {
+    let mut p = program();
+    let q = shared(&mut p, "q", 0, 1, 0);
+    let mut m = automaton("M", &[]);
+    let a = location(&mut m, "a", LocationKind::Committed, &[]);
+    let b = location(&mut m, "b", LocationKind::Committed, &[]);
+    edge(a, b).set(q, n(1)).to(&mut m);
+    edge(b, a).set(q, n(0)).to(&mut m);
+    add(&mut p, m);
+    let mut other = automaton("N", &[]);
+    let c = normal(&mut other, "c");
+    let d = normal(&mut other, "d");
+    edge(c, d).to(&mut other);
+    add(&mut p, other);
+    let yes = ask(&p, Ask::PotentiallyAlways(at(1, c)));
+    assert_eq!((yes.verdict, ending(&yes)), (Verdict::Holds, Some(Ending::Again(0))));
+    assert_eq!(ask(&p, Ask::PotentiallyAlways(Formula::Data(eq(v(q), n(0))))).verdict, Verdict::Fails);
+    // The other never gets a turn.
+    assert_eq!(ask(&p, Ask::Possibly(at(1, d))).verdict, Verdict::Fails);
+}
+
+fn limits(a: &Answer) -> Vec<Reach> {
+    a.extrema.iter().map(|e| e.limit).collect()
+}
+
+fn secs(s: i64, attained: bool) -> Reach {
+    Reach::At { value: Quantity::Nanos(s * SECOND), attained }
+}
+
+#[test]
+fn least_and_greatest() {
+    let t = two(true);
+    let clocks = |when: Formula| Ask::Sup { of: vec![Measure::Clock(ClockId(0))], when };
+    let low = |when: Formula| Ask::Inf { of: vec![Measure::Clock(ClockId(0))], when };
+    assert_eq!(limits(&ask(&t.p, clocks(at(0, t.a)))), [secs(5, true)]);
+    assert_eq!(limits(&ask(&t.p, clocks(at(0, t.b)))), [Reach::Unbounded]);
+    assert_eq!(limits(&ask(&t.p, low(at(0, t.b)))), [secs(2, true)]);
+    assert_eq!(limits(&ask(&t.p, low(at(0, t.a)))), [secs(0, true)]);
+    let beyond = Formula::And(vec![at(0, t.b), x(0, ClockOp::Gt, 700)]);
+    assert_eq!(limits(&ask(&t.p, low(beyond))), [secs(700, false)]);
+    let between = Formula::And(vec![at(0, t.b), x(0, ClockOp::Lt, 900)]);
+    let sup = ask(&t.p, clocks(between));
+    assert_eq!(limits(&sup), [secs(900, false)]);
+    assert_eq!(sup.why, "< 900 s");
+    assert!(sup.extrema[0].run.as_ref().unwrap().end > 899 * SECOND);
+    let nowhere = Formula::And(vec![at(0, t.a), at(0, t.b)]);
+    assert_eq!(limits(&ask(&t.p, clocks(nowhere))), [Reach::Nowhere]);
+}
+
+#[test]
+fn a_clock_beyond_its_constants_is_followed() {
+    // Four rounds of 3 s each; total is never reset and never tested.
+    let mut p = program();
+    let k = shared(&mut p, "k", 0, 4, 0);
+    let mut m = automaton("M", &["x", "total"]);
+    let a = location(&mut m, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 3)]);
+    let more = bin(BinaryOp::Add, v(k), n(1));
+    let again = edge(a, a).clock(0, ClockOp::Gt, 2).when(bin(BinaryOp::Lt, v(k), n(4)));
+    again.reset(0).set(k, more).to(&mut m);
+    add(&mut p, m);
+    let of = || vec![Measure::Clock(ClockId(1)), Measure::Data(v(k))];
+    let done = || Formula::Data(eq(v(k), n(4)));
+    let sup = ask(&p, Ask::Sup { of: of(), when: done() });
+    let four = Reach::At { value: Quantity::Number(4), attained: true };
+    assert_eq!(limits(&sup), [secs(15, true), four]);
+    let inf = ask(&p, Ask::Inf { of: of(), when: done() });
+    assert_eq!(limits(&inf), [secs(8, false), four]);
+    for e in sup.extrema.iter().chain(&inf.extrema) {
+        assert!(e.run.is_some());
+    }
+}
+
+#[test]
+fn the_fastest_way_may_have_more_transitions() {
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let l: Vec<LocationId> = ["a", "b", "c", "d"].map(|s| normal(&mut m, s)).into();
+    edge(l[0], l[3]).clock(0, ClockOp::Ge, 10).to(&mut m);
+    edge(l[0], l[1]).clock(0, ClockOp::Gt, 1).to(&mut m);
+    edge(l[1], l[2]).clock(0, ClockOp::Gt, 1).to(&mut m);
+    edge(l[2], l[3]).clock(0, ClockOp::Ge, 3).to(&mut m);
+    add(&mut p, m);
+    let go = |witness, delays, seed| {
+        let options = Manner { witness, delays, seed, ..Manner::default() };
+        let run = ask_with(&p, Ask::Possibly(at(0, l[3])), &options).run.unwrap();
+        (run.steps.len(), run.end, run.steps.iter().map(|s| s.time).collect::<Vec<_>>())
+    };
+    let short = go(WitnessKind::Shortest, Delays::Earliest, 0);
+    assert_eq!((short.0, short.1), (1, 10 * SECOND));
+    let fast = go(WitnessKind::Fastest, Delays::Earliest, 0);
+    assert_eq!((fast.0, fast.1), (3, 3 * SECOND));
+    let late = go(WitnessKind::Fastest, Delays::Latest, 0);
+    assert_eq!(late.2, [3 * SECOND; 3]);
+    let drawn: Vec<Vec<i64>> = (0..8).map(|s| go(WitnessKind::Fastest, Delays::Sampled, s).2).collect();
+    assert!(drawn.iter().all(|t| t[2] == 3 * SECOND && t[0] > SECOND && t[0] <= t[1]));
+    assert!(drawn.iter().any(|t| t != &drawn[0]));
+    assert_eq!(drawn[3], go(WitnessKind::Fastest, Delays::Sampled, 3).2);
+    // A goal with a clock: time passes after the last transition.
+    let options = Manner { witness: WitnessKind::Fastest, ..Manner::default() };
+    let f = Formula::And(vec![at(0, l[2]), x(0, ClockOp::Gt, 2)]);
+    let run = ask_with(&p, Ask::Possibly(f), &options).run.unwrap();
+    assert_eq!((run.steps.len(), run.end), (2, 2 * SECOND + 1));
+    assert!(run.steps[1].time <= run.end);
+}
+
+#[test]
+fn fastest_is_finite_where_a_goal_cannot_be_reached() {
+    let mut p = program();
+    let mut m = automaton("M", &["x", "y"]);
+    let a = location(&mut m, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 3)]);
+    let b = normal(&mut m, "b");
+    edge(a, a).clock(0, ClockOp::Ge, 1).reset(0).to(&mut m);
+    edge(a, a).clock(1, ClockOp::Ge, 2).reset(1).to(&mut m);
+    edge(a, b).clock(0, ClockOp::Gt, 3).to(&mut m);
+    add(&mut p, m);
+    let goal =
+        hrdsl_ta::Goal { what: hrdsl_ta::GoalKind::Location { automaton: 0, location: b }, settled: false };
+    let model = model(&p);
+    let run = hrdsl_ta::fastest(&model, &goal, hrdsl_ta::Budget::default(), hrdsl_ta::Timing::default());
+    assert_eq!(run.unwrap(), None);
+}
+
+fn model(p: &Program) -> hrdsl_ta::Model<'_> {
+    hrdsl_ta::Model::new(p, &p.networks[0], &hrdsl_ta::Observe::default()).unwrap()
+}
+
+#[test]
+fn a_run_is_told_and_drawn() {
+    let mut p = program();
+    let go = event(&mut p, "go", &[]);
+    let q = shared(&mut p, "q", 0, 3, 0);
+    let mut m = automaton("Sender", &["x"]);
+    let (a, b) = (normal(&mut m, "a"), normal(&mut m, "b"));
+    edge(a, b).clock(0, ClockOp::Ge, 2).send(go).reset(0).to(&mut m);
+    add(&mut p, m);
+    let mut m = automaton("R", &[]);
+    let (c, d) = (normal(&mut m, "c"), normal(&mut m, "d"));
+    edge(c, d).on(go).set(q, n(2)).to(&mut m);
+    let back: E = edge(d, c);
+    back.to(&mut m);
+    add(&mut p, m);
+    let f = Formula::And(vec![at(0, b), at(1, c)]);
+    let run = ask(&p, Ask::Possibly(f)).run.unwrap();
+    let story = hrdsl_ta::Story::of(&p, &p.networks[0], &run);
+    let told = "\
+2 s  Sender  go  a -> b, R: c -> d   [q: 0 -> 2; Sender.x = 0]
+2 s  R           d -> c
+";
+    assert_eq!(story.text(), told);
+    let mermaid = "\
+sequenceDiagram
+  participant a0 as Sender
+  participant a1 as R
+  Note over a0,a1: 2 s
+  a0-)a1: go
+  Note over a0: a → b, q: 0 → 2
+  Note over a1: c → d
+  Note over a1: d → c
+";
+    assert_eq!(story.mermaid(), mermaid);
+    let dot = story.dot();
+    assert!(
+        dot.starts_with("digraph sequence {")
+            && dot.contains("s0_0 -> s0_1 [label = \"go\", style = dashed];")
+    );
+    let json = serde_json::to_value(&story).unwrap();
+    assert_eq!(json["scenes"][0]["parts"][1]["to"], "d");
+    assert_eq!(json["ending"], "reached");
+}
