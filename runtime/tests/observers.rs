@@ -74,7 +74,8 @@ fn script(dice: &mut Dice) -> Script {
 
 /// An automaton that does this and nothing else, and then stays until the end.
 fn actor_of(script: &Script, end: Nanos) -> Automaton {
-    let clock = |op, time| ClockConstraint { clock: ClockId(0), minus: None, op, bound: Time::constant(time) };
+    let clock =
+        |op, time| ClockConstraint { clock: ClockId(0), minus: None, op, bound: Time::constant(time) };
     let times = script.iter().map(|s| s.0).chain([end]);
     let location = |(n, time): (usize, Nanos)| Location {
         name: format!("l{n}"),

@@ -64,7 +64,7 @@ impl From<Way> for Order {
         match way {
             Way::Breadth => Self::Breadth,
             Way::Depth => Self::Depth,
-            Way::Random => Self::Random,
+            Way::Random => Self::RandomDepth,
             Way::Topological => Self::Topological,
         }
     }

@@ -47,6 +47,19 @@ pub enum Formula {
     Or(Vec<Formula>),
 }
 
+impl Formula {
+    /// Whether it speaks of `deadlock`.
+    #[must_use]
+    pub fn asks_deadlock(&self) -> bool {
+        match self {
+            Formula::Deadlock => true,
+            Formula::Not(f) => f.asks_deadlock(),
+            Formula::And(fs) | Formula::Or(fs) => fs.iter().any(Formula::asks_deadlock),
+            Formula::At { .. } | Formula::Data(_) | Formula::Clock(_) => false,
+        }
+    }
+}
+
 /// `clock - minus op bound`. The clocks count the shared ones, then those of each automaton, in the network's order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClockBound {

@@ -62,8 +62,7 @@ pub fn decide(
         (true, false) => &[Windows::Ignored, Windows::Whole, Windows::Exact],
         (true, true) => &[Windows::Whole, Windows::Ignored, Windows::Exact],
     };
-    let mut decided =
-        Decided { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut decided = Decided { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
     let mut fates: Vec<Option<Fate>> = vec![None; goals.len()];
     let mut why = String::new();
     for way in ways {
@@ -134,7 +133,11 @@ pub(super) fn exhausted(what: Exhausted) -> String {
 }
 
 /// The network and the limits of one search.
-fn restricted(program: &Program, observed: &Observed, way: Windows) -> Result<(Observed, Vec<Limit>), String> {
+fn restricted(
+    program: &Program,
+    observed: &Observed,
+    way: Windows,
+) -> Result<(Observed, Vec<Limit>), String> {
     let mut restricted = observed.clone();
     let mut limits = Vec::new();
     for assumption in &program.assumptions {

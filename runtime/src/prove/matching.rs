@@ -58,9 +58,8 @@ fn of_event(
     out: &mut Vec<Reception>,
 ) -> Result<(), String> {
     let params = &program.event(event).params;
-    let of_rule = |r: &&[EventPattern]| -> Vec<Wanted> {
-        r.iter().filter(|p| p.event == event).map(wanted).collect()
-    };
+    let of_rule =
+        |r: &&[EventPattern]| -> Vec<Wanted> { r.iter().filter(|p| p.event == event).map(wanted).collect() };
     let conditions: Vec<Vec<Wanted>> = rules.iter().map(of_rule).collect();
     let mut told: Vec<usize> = conditions.iter().flatten().flatten().map(|(i, _)| *i).collect();
     told.sort_unstable();
@@ -75,7 +74,9 @@ fn of_event(
     if let [(rule, ways)] = named.as_slice()
         && let [only] = ways.as_slice()
     {
-        let arg = |i: usize| only.iter().find(|(at, _)| *at == i).map_or(ArgPattern::Any, |(_, v)| ArgPattern::Is(*v));
+        let arg = |i: usize| {
+            only.iter().find(|(at, _)| *at == i).map_or(ArgPattern::Any, |(_, v)| ArgPattern::Is(*v))
+        };
         let args = (0..params.len()).map(|i| ReceiveArg::Match(arg(i))).collect();
         out.push(Reception { rule: *rule, event, args, guard: None });
         return Ok(());

@@ -76,7 +76,13 @@ impl Run {
 ///
 /// # Errors
 /// The engine or the observer contradicts the monitor, or the network does not exist.
-pub fn prove(program: &Program, network: &Network, monitor: usize, settings: &Settings, watch: &Watch) -> Result<Proof, String> {
+pub fn prove(
+    program: &Program,
+    network: &Network,
+    monitor: usize,
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Proof, String> {
     let Some(requirement) = program.monitors.get(monitor) else {
         return Err(format!("there is no requirement {monitor}"));
     };

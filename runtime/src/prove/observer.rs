@@ -95,7 +95,8 @@ impl<'m> Plan<'m> {
         if samples || !monitor.signals.is_empty() {
             return Err("it reads signals of the world, which a network does not have".to_owned());
         }
-        let deadlines = (0..monitor.states.len()).map(|s| deadline(monitor, s)).collect::<Result<Vec<_>, _>>()?;
+        let deadlines =
+            (0..monitor.states.len()).map(|s| deadline(monitor, s)).collect::<Result<Vec<_>, _>>()?;
         let fails = monitor.edges.iter().any(|e| e.effects.contains(&Effect::Fail) && e.on != On::Deadline)
             || deadlines.iter().any(Option::is_some);
         let mut plan = Self { monitor, deadlines, fails, telling: None };
@@ -144,14 +145,8 @@ impl<'m> Plan<'m> {
         };
         let mut locations: Vec<Location> = monitor.states.iter().map(|s| location(&s.name)).collect();
         locations.push(location("violated"));
-        let flag = Var {
-            name: "triggered".to_owned(),
-            lo: 0,
-            hi: 1,
-            init: 0,
-            is_bool: true,
-            enumeration: None,
-        };
+        let flag =
+            Var { name: "triggered".to_owned(), lo: 0, hi: 1, init: 0, is_bool: true, enumeration: None };
         let vars = if self.telling.is_none() { vec![flag] } else { Vec::new() };
         let timed = self.deadlines.iter().any(Option::is_some);
         let mut edges = Vec::new();
@@ -181,7 +176,8 @@ impl<'m> Plan<'m> {
         let rules: Vec<_> = self.on_events().filter(|(e, _)| usize::from(e.from.0) == state).collect();
         let patterns: Vec<&[EventPattern]> = rules.iter().map(|(_, p)| *p).collect();
         let clock = ClockId(number(program.clocks.len()));
-        let in_time = |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: Time::constant(d) };
+        let in_time =
+            |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: Time::constant(d) };
         for reception in receptions(program, &patterns, binders)? {
             let edge = rules[reception.rule].0;
             let to = self.target(edge);
@@ -237,7 +233,9 @@ fn deadline(monitor: &Monitor, state: usize) -> Result<Option<Nanos>, String> {
     }
     // INVARIANT: the clock counts from when the state is entered, so that at the entry it is not past the deadline.
     let entered_late = monitor.edges.iter().any(|e| {
-        usize::from(e.to.0) == state && e.from != e.to && !e.effects.contains(&Effect::ResetClock)
+        usize::from(e.to.0) == state
+            && e.from != e.to
+            && !e.effects.contains(&Effect::ResetClock)
             && e.on != On::Deadline
     });
     if entered_late {

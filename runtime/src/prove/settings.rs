@@ -6,8 +6,10 @@ use hrdsl_ir::{
     suite::{Delays, WitnessKind},
     ta::Formula,
 };
-use hrdsl_ta::{Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing, Witness};
 pub use hrdsl_ta::Order;
+use hrdsl_ta::{
+    Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing, Witness,
+};
 
 use super::Observed;
 

@@ -196,12 +196,8 @@ impl Flow<'_> {
         let owned = function.owner.and_then(|a| self.program.automata.get(usize::from(a.0)));
         let visible = self.program.shared.len() + owned.map_or(0, |a| a.vars.len());
         let (mut defines, mut reads) = (Vec::new(), Vec::new());
-        let mut inner = Flow {
-            program: self.program,
-            defines: &mut defines,
-            reads: &mut reads,
-            open: self.open.clone(),
-        };
+        let mut inner =
+            Flow { program: self.program, defines: &mut defines, reads: &mut reads, open: self.open.clone() };
         inner.statements(&function.body);
         self.defines.extend(defines.into_iter().filter(|s| *s < visible));
         self.reads.extend(reads.into_iter().filter(|s| *s < visible));

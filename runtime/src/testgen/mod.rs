@@ -32,11 +32,11 @@ use hrdsl_ir::{
 
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
+pub use expand::bin_goal;
 pub use hrdsl_bdi::choose::BeliefSet;
 pub use model::{
     AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation, Uncovered, Unreached,
 };
-pub use expand::bin_goal;
 pub use write::{step_text, write};
 
 /// An abstract test: steps without samples.

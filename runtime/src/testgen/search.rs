@@ -110,10 +110,9 @@ fn needs(goal: &Goal) -> Needs {
     match goal.what {
         GoalKind::Pair { .. } => Needs::LastEdges,
         GoalKind::Use { .. } => Needs::LastDefinitions,
-        GoalKind::Edge { .. }
-        | GoalKind::Location { .. }
-        | GoalKind::Condition(_)
-        | GoalKind::Formula(_) => Needs::Nothing,
+        GoalKind::Edge { .. } | GoalKind::Location { .. } | GoalKind::Condition(_) | GoalKind::Formula(_) => {
+            Needs::Nothing
+        }
     }
 }
 
@@ -198,6 +197,7 @@ fn of_requirement(
         Some(verdicts.triggered)
     };
     let Some(formula) = formula else { return Ok(Fate::Unreachable) };
-    let Decided { mut fates, .. } = decide(program, &observed, &[of_formula(&formula)], &[], settings, &Watch::default())?;
+    let Decided { mut fates, .. } =
+        decide(program, &observed, &[of_formula(&formula)], &[], settings, &Watch::default())?;
     Ok(fates.pop().unwrap_or(Fate::Unreachable))
 }

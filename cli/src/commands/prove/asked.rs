@@ -3,7 +3,7 @@
 use hrdsl_compiler::{Compilation, Input, ast, compile_with};
 use hrdsl_ir::{Program, ta::Network};
 
-use super::{Args, Job};
+use super::{Args, Job, What};
 use crate::input::{self, Disk, Fault};
 
 /// A scenario with the queries of the command line.
@@ -32,7 +32,8 @@ impl Asked {
         let mut added = Vec::new();
         for network in networks {
             for ask in &args.ask {
-                let name = (1..).map(|n| format!("ask{n}")).find(|n| !taken.contains(n) && !added.contains(n));
+                let name =
+                    (1..).map(|n| format!("ask{n}")).find(|n| !taken.contains(n) && !added.contains(n));
                 let name = name.unwrap_or_default();
                 text += &format!("\nquery {name} of {network} = {}", one_line(ask));
                 added.push(name);
@@ -47,21 +48,21 @@ impl Asked {
     ///
     /// # Errors
     /// A name that does not exist.
-    pub fn jobs<'p>(&self, args: &Args, program: &'p Program) -> Result<Vec<Job<'p>>, Fault> {
+    pub fn jobs(&self, args: &Args, program: &Program) -> Result<Vec<Job>, Fault> {
         known("requirement", &args.requirement, program.monitors.iter().map(|m| m.name.as_str()))?;
         known("query", &args.query, program.queries.iter().map(|q| q.name.as_str()))?;
         let some = !args.requirement.is_empty() || !args.query.is_empty() || !args.ask.is_empty();
         let mut jobs = Vec::new();
-        for (index, network) in chosen(args, program)? {
+        for (network, _) in chosen(args, program)? {
             for (monitor, m) in program.monitors.iter().enumerate() {
                 if args.requirement.contains(&m.name) || !some {
-                    jobs.push(Job::Requirement { network, monitor });
+                    jobs.push(Job { network, what: What::Requirement(monitor) });
                 }
             }
             for (query, q) in program.queries.iter().enumerate() {
                 let wanted = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
-                if wanted && usize::from(q.network) == index {
-                    jobs.push(Job::Query { network, query });
+                if wanted && usize::from(q.network) == network {
+                    jobs.push(Job { network, what: What::Query(query) });
                 }
             }
         }

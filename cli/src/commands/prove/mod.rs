@@ -6,13 +6,17 @@ mod table;
 
 use std::{
     path::PathBuf,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Arc,
+        atomic::Ordering,
+        mpsc::{self, RecvTimeoutError},
+    },
     thread,
     time::{Duration, Instant},
 };
 
-use hrdsl_ir::{Program, ta::Network};
-use hrdsl_runtime::prove::{self, Settings, Watch};
+use hrdsl_ir::Program;
+use hrdsl_runtime::prove::{self, Answered, Found, Proof, Settings, Status, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::how::{Way, When, Witness};
@@ -122,13 +126,17 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let Some(program) = input::report_errors(&args.file, &asked.compilation) else { return Ok(Exit::Errors) };
     let jobs = asked.jobs(args, program)?;
     if jobs.is_empty() {
-        return Err("there is nothing to prove: the scenario has neither requirements nor queries of a network".to_owned());
+        return Err(
+            "there is nothing to prove: the scenario has neither requirements nor queries of a network"
+                .to_owned(),
+        );
     }
     let settings = args.how.settings();
     let clock = Clock::start(args.timeout);
+    let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
     for job in &jobs {
-        rows.push(clock.watched(job.name(program), |watch| job.row(program, &settings, watch))?);
+        rows.push(job.row(&shared, &settings, &clock)?);
     }
     clock.finish();
     write_run(args, &rows)?;
@@ -138,40 +146,51 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
 }
 
 /// Something to decide.
-pub enum Job<'p> {
-    Requirement { network: &'p Network, monitor: usize },
-    Query { network: &'p Network, query: usize },
+pub struct Job {
+    /// Index into the program's networks.
+    pub network: usize,
+    pub what: What,
 }
 
-impl<'p> Job<'p> {
-    fn network(&self) -> &'p Network {
-        match self {
-            Job::Requirement { network, .. } | Job::Query { network, .. } => network,
-        }
-    }
+/// By their places in the program.
+#[derive(Clone, Copy)]
+pub enum What {
+    Requirement(usize),
+    Query(usize),
+}
 
-    fn name(&self, program: &'p Program) -> &'p str {
-        match self {
-            Job::Requirement { monitor, .. } => &program.monitors[*monitor].name,
-            Job::Query { query, .. } => &program.queries[*query].name,
-        }
-    }
-
-    fn row(&self, program: &Program, settings: &Settings, watch: &Watch) -> Result<Row, Fault> {
+impl Job {
+    fn row(&self, program: &Arc<Program>, settings: &Settings, clock: &Clock) -> Result<Row, Fault> {
         let started = now();
-        let mut row = match self {
-            Job::Requirement { network, monitor } => {
-                Row::of_proof(program, network, &prove::prove(program, network, *monitor, settings, watch)?)
+        let (of, settings, network) = (Arc::clone(program), *settings, self.network);
+        let mut row = match self.what {
+            What::Requirement(monitor) => {
+                let work =
+                    move |watch: &Watch| prove::prove(&of, &of.networks[network], monitor, &settings, watch);
+                let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0 };
+                let proof = clock.watched(&program.monitors[monitor].name, work)?;
+                Row::of_proof(program, &proof.unwrap_or_else(late))
             }
-            Job::Query { query, .. } => {
-                Row::of_answer(program, &prove::answer(program, *query, settings, watch)?)
+            What::Query(query) => {
+                let work = move |watch: &Watch| prove::answer(&of, query, &settings, watch);
+                let late = || Answered {
+                    query,
+                    found: Found::Open(LATE.to_owned()),
+                    run: None,
+                    notes: Vec::new(),
+                    states: None,
+                };
+                let answer = clock.watched(&program.queries[query].name, work)?;
+                Row::of_answer(program, &answer.unwrap_or_else(late))
             }
         };
-        row.network.clone_from(&self.network().name);
+        row.network.clone_from(&program.networks[network].name);
         row.time = started.elapsed();
         Ok(row)
     }
 }
+
+const LATE: &str = "the time was over";
 
 #[allow(clippy::disallowed_methods, reason = "how long it took is shown, and decides nothing but a time-out")]
 fn now() -> Instant {
@@ -184,6 +203,9 @@ struct Clock {
     bar: ProgressBar,
 }
 
+/// How long a search is waited for that was told to stop. Not all of them listen.
+const GRACE: Duration = Duration::from_millis(500);
+
 impl Clock {
     fn start(timeout: Option<Duration>) -> Self {
         let bar = ProgressBar::new_spinner();
@@ -193,39 +215,54 @@ impl Clock {
         Self { until: timeout.and_then(|t| now().checked_add(t)), bar }
     }
 
-    /// Runs something while its progress is shown, and tells it when its time is over.
-    fn watched<T: Send>(
+    /// Runs something while its progress is shown, and tells it when its time is over. `None`: it did not end in time, and is
+    /// left behind, until the process ends.
+    fn watched<T: Send + 'static>(
         &self,
         name: &str,
-        work: impl FnOnce(&Watch) -> Result<T, Fault> + Send,
-    ) -> Result<T, Fault> {
-        let (watch, done) = (Watch::default(), AtomicBool::new(false));
-        self.bar.set_message(name.to_owned());
-        thread::scope(|scope| {
-            let working = scope.spawn(|| {
-                let result = work(&watch);
-                done.store(true, Ordering::Release);
-                result
-            });
-            let mut waited = Duration::from_millis(1);
-            while !done.load(Ordering::Acquire) && !working.is_finished() {
-                thread::park_timeout(waited);
-                // Short work ends soon; long work is looked at now and then.
-                waited = (waited * 2).min(Duration::from_millis(50));
-                if self.until.is_some_and(|until| now() >= until) {
-                    watch.stop.store(true, Ordering::Relaxed);
+        work: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<Option<T>, Fault> {
+        if self.until.is_some_and(|until| now() >= until) {
+            return Ok(None);
+        }
+        let watch = Arc::new(Watch::default());
+        let (done, result) = mpsc::channel();
+        let watching = Arc::clone(&watch);
+        // Searches recurse little, but expressions are as deep as they are written.
+        let search = thread::Builder::new().stack_size(STACK);
+        let search = search.spawn(move || {
+            // Nobody may wait any more.
+            let _ = done.send(work(&watching));
+        });
+        search.map_err(|e| format!("cannot start a thread: {e}"))?;
+        let mut waited = Duration::from_millis(1);
+        loop {
+            match result.recv_timeout(waited) {
+                Ok(found) => return found.map(Some),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(format!("internal error: the search for `{name}` broke off"));
                 }
-                self.bar.set_message(format!("{name}: {} states", watch.stored.load(Ordering::Relaxed)));
-                self.bar.tick();
+                Err(RecvTimeoutError::Timeout) => {}
             }
-            working.join().unwrap_or_else(|_| Err("internal error: a search broke off".to_owned()))
-        })
+            // Short work ends soon; long work is looked at now and then.
+            waited = (waited * 2).min(Duration::from_millis(50));
+            if let Some(until) = self.until.filter(|until| now() >= *until) {
+                watch.stop.store(true, Ordering::Relaxed);
+                if now() >= until + GRACE {
+                    return Ok(None);
+                }
+            }
+            self.bar.set_message(format!("{name}: {} states", watch.stored.load(Ordering::Relaxed)));
+            self.bar.tick();
+        }
     }
 
     fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
+
+const STACK: usize = 64 << 20;
 
 /// The first run that shows something, as a diagram.
 fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {

@@ -275,8 +275,7 @@ impl<'a> Checker<'a> {
         // One of an automaton has its name before it, in a query.
         let whole = callee.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
         let whole = Name { text: whole, ..name.clone() };
-        if let Some(value) = self.applied_function(&whole, args, span, env)
-        {
+        if let Some(value) = self.applied_function(&whole, args, span, env) {
             return Item::One(value);
         }
         if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {

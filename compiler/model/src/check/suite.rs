@@ -282,6 +282,11 @@ impl Checker<'_> {
         }
         let at = self.s.queries.iter().position(|q| q.name == name.text)?;
         match &self.s.queries[at].ask {
+            Ask::Possibly(f) if f.asks_deadlock() => {
+                let message = format!("`{}` asks for a deadlock, which is nothing to do", name.text);
+                self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
+                None
+            }
             Ask::Possibly(_) => Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX)))),
             Ask::Invariantly(_)
             | Ask::PotentiallyAlways(_)
