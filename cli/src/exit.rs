@@ -7,12 +7,14 @@ pub enum Exit {
     /// All is well; there may be warnings that are not denied.
     Ok = 0,
     /// A scenario has errors, or warnings that are denied, a file is not formatted, one to import cannot be understood,
-    /// or the agents of a run cannot go on.
+    /// the agents of a run cannot go on, or a network that is searched is at fault.
     Errors = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
-    /// A requirement was violated, or a test broke off.
+    /// A requirement was violated, a query is not satisfied, or a test broke off.
     Findings = 3,
+    /// A requirement or query was not decided within the budget.
+    Open = 4,
 }
 
 /// What `hrdsl --help` says about them.
@@ -21,9 +23,11 @@ Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
      `import`: a file is no program, or `--strict` and something is left out; `inspect`: the agents cannot go on
-     (a livelock, the cycle bound, a fault of the model)
+     (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
   2  the command line is wrong, or a file cannot be read or written
-  3  `sim`: a requirement was violated, or a test broke off (see --exit-zero)";
+  3  `sim`: a requirement was violated, or a test broke off (see --exit-zero); `prove`: a requirement is violated, or
+     a query is not satisfied
+  4  `prove`: something was not decided within the budget, and nothing else is wrong";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -41,6 +41,7 @@ enum Command {
     Inspect(commands::inspect::Args),
     Man(commands::man::Args),
     New(commands::new::Args),
+    Prove(commands::prove::Args),
     Sim(commands::sim::Args),
 }
 
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => commands::inspect::run(&args),
         Command::Man(args) => commands::man::run(&args, Cli::command()),
         Command::New(args) => commands::new::run(&args),
+        Command::Prove(args) => commands::prove::run(&args),
         Command::Sim(args) => commands::sim::run(&args),
     };
     result

@@ -11,6 +11,7 @@
 
 pub mod campaign;
 pub mod harness;
+pub mod prove;
 pub mod report;
 pub mod results;
 mod tally;

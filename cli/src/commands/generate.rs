@@ -10,11 +10,13 @@ use hrdsl_compiler::Compilation;
 use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
     harness::{Detail, Inspection},
+    prove::Settings,
     report::{End, Picked, ending, explain_text, reasoning},
     testgen::{Explanation, Generated, GoalReport, GoalStatus, ModelCoverage, Options, generate_with, write},
 };
 use serde::Serialize;
 
+use super::how::{Way, When, Witness};
 use super::inspect::{Chosen, json_lines};
 use crate::{
     exit::Exit,
@@ -24,7 +26,7 @@ use crate::{
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl gen scenario.hri\n  hrdsl gen scenario.hri --suite bdi_tests -n 20 --seed 7 -o tests\n  hrdsl gen scenario.hri --suite bdi_tests --minimise --explain\n  hrdsl gen scenario.hri --suite bdi_tests --trace"
+    after_help = "Examples:\n  hrdsl gen scenario.hri\n  hrdsl gen scenario.hri --suite bdi_tests -n 20 --seed 7 -o tests\n  hrdsl gen scenario.hri --suite bdi_tests --minimise --explain\n  hrdsl gen scenario.hri --suite bdi_tests --trace\n  hrdsl gen scenario.hri --suite ta_tests --witness fastest --delays latest"
 )]
 pub struct Args {
     /// The scenario.
@@ -50,6 +52,18 @@ pub struct Args {
     /// Of suites by agents, write beside the tests how the agents reasoned: `SUITE.traces/tNNN.log`, with --json `.jsonl`.
     #[arg(long)]
     trace: bool,
+    /// Of suites by search, which run shows that a goal is reached, instead of what the suite says.
+    #[arg(long, value_enum)]
+    witness: Option<Witness>,
+    /// Of suites by search, when the transitions of these runs happen, instead of what the suite says.
+    #[arg(long, value_enum)]
+    delays: Option<When>,
+    /// Of suites by search, in which order states are looked at [default: what the witness needs].
+    #[arg(long, value_enum)]
+    order: Option<Way>,
+    /// Of suites by search, threads that search at once.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: u16,
     /// Print what was generated as one JSON document.
     #[arg(long)]
     json: bool,
@@ -63,7 +77,18 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let minimise = args.minimise.then_some(true);
     let mut suites = Vec::new();
     for suite in chosen(program, &args.suite)? {
-        let options = Options { count: args.count, seed: args.seed, minimise };
+        let options = Options {
+            count: args.count,
+            seed: args.seed,
+            minimise,
+            witness: args.witness.map(Into::into),
+            delays: args.delays.map(Into::into),
+            search: Settings {
+                order: args.order.map(Into::into),
+                threads: usize::from(args.threads),
+                ..Settings::default()
+            },
+        };
         let generated = generate_with(program, suite, options)?;
         let path = save(&args.out, program, &generated)?;
         let traces = if args.trace { trace(args, &compilation, program, suite, &generated)? } else { vec![] };

@@ -47,6 +47,10 @@ ids! {
     ChannelId,
     /// Index into [`Scenario::networks`].
     NetworkId,
+    /// Index into [`Scenario::queries`].
+    QueryId,
+    /// Index into [`Scenario::requirements`].
+    RequirementId,
     /// Index into [`Scenario::points`].
     PointId,
     /// Index into [`Scenario::crosses`].
@@ -81,6 +85,7 @@ pub struct Scenario {
     pub channels: Vec<Channel>,
     pub automata: Vec<Automaton>,
     pub networks: Vec<Network>,
+    pub queries: Vec<crate::Query>,
     pub requirements: Vec<Requirement>,
     pub assumptions: Vec<Assumption>,
     pub points: Vec<CoverPoint>,
@@ -1055,6 +1060,8 @@ pub enum Method {
     Search {
         network: NetworkId,
         goals: Vec<SearchGoal>,
+        witness: WitnessKind,
+        delays: Delays,
     },
     Random {
         stimuli: Vec<EventId>,
@@ -1123,6 +1130,32 @@ pub enum SearchGoal {
     Bins(CrossId),
     Locations,
     Edges,
+    Pairs,
+    Uses,
+    Violation(RequirementId),
+    Trigger(RequirementId),
+    /// One that asks `E<>`.
+    Query(QueryId),
+}
+
+/// Which witness a search takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WitnessKind {
+    Any,
+    #[default]
+    Shortest,
+    Fastest,
+}
+
+/// When its transitions happen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Delays {
+    #[default]
+    Earliest,
+    Latest,
+    Sampled,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

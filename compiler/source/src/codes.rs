@@ -122,6 +122,7 @@ codes! {
     BAD_JOINT = 512 "a joint channel that is used as another kind",
     NO_ACTOR = 513 "an event in an automaton without an actor",
     ONE_SIDED_CHANNEL = 514 "a channel with a side missing",
+    BAD_QUERY = 520 "a query that cannot be asked",
     RECURSION = 521 "a function that calls itself",
     BAD_RETURN = 522 "a function without its value, or with one too many",
     IMPURE = 523 "a change where a value is only looked at",

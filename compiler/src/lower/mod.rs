@@ -5,6 +5,7 @@ pub mod coverage;
 pub mod expr;
 pub mod function;
 pub mod monitor;
+pub mod query;
 pub mod suite;
 pub mod ta;
 pub mod test;
@@ -20,8 +21,8 @@ use hrdsl_source::Files;
 pub fn lower(scenario: &Scenario, files: &Files) -> Program {
     let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &mut signals));
-    let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
+    let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     Program {
         name: scenario.name.clone(),
         actors: vocabulary::actors(scenario),
@@ -31,7 +32,7 @@ pub fn lower(scenario: &Scenario, files: &Files) -> Program {
         shared: scenario.shared.iter().map(ta::var).collect(),
         clocks: scenario.clocks.iter().map(|c| c.name.clone()).collect(),
         channels: scenario.channels.iter().map(ta::channel).collect(),
-        queries: Vec::new(),
+        queries: scenario.queries.iter().map(|q| query::query(q, scenario, &automata, files)).collect(),
         functions: scenario.functions.iter().map(|f| function::function(f, scenario, &automata)).collect(),
         automata,
         networks: scenario.networks.iter().map(ta::network).collect(),

@@ -65,7 +65,7 @@ pub(crate) fn assumption(a: &model::Assumption, files: &Files) -> Assumption {
     }
 }
 
-fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

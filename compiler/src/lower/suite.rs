@@ -40,11 +40,19 @@ fn method(m: &model::Method) -> Method {
             goals: goals.iter().map(|g| model_goal(*g)).collect(),
             minimise: *minimise,
         },
-        model::Method::Search { network, goals } => Method::Search {
+        model::Method::Search { network, goals, witness, delays } => Method::Search {
             network: network.0,
             goals: goals.iter().map(|g| goal(*g)).collect(),
-            witness: WitnessKind::default(),
-            delays: Delays::default(),
+            witness: match witness {
+                model::WitnessKind::Any => WitnessKind::Any,
+                model::WitnessKind::Shortest => WitnessKind::Shortest,
+                model::WitnessKind::Fastest => WitnessKind::Fastest,
+            },
+            delays: match delays {
+                model::Delays::Earliest => Delays::Earliest,
+                model::Delays::Latest => Delays::Latest,
+                model::Delays::Sampled => Delays::Sampled,
+            },
         },
         model::Method::Random { stimuli, awaits, length, pause } => Method::Random {
             stimuli: stimuli.iter().map(|e| EventId(e.0)).collect(),
@@ -94,5 +102,10 @@ fn goal(g: model::SearchGoal) -> SearchGoal {
         model::SearchGoal::Bins(cross) => SearchGoal::Bins { cross: cross.0 },
         model::SearchGoal::Locations => SearchGoal::Locations,
         model::SearchGoal::Edges => SearchGoal::Edges,
+        model::SearchGoal::Pairs => SearchGoal::Pairs,
+        model::SearchGoal::Uses => SearchGoal::Uses,
+        model::SearchGoal::Violation(requirement) => SearchGoal::Violation { monitor: requirement.0 },
+        model::SearchGoal::Trigger(requirement) => SearchGoal::Trigger { monitor: requirement.0 },
+        model::SearchGoal::Query(query) => SearchGoal::Query { query: query.0 },
     }
 }

@@ -297,7 +297,9 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
             "comparisons cannot be chained: write `a < b && b < c`"
         }
         // The expression before may have been taken for complete.
-        Kind::Pipe if fault.has("||") || fault.has("{") || fault.complete() && fault.expected.len() == 1 => "in expressions `or` is written `||` or `or`",
+        Kind::Pipe if fault.has("||") || fault.has("{") || fault.complete() && fault.expected.len() == 1 => {
+            "in expressions `or` is written `||` or `or`"
+        }
         Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
         Kind::Pipe if before.is_some_and(Kind::ends_operand) && !fault.has("|") => {
             "in expressions `or` is written `||` or `or`"

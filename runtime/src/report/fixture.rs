@@ -379,8 +379,12 @@ fn requirement(r: usize, tests: &[TestResult]) -> Requirement {
 fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
     let (name, method) = SUITES[s];
     let line_percent = |n: usize| ratios(&[together(&tests[..n])]).line_percent();
-    let goal =
-        |goal: String, status: GoalStatus, reason: &str| GoalReport { goal, status, reason: reason.into() };
+    let goal = |goal: String, status: GoalStatus, reason: &str| GoalReport {
+        goal,
+        status,
+        reason: reason.into(),
+        test: None,
+    };
     let mut goals = Vec::new();
     if method == "search" {
         goals.extend(BINS[..13].iter().zip(0..13).map(|(b, i)| {

@@ -13,7 +13,7 @@ use hrdsl_ir::{
     suite::{ModelGoal, PlayerRef},
 };
 
-use super::{bins, search::bin_goal};
+use super::{bins, expand::bin_goal};
 
 /// Something that a suite is to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

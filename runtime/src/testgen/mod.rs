@@ -12,7 +12,10 @@
 mod agents;
 mod bins;
 mod concrete;
+mod covers;
+mod expand;
 mod extract;
+mod flow;
 mod goals;
 mod minimise;
 mod model;
@@ -20,19 +23,20 @@ mod random;
 mod search;
 mod write;
 
+use crate::prove::Settings;
 use hrdsl_ir::{
     Program,
-    suite::{Method, Suite},
+    suite::{Delays, Method, Suite, WitnessKind},
     test::{Provenance, Test, TestStep},
 };
 
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
+pub use expand::bin_goal;
 pub use hrdsl_bdi::choose::BeliefSet;
 pub use model::{
     AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation, Uncovered, Unreached,
 };
-pub use search::bin_goal;
 pub use write::{step_text, write};
 
 /// An abstract test: steps without samples.
@@ -41,7 +45,7 @@ pub struct AbstractTest {
     pub steps: Vec<TestStep>,
     pub because: Vec<String>,
     pub predicts: Vec<String>,
-    /// Of a suite by agents: which of its goals the run reached.
+    /// Which of the suite's goals the run reached.
     pub reaches: goals::Reached,
     /// Of a suite by agents: the first run that it came from.
     pub origin: Option<Origin>,
@@ -63,6 +67,9 @@ pub struct GoalReport {
     pub status: GoalStatus,
     /// For an unreachable goal, why; for an open one, which budget ran out.
     pub reason: String,
+    /// For one that is reached: the first test whose witness reaches it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub test: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -121,6 +128,11 @@ pub struct Options {
     pub seed: u64,
     /// Whether to keep only the tests that are needed, instead of what the suite says.
     pub minimise: Option<bool>,
+    /// Of a suite by search: which witnesses are taken, instead of what the suite says.
+    pub witness: Option<WitnessKind>,
+    pub delays: Option<Delays>,
+    /// Of a suite by search: how it searches; its witnesses and seed do not count.
+    pub search: Settings,
 }
 
 /// Makes the tests of a suite: `count` concrete tests, or as many as the suite says.
@@ -133,7 +145,7 @@ pub fn generate(
     count: Option<u32>,
     seed: u64,
 ) -> Result<Generated, String> {
-    generate_with(program, suite, Options { count, seed, minimise: None })
+    generate_with(program, suite, Options { count, seed, ..Options::default() })
 }
 
 /// Makes the tests of a suite.
@@ -141,30 +153,40 @@ pub fn generate(
 /// # Errors
 /// A model that cannot be run, with the place.
 pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Result<Generated, String> {
-    let Options { count, seed, minimise } = options;
+    let Options { count, seed, minimise, .. } = options;
     let most = count.unwrap_or(suite.tests);
     let (method, harvest, minimise) = match &suite.method {
         Method::Agents { minimise: said, .. } => {
             ("agents", agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
-        Method::Search { network, goals, .. } => {
-            ("search", search::harvest(program, suite, *network, goals)?, false)
+        Method::Search { network, goals, witness, delays } => {
+            let settings = Settings {
+                witness: options.witness.unwrap_or(*witness),
+                delays: options.delays.unwrap_or(*delays),
+                seed,
+                keep_first: true,
+                ..options.search
+            };
+            ("search", search::harvest(program, suite, *network, goals, &settings)?, true)
         }
         Method::Random { .. } => ("random", random::harvest(program, suite, most, seed)?, false),
     };
-    let Harvest { tests, goals, mut notes, found } = harvest;
+    let Harvest { tests, mut goals, mut notes, found } = harvest;
     let mut different = distinct(tests);
     let mut number = most;
     if minimise {
         let keep = minimise::minimised(&different);
         notes.push(format!("{} of {} abstract tests are needed", keep.len(), different.len()));
         different = keep.into_iter().map(|i| different[i].clone()).collect();
-        // One of each will do, unless a number was asked for.
-        number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
+        // One of each will do, unless a number was asked for. Those of a search are made concrete again, with other seeds.
+        if method != "search" {
+            number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
+        }
     }
     let tests = make_concrete(program, suite, method, &different, number, seed)?;
     let made = &different[..different.len().min(number as usize)];
     let origins = different.iter().cycle().take(tests.len()).filter_map(|t| t.origin.clone()).collect();
+    name_tests(suite, made, &mut goals);
     let explanation = found.as_ref().map(|found| explain(found, made, suite));
     Ok(Generated {
         suite: suite.name.clone(),
@@ -191,6 +213,14 @@ fn explain(found: &Found, made: &[AbstractTest], suite: &Suite) -> Explanation {
         },
     });
     Explanation { tests: model::explained(made, &found.goals, name), uncovered: uncovered.collect() }
+}
+
+/// Says of each goal of a search which test is the first to reach it.
+fn name_tests(suite: &Suite, made: &[AbstractTest], goals: &mut [GoalReport]) {
+    for (at, goal) in goals.iter_mut().enumerate().filter(|(_, g)| g.status == GoalStatus::Reached) {
+        let first = made.iter().position(|t| t.reaches.contains(&at));
+        goal.test = first.map(|index| test_name(suite, index as u64 + 1));
+    }
 }
 
 /// `SUITE.t001`

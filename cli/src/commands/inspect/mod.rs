@@ -269,7 +269,11 @@ fn of_test<'p>(
     (suite, number): (&'p Suite, usize),
 ) -> Result<Chosen<'p>, Fault> {
     let minimise = args.minimise.then_some(true);
-    let generated = generate_with(program, suite, Options { count: args.count, seed: args.seed, minimise })?;
+    let generated = generate_with(
+        program,
+        suite,
+        Options { count: args.count, seed: args.seed, minimise, ..Options::default() },
+    )?;
     let name = format!("{}.t{number:03}", suite.name);
     let origin = generated.origins.get(number - 1);
     let chosen = origin.and_then(|origin| Chosen::of_test(suite, &name, origin, args.seed));

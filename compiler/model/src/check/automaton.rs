@@ -100,6 +100,7 @@ impl Checker<'_> {
                 self.s.automata[index].edges.extend(edge);
             }
         }
+        self.automaton_scopes.insert(index, scope.env.own.clone());
         self.say_impure();
         self.unread_members = false;
         self.made(&self.s.automata[index], automaton.name.span).into_iter().for_each(|i| self.report(i));

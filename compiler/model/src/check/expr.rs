@@ -272,9 +272,10 @@ impl<'a> Checker<'a> {
 
     fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
         let name = &callee.names[0];
-        if let [name] = callee.names.as_slice()
-            && let Some(value) = self.applied_function(name, args, span, env)
-        {
+        // One of an automaton has its name before it, in a query.
+        let whole = callee.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
+        let whole = Name { text: whole, ..name.clone() };
+        if let Some(value) = self.applied_function(&whole, args, span, env) {
             return Item::One(value);
         }
         if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {

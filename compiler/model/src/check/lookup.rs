@@ -22,6 +22,14 @@ impl<'a> Checker<'a> {
                 return Item::One(Expr { kind: ExprKind::Leaf(leaf.0), ty: leaf.1, span: path.span });
             }
         }
+        // Of an automaton, in a query.
+        if let [_, _, fields @ ..] = path.names.as_slice()
+            && let whole = text(&path.names[..2])
+            && let Some(layout) = env.layout(&whole).cloned()
+        {
+            let item = self.assembled(&whole, &layout, env, path.span);
+            return fields.iter().fold(item, |item, field| self.field(item, field));
+        }
         let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
         if let ([value, parts @ ..], Some(of)) = (fields, self.enums.get(&first.text)) {
             let of = self.s.enums[usize::from(of)].of;

@@ -27,6 +27,7 @@ mod message;
 mod place;
 mod places;
 mod plan;
+mod query;
 mod range;
 mod requirement;
 mod rule;
@@ -75,7 +76,7 @@ use table::{MAX_NAMES, Map, Refused, Table};
 /// 2. [`Checker::world`]: bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
-/// 5. [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
+/// 5. [`Checker::queries`], [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
 /// 6. [`Checker::tests`]
 #[must_use]
 pub fn resolve(
@@ -107,6 +108,7 @@ pub fn resolve_part(
     checker.stimuli();
     checker.agents();
     checker.automata();
+    checker.queries();
     checker.requirements();
     checker.coverage();
     checker.unread_members = checker.agent_decls.iter().any(|a| unread::in_agent(a.syntax));
@@ -206,6 +208,10 @@ pub(crate) struct Checker<'a> {
     /// By [`ChannelId`](crate::ChannelId): the parameters as declared.
     channel_fields: Vec<Fields>,
     networks: Table,
+    queries: Table,
+    requirement_names: Table,
+    /// By the place in the scenario's automata: what the edges of each see.
+    automaton_scopes: BTreeMap<usize, Rc<env::Scope>>,
     points: Table,
     crosses: Table,
     suites: Table,
@@ -285,6 +291,9 @@ impl<'a> Checker<'a> {
             vague_channels: BTreeSet::new(),
             channel_fields: Vec::new(),
             networks: Table::default(),
+            queries: Table::default(),
+            requirement_names: Table::default(),
+            automaton_scopes: BTreeMap::new(),
             points: Table::default(),
             crosses: Table::default(),
             suites: Table::default(),
@@ -439,6 +448,8 @@ impl<'a> Checker<'a> {
             (&self.shared_names, Noun::Variable),
             (&self.channels, Noun::Channel),
             (&self.networks, Noun::Network),
+            (&self.queries, Noun::Query),
+            (&self.requirement_names, Noun::Requirement),
             (&self.points, Noun::Point),
             (&self.crosses, Noun::Cross),
             (&self.suites, Noun::Suite),

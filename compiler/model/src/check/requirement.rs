@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, Name, PatternKind, Sort};
 
-use super::{Checker, Env, given::template, table::Table};
+use super::{Checker, Env, given::template};
 use crate::{
     Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind, noun::Noun,
     report::requirements::says_nothing,
@@ -11,7 +11,6 @@ use crate::{
 
 impl Checker<'_> {
     pub(super) fn requirements(&mut self) {
-        let mut names = Table::default();
         self.templates_of(Sort::Require, |c, template| {
             if let ItemKind::Require(require) = template.kind {
                 c.resolved(require);
@@ -22,7 +21,7 @@ impl Checker<'_> {
                 _ if template(item).is_some() => {}
                 ItemKind::Require(require) => {
                     let resolved = self.resolved(require);
-                    self.requirement(&require.name, resolved, require.pattern.span, span, &mut names);
+                    self.requirement(&require.name, resolved, require.pattern.span, span);
                 }
                 ItemKind::Instance(instance) if instance.sort == Sort::Require => {
                     let Some((template, given)) = self.instance(instance, &Env::measured("")) else {
@@ -31,7 +30,7 @@ impl Checker<'_> {
                     let ItemKind::Require(require) = template.kind else { continue };
                     let place = Some((&instance.name, instance.span));
                     let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
-                    self.requirement(&instance.name, resolved, instance.span, span, &mut names);
+                    self.requirement(&instance.name, resolved, instance.span, span);
                 }
                 ItemKind::Assume(assume) => self.assume(assume, span),
                 _ => {}
@@ -56,11 +55,11 @@ impl Checker<'_> {
         resolved: Option<(RequirementKind, String, Pattern)>,
         text: Span,
         span: Span,
-        names: &mut Table,
     ) {
         self.not_a_template(Sort::Require, name);
-        Self::declare(&mut self.issues, names, Noun::Requirement, name);
-        if let Some((kind, title, pattern)) = resolved {
+        let new =
+            Self::declare(&mut self.issues, &mut self.requirement_names, Noun::Requirement, name).is_some();
+        if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
             let name = name.text.clone();
             self.s.requirements.push(Requirement { name, kind, title, pattern, text, span });
         }

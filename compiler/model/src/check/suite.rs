@@ -7,8 +7,9 @@ use hrdsl_syntax::ast::{
 
 use super::{Checker, Env, NOBODY, agent::Scope, table::MAX_NAMES};
 use crate::{
-    Choice, ChoiceCondition, ChoiceKind, CrossId, Dim, EventId, EventPattern, Explore, Kind, Method,
-    ModelGoal, NetworkId, Player, Role, SearchGoal, Suite, Value,
+    Ask, Choice, ChoiceCondition, ChoiceKind, CrossId, Delays, Dim, EventId, EventPattern, Explore, Kind,
+    Method, ModelGoal, NetworkId, Pattern, Player, QueryId, RequirementId, Role, SearchGoal, Suite, Value,
+    WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -22,6 +23,8 @@ struct Said {
     reached: Vec<ModelGoal>,
     stop_after: Option<u32>,
     minimise: bool,
+    witness: WitnessKind,
+    delays: Delays,
     stimuli: Vec<EventId>,
     awaits: Vec<EventPattern>,
     length: Option<(u32, u32)>,
@@ -55,7 +58,8 @@ impl Checker<'_> {
         let mut said = Said::default();
         for member in &suite.members {
             if self.fits_method(member, &suite.method) {
-                self.member(member, &players, &mut said);
+                let by_search = matches!(suite.method, SyntaxMethod::Search(_));
+                self.member(member, &players, by_search, &mut said);
             }
         }
         let method = match &suite.method {
@@ -69,7 +73,9 @@ impl Checker<'_> {
                     let message = format!("the suite `{}` has nothing to reach", suite.name.text);
                     self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
                 }
-                Method::Search { network: network?, goals: said.goals }
+                let Said { goals, witness, delays, .. } = said;
+                let network = self.of_network(network?, &goals, suite);
+                Method::Search { network, goals, witness, delays }
             }
             SyntaxMethod::Random => {
                 if !suite.members.iter().any(|m| matches!(m.kind, Member::Stimuli(_) | Member::Error)) {
@@ -147,10 +153,7 @@ impl Checker<'_> {
             | Member::StopAfter(_)
             | Member::Minimise
             | Member::Horizon(_) => "agents",
-            Member::ReachEach(word) if matches!(method, SyntaxMethod::Search(_)) => {
-                self.choice(Noun::Reach, word, &["bin of …", "location", "edge"]);
-                return false;
-            }
+            Member::ReachEach(_) if matches!(method, SyntaxMethod::Search(_)) => return true,
             Member::ReachEach(_) => "agents",
             // Both.
             Member::ReachBins(_) | Member::ReachEdges if matches!(method, SyntaxMethod::Agents(_)) => {
@@ -178,7 +181,7 @@ impl Checker<'_> {
         is == needs
     }
 
-    fn member(&mut self, member: &SuiteMember, players: &[Player], said: &mut Said) {
+    fn member(&mut self, member: &SuiteMember, players: &[Player], by_search: bool, said: &mut Said) {
         match &member.kind {
             Member::Choose { any, belief, agent, per, condition } => {
                 let choice = self.choose(*any, belief, agent, per.as_ref(), players);
@@ -191,6 +194,12 @@ impl Checker<'_> {
                 said.stop_after = count.and_then(|n| u32::try_from(n).ok());
             }
             Member::Minimise => said.minimise = true,
+            Member::ReachEach(word) if by_search => {
+                let goals = [SearchGoal::Pairs, SearchGoal::Uses];
+                let words = ["pair", "use", "location", "edge", "bin of …"];
+                let found = self.choice(Noun::SearchReach, word, &words);
+                said.goals.extend(found.and_then(|i| goals.get(i)));
+            }
             Member::ReachEach(word) => {
                 let goals = [ModelGoal::Plans, ModelGoal::Contexts, ModelGoal::Messages, ModelGoal::Paths];
                 let words = ["plan", "context", "message", "path", "edge", "bin of …"];
@@ -200,7 +209,22 @@ impl Checker<'_> {
             Member::Tests(e) => {
                 said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
             }
-            Member::ReachOf { .. } | Member::ReachQueries(_) | Member::Witness(_) | Member::Delays(_) => {}
+            Member::ReachOf { what, names } => self.reach_of(what, names, said),
+            Member::ReachQueries(names) => {
+                for name in names {
+                    said.goals.extend(self.reach_query(name));
+                }
+            }
+            Member::Witness(word) => {
+                let kinds = [WitnessKind::Any, WitnessKind::Shortest, WitnessKind::Fastest];
+                let found = self.choice(Noun::Witness, word, &["any", "shortest", "fastest"]);
+                said.witness = found.map_or(said.witness, |i| kinds[i]);
+            }
+            Member::Delays(word) => {
+                let kinds = [Delays::Earliest, Delays::Latest, Delays::Sampled];
+                let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
+                said.delays = found.map_or(said.delays, |i| kinds[i]);
+            }
             Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
             Member::Patience(e) => said.patience = self.time(e, "the patience", true),
             Member::ReachBins(name) => match self.crosses.get(&name.text) {
@@ -228,6 +252,75 @@ impl Checker<'_> {
             Member::Pause(range) => said.pause = self.pause(range),
             Member::Error => {}
         }
+    }
+
+    /// `violation of R1, R2`, `trigger of R1`
+    fn reach_of(&mut self, what: &Name, list: &[Name], said: &mut Said) {
+        let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
+        for name in list {
+            if self.requirement_names.get(&name.text).is_none() {
+                let all: Vec<String> = self.requirement_names.names().map(str::to_owned).collect();
+                self.unknown(Noun::Requirement, name, &all, None);
+                continue;
+            }
+            // One with a diagnostic is in no list.
+            let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
+            if reads_signals(&self.s.requirements[at].pattern) {
+                let message =
+                    format!("`{}` reads signals of the world, which a network does not have", name.text);
+                self.report(bad_suite(name.span, message, "remove it: `hrdsl sim` judges it in every run"));
+                continue;
+            }
+            let id = RequirementId(u16::try_from(at).unwrap_or(u16::MAX));
+            match what {
+                Some(0) => said.goals.push(SearchGoal::Violation(id)),
+                Some(_) => said.goals.push(SearchGoal::Trigger(id)),
+                None => {}
+            }
+        }
+    }
+
+    fn reach_query(&mut self, name: &Name) -> Option<SearchGoal> {
+        if self.queries.get(&name.text).is_none() {
+            let all: Vec<String> = self.queries.names().map(str::to_owned).collect();
+            self.unknown(Noun::Query, name, &all, None);
+            return None;
+        }
+        let at = self.s.queries.iter().position(|q| q.name == name.text)?;
+        match &self.s.queries[at].ask {
+            Ask::Possibly(f) if f.asks_deadlock() => {
+                let message = format!("`{}` asks for a deadlock, which is nothing to do", name.text);
+                self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
+                None
+            }
+            Ask::Possibly(_) => Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX)))),
+            Ask::Invariantly(_)
+            | Ask::PotentiallyAlways(_)
+            | Ask::Eventually(_)
+            | Ask::LeadsTo(..)
+            | Ask::Sup { .. }
+            | Ask::Inf { .. } => {
+                let message = format!("`{}` does not ask `E<>`: a test cannot reach it", name.text);
+                self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
+                None
+            }
+        }
+    }
+
+    /// The queries that a suite reaches are about its network.
+    fn of_network(&mut self, network: NetworkId, goals: &[SearchGoal], suite: &ast::Suite) -> NetworkId {
+        for goal in goals {
+            let SearchGoal::Query(id) = goal else { continue };
+            let query = &self.s.queries[usize::from(id.0)];
+            if query.network == network {
+                continue;
+            }
+            let (name, of) = (query.name.clone(), usize::from(query.network.0));
+            let message = format!("the query `{name}` is about another network than this suite");
+            let help = format!("make a suite `by search of {}`", self.s.networks[of].name);
+            self.report(bad_suite(suite.name.span, message, help));
+        }
+        network
     }
 
     /// `pairwise`, `wise(3)`, …
@@ -361,6 +454,15 @@ impl Checker<'_> {
     }
 }
 
+/// Whether a requirement needs more than events.
+fn reads_signals(pattern: &Pattern) -> bool {
+    match pattern {
+        Pattern::Causes { .. } | Pattern::Forbids { .. } => false,
+        Pattern::NeverWhile { condition, .. } => condition.is_some(),
+        Pattern::Globally(_) => true,
+    }
+}
+
 fn is_goal(member: &SuiteMember) -> bool {
     matches!(
         member.kind,
@@ -368,6 +470,8 @@ fn is_goal(member: &SuiteMember) -> bool {
             | Member::ReachLocations
             | Member::ReachEdges
             | Member::ReachEach(_)
+            | Member::ReachOf { .. }
+            | Member::ReachQueries(_)
             | Member::Error
     )
 }

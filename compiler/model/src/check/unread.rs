@@ -59,6 +59,10 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Method
         | Noun::Explore
         | Noun::Reach
+        | Noun::SearchReach
+        | Noun::ReachOf
+        | Noun::Witness
+        | Noun::Delays
         | Noun::InternalAction
         | Noun::Performative
         | Noun::Motion
@@ -67,7 +71,7 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Coordinate => false,
         // Declared in one piece with the place that uses them.
         Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
-        Noun::Annotation | Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location => members,
+        Noun::Annotation | Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location | Noun::Member => members,
         Noun::Variable | Noun::Function => items || members,
         Noun::Actor
         | Noun::Type
@@ -84,6 +88,7 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Automaton
         | Noun::Player
         | Noun::Network
+        | Noun::Query
         | Noun::Requirement
         | Noun::Point
         | Noun::Cross

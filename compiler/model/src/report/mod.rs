@@ -5,6 +5,7 @@ pub(crate) mod automata;
 pub(crate) mod coverage;
 pub(crate) mod functions;
 pub(crate) mod names;
+pub(crate) mod queries;
 pub(crate) mod requirements;
 pub(crate) mod roles;
 pub(crate) mod tests;

@@ -1,0 +1,118 @@
+//! What is to be decided: names on the command line, and queries that the scenario does not have.
+
+use hrdsl_compiler::{Compilation, Input, ast, compile_with};
+use hrdsl_ir::{Program, ta::Network};
+
+use super::{Args, Job, What};
+use crate::input::{self, Disk, Fault};
+
+/// A scenario with the queries of the command line.
+pub struct Asked {
+    pub compilation: Compilation,
+    /// The names of the queries that were added.
+    added: Vec<String>,
+}
+
+impl Asked {
+    /// Compiles the scenario with `--ask`ed queries at its end, so that what is wrong with them is said of them.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or no network to ask.
+    pub fn load(args: &Args) -> Result<Self, Fault> {
+        let mut text = input::read(&args.file)?;
+        let name = args.file.display().to_string();
+        let plain = compile_with(Input { name: &name, text: &text }, &[], &Disk);
+        if args.ask.is_empty() {
+            return Ok(Self { compilation: plain, added: Vec::new() });
+        }
+        let Some(networks) = plain.program.as_ref().map(|p| asked_networks(args, p)).transpose()? else {
+            return Ok(Self { compilation: plain, added: Vec::new() });
+        };
+        let taken = names(&plain);
+        let mut added = Vec::new();
+        for network in networks {
+            for ask in &args.ask {
+                let name =
+                    (1..).map(|n| format!("ask{n}")).find(|n| !taken.contains(n) && !added.contains(n));
+                let name = name.unwrap_or_default();
+                text += &format!("\nquery {name} of {network} = {}", one_line(ask));
+                added.push(name);
+            }
+        }
+        text.push('\n');
+        let compilation = compile_with(Input { name: &name, text: &text }, &[], &Disk);
+        Ok(Self { compilation, added })
+    }
+
+    /// All that is to be decided, network by network.
+    ///
+    /// # Errors
+    /// A name that does not exist.
+    pub fn jobs(&self, args: &Args, program: &Program) -> Result<Vec<Job>, Fault> {
+        known("requirement", &args.requirement, program.monitors.iter().map(|m| m.name.as_str()))?;
+        known("query", &args.query, program.queries.iter().map(|q| q.name.as_str()))?;
+        let some = !args.requirement.is_empty() || !args.query.is_empty() || !args.ask.is_empty();
+        let mut jobs = Vec::new();
+        for (network, _) in chosen(args, program)? {
+            for (monitor, m) in program.monitors.iter().enumerate() {
+                if args.requirement.contains(&m.name) || !some {
+                    jobs.push(Job { network, what: What::Requirement(monitor) });
+                }
+            }
+            for (query, q) in program.queries.iter().enumerate() {
+                let wanted = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
+                if wanted && usize::from(q.network) == network {
+                    jobs.push(Job { network, what: What::Query(query) });
+                }
+            }
+        }
+        Ok(jobs)
+    }
+}
+
+/// A line break would end the query where it is written, and a comment would hide what follows.
+fn one_line(ask: &str) -> String {
+    ask.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn chosen<'p>(args: &Args, program: &'p Program) -> Result<Vec<(usize, &'p Network)>, Fault> {
+    known("network", &args.network, program.networks.iter().map(|n| n.name.as_str()))?;
+    let all = program.networks.iter().enumerate();
+    let chosen: Vec<_> =
+        all.filter(|(_, n)| args.network.is_empty() || args.network.contains(&n.name)).collect();
+    if chosen.is_empty() {
+        return Err("the scenario has no network to search".to_owned());
+    }
+    Ok(chosen)
+}
+
+/// The networks that `--ask` is about.
+fn asked_networks(args: &Args, program: &Program) -> Result<Vec<String>, Fault> {
+    let chosen = chosen(args, program)?;
+    if args.network.is_empty() && chosen.len() > 1 {
+        let names: Vec<&str> = chosen.iter().map(|(_, n)| n.name.as_str()).collect();
+        return Err(format!("say which network to ask with --network: {}", names.join(", ")));
+    }
+    Ok(chosen.into_iter().map(|(_, n)| n.name.clone()).collect())
+}
+
+/// The names of the queries that there are.
+fn names(compilation: &Compilation) -> Vec<String> {
+    let items = compilation.ast.iter().flat_map(|f| &f.items);
+    let query = |i: &ast::Item| match &i.kind {
+        ast::ItemKind::Query(q) => Some(q.name.text.clone()),
+        _ => None,
+    };
+    items.filter_map(query).collect()
+}
+
+fn known<'n>(what: &str, wanted: &[String], all: impl Iterator<Item = &'n str>) -> Result<(), Fault> {
+    let all: Vec<&str> = all.collect();
+    for name in wanted {
+        if !all.contains(&name.as_str()) {
+            let has = if all.is_empty() { "none".to_owned() } else { all.join(", ") };
+            return Err(format!("no {what} `{name}`; the scenario has: {has}"));
+        }
+    }
+    Ok(())
+}

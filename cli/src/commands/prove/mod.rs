@@ -1,0 +1,325 @@
+//! `hrdsl prove`: whether the networks of a scenario keep its requirements, and what its queries answer.
+
+mod asked;
+mod show;
+mod table;
+
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::Ordering,
+        mpsc::{self, RecvTimeoutError},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use hrdsl_ir::Program;
+use hrdsl_runtime::prove::{self, Answered, Found, Proof, Settings, Status, Watch};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::how::{Way, When, Witness};
+use crate::{
+    exit::Exit,
+    input::{self, Fault},
+};
+use asked::Asked;
+use table::Row;
+
+/// Search the networks of a scenario: can they violate a requirement, and what do the queries answer?
+///
+/// All requirements and queries, unless some are named. A violation is shown by a run.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  hrdsl prove scenario.hri
+  hrdsl prove scenario.hri --requirement R2 --trace
+  hrdsl prove scenario.hri --ask 'E<> Robot.grasped and t > 5 s' --witness fastest --trace
+  hrdsl prove scenario.hri --ask 'A[] not deadlock' --threads 2 --timeout 60s
+  hrdsl prove scenario.hri --query live --mermaid live.mmd")]
+pub struct Args {
+    /// The scenario.
+    file: PathBuf,
+    /// Only this network; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    network: Vec<String>,
+    /// Only this requirement; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    requirement: Vec<String>,
+    /// Only this query; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    query: Vec<String>,
+    /// A query that the scenario does not have, as it would be written there after the `=`; may be given several times.
+    #[arg(long, value_name = "QUERY")]
+    ask: Vec<String>,
+    #[command(flatten)]
+    how: How,
+    /// Stop after this time, like `60s` or `500ms`: what is not decided then is open.
+    #[arg(long, value_name = "T", value_parser = duration)]
+    timeout: Option<Duration>,
+    /// Tell each run that shows something, step by step.
+    #[arg(long)]
+    trace: bool,
+    /// Write the first of these runs as a Mermaid sequence diagram.
+    #[arg(long, value_name = "FILE")]
+    mermaid: Option<PathBuf>,
+    /// Write it as a Graphviz graph.
+    #[arg(long, value_name = "FILE")]
+    dot: Option<PathBuf>,
+    /// One document on stdout, instead of text.
+    #[arg(long)]
+    json: bool,
+}
+
+/// How networks are searched: for `prove`.
+#[derive(clap::Args)]
+pub struct How {
+    /// Which run shows what is found [default: shortest; with --order, any].
+    #[arg(long, value_enum)]
+    witness: Option<Witness>,
+    /// When its transitions happen.
+    #[arg(long, value_enum, default_value_t = When::Earliest)]
+    delays: When,
+    /// In which order states are looked at [default: what the witness needs].
+    #[arg(long, value_enum)]
+    order: Option<Way>,
+    /// Threads that search at once.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: u16,
+    /// Everything random comes from this.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The most symbolic states that one search stores.
+    #[arg(long, value_name = "N")]
+    budget_states: Option<usize>,
+    /// The most memory for them, like `2GB` or `500MB`.
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    budget_memory: Option<usize>,
+}
+
+impl How {
+    fn settings(&self) -> Settings {
+        let usual = if self.order.is_some() { Witness::Any } else { Witness::Shortest };
+        let mut settings = Settings {
+            witness: self.witness.unwrap_or(usual).into(),
+            delays: self.delays.into(),
+            order: self.order.map(Into::into),
+            threads: usize::from(self.threads),
+            seed: self.seed,
+            ..Settings::default()
+        };
+        if let Some(states) = self.budget_states {
+            settings.budget.states = states;
+        }
+        if let Some(bytes) = self.budget_memory {
+            settings.budget.bytes = bytes;
+        }
+        settings
+    }
+}
+
+/// # Errors
+/// A file, a name that does not exist, or an engine that contradicts itself.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let asked = Asked::load(args)?;
+    let Some(program) = input::report_errors(&args.file, &asked.compilation) else { return Ok(Exit::Errors) };
+    let jobs = asked.jobs(args, program)?;
+    if jobs.is_empty() {
+        return Err(
+            "there is nothing to prove: the scenario has neither requirements nor queries of a network"
+                .to_owned(),
+        );
+    }
+    let settings = args.how.settings();
+    let clock = Clock::start(args.timeout);
+    let shared = Arc::new(program.clone());
+    let mut rows = Vec::new();
+    for job in &jobs {
+        rows.push(job.row(&shared, &settings, &clock)?);
+    }
+    clock.finish();
+    write_run(args, &rows)?;
+    let text = if args.json { show::json(program, &rows)? } else { show::human(&rows, args.trace) };
+    input::print(&text)?;
+    Ok(verdict(&rows))
+}
+
+/// Something to decide.
+pub struct Job {
+    /// Index into the program's networks.
+    pub network: usize,
+    pub what: What,
+}
+
+/// By their places in the program.
+#[derive(Clone, Copy)]
+pub enum What {
+    Requirement(usize),
+    Query(usize),
+}
+
+impl Job {
+    fn row(&self, program: &Arc<Program>, settings: &Settings, clock: &Clock) -> Result<Row, Fault> {
+        let started = now();
+        let (of, settings, network) = (Arc::clone(program), *settings, self.network);
+        let mut row = match self.what {
+            What::Requirement(monitor) => {
+                let work =
+                    move |watch: &Watch| prove::prove(&of, &of.networks[network], monitor, &settings, watch);
+                let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0 };
+                let proof = clock.watched(&program.monitors[monitor].name, work)?;
+                Row::of_proof(program, &proof.unwrap_or_else(late))
+            }
+            What::Query(query) => {
+                let work = move |watch: &Watch| prove::answer(&of, query, &settings, watch);
+                let late = || Answered {
+                    query,
+                    found: Found::Open(LATE.to_owned()),
+                    run: None,
+                    notes: Vec::new(),
+                    states: None,
+                };
+                let answer = clock.watched(&program.queries[query].name, work)?;
+                Row::of_answer(program, &answer.unwrap_or_else(late))
+            }
+        };
+        row.network.clone_from(&program.networks[network].name);
+        row.time = started.elapsed();
+        Ok(row)
+    }
+}
+
+const LATE: &str = "the time was over";
+
+#[allow(clippy::disallowed_methods, reason = "how long it took is shown, and decides nothing but a time-out")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+/// Time, and a line on the terminal for long work.
+struct Clock {
+    until: Option<Instant>,
+    bar: ProgressBar,
+}
+
+/// How long a search is waited for that was told to stop. Not all of them listen.
+const GRACE: Duration = Duration::from_millis(500);
+
+impl Clock {
+    fn start(timeout: Option<Duration>) -> Self {
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+            bar.set_style(style);
+        }
+        Self { until: timeout.and_then(|t| now().checked_add(t)), bar }
+    }
+
+    /// Runs something while its progress is shown, and tells it when its time is over. `None`: it did not end in time, and is
+    /// left behind, until the process ends.
+    fn watched<T: Send + 'static>(
+        &self,
+        name: &str,
+        work: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+    ) -> Result<Option<T>, Fault> {
+        if self.until.is_some_and(|until| now() >= until) {
+            return Ok(None);
+        }
+        let watch = Arc::new(Watch::default());
+        let (done, result) = mpsc::channel();
+        let watching = Arc::clone(&watch);
+        // Searches recurse little, but expressions are as deep as they are written.
+        let search = thread::Builder::new().stack_size(STACK);
+        let search = search.spawn(move || {
+            // Nobody may wait any more.
+            let _ = done.send(work(&watching));
+        });
+        search.map_err(|e| format!("cannot start a thread: {e}"))?;
+        let mut waited = Duration::from_millis(1);
+        loop {
+            match result.recv_timeout(waited) {
+                Ok(found) => return found.map(Some),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(format!("internal error: the search for `{name}` broke off"));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            // Short work ends soon; long work is looked at now and then.
+            waited = (waited * 2).min(Duration::from_millis(50));
+            if let Some(until) = self.until.filter(|until| now() >= *until) {
+                watch.stop.store(true, Ordering::Relaxed);
+                if now() >= until + GRACE {
+                    return Ok(None);
+                }
+            }
+            self.bar.set_message(format!("{name}: {} states", watch.stored.load(Ordering::Relaxed)));
+            self.bar.tick();
+        }
+    }
+
+    fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+const STACK: usize = 64 << 20;
+
+/// The first run that shows something, as a diagram.
+fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
+    let story = rows.iter().find_map(|r| r.story.as_ref());
+    for (path, text) in [
+        (&args.mermaid, story.map(hrdsl_runtime::prove::Story::mermaid)),
+        (&args.dot, story.map(hrdsl_runtime::prove::Story::dot)),
+    ] {
+        match (path, text) {
+            (Some(path), Some(text)) => input::write(path, &text)?,
+            (Some(path), None) => {
+                eprintln!("note: {} is not written: there is no run to show", path.display());
+            }
+            (None, _) => {}
+        }
+    }
+    Ok(())
+}
+
+/// The worst of all.
+fn verdict(rows: &[Row]) -> Exit {
+    let worst = |exit: Exit| rows.iter().any(|r| r.exit() == exit).then_some(exit);
+    worst(Exit::Errors).or(worst(Exit::Findings)).or(worst(Exit::Open)).unwrap_or(Exit::Ok)
+}
+
+/// `60s`, `500ms`, `2min`; a bare number counts seconds.
+fn duration(text: &str) -> Result<Duration, String> {
+    let (number, unit) = split(text)?;
+    let factor = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "min" => 60.0,
+        "h" => 3600.0,
+        other => return Err(format!("`{other}` is no unit of time: ms, s, min or h")),
+    };
+    Duration::try_from_secs_f64(number * factor).map_err(|e| e.to_string())
+}
+
+/// `2GB`, `500MB`, `64kB`; a bare number counts bytes.
+fn memory(text: &str) -> Result<usize, String> {
+    let (number, unit) = split(text)?;
+    let factor = match unit.to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kb" => 1e3,
+        "m" | "mb" => 1e6,
+        "g" | "gb" => 1e9,
+        "kib" => 1024.0,
+        "mib" => 1_048_576.0,
+        "gib" => 1_073_741_824.0,
+        _ => return Err(format!("`{unit}` is no unit of memory: kB, MB or GB")),
+    };
+    Ok((number * factor) as usize)
+}
+
+fn split(text: &str) -> Result<(f64, &str), String> {
+    let text = text.trim();
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let number: f64 = text[..end].parse().map_err(|_| format!("`{text}` begins with no number"))?;
+    Ok((number, text[end..].trim()))
+}

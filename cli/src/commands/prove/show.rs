@@ -1,0 +1,132 @@
+//! What was decided, for people and for programs.
+
+use hrdsl_ir::Program;
+use hrdsl_runtime::prove::Story;
+use serde::Serialize;
+
+use super::table::{Kind, Row, Verdict};
+use crate::input::Fault;
+
+/// A table for each network: name, verdict, what it says, what it took; below it the bounds, and the runs if wanted.
+#[must_use]
+pub fn human(rows: &[Row], trace: bool) -> String {
+    let wide = |f: &dyn Fn(&Row) -> usize| rows.iter().map(f).max().unwrap_or(0);
+    let (name, verdict) = (wide(&|r| r.name.chars().count()), wide(&|r| r.verdict.words().len()));
+    let mut out = String::new();
+    let mut network = None;
+    for row in rows {
+        if network != Some(&row.network) {
+            let gap = if network.is_some() { "\n" } else { "" };
+            out += &format!("{gap}network {}\n", row.network);
+            network = Some(&row.network);
+        }
+        let what = if row.title.is_empty() { &row.text } else { &row.title };
+        out += &format!("  {:name$}  {:verdict$}  {what}\n", row.name, row.verdict.words());
+        let margin = " ".repeat(name + verdict + 6);
+        for bound in &row.bounds {
+            out += &format!("{margin}{bound}\n");
+        }
+        let time = seconds(row.time.as_secs_f64());
+        let took = row.states.map_or(time.clone(), |n| format!("{}, {time}", states(n)));
+        match &row.remark {
+            Some(remark) => out += &format!("{margin}{remark}  ({took})\n"),
+            None => out += &format!("{margin}({took})\n"),
+        }
+        if let Some(story) = row.story.as_ref().filter(|_| trace) {
+            for line in story.text().lines() {
+                out += &format!("    {line}\n");
+            }
+        }
+    }
+    out + &format!("\n{}\n", summary(rows))
+}
+
+fn states(n: usize) -> String {
+    format!("{n} {}", if n == 1 { "state" } else { "states" })
+}
+
+fn seconds(t: f64) -> String {
+    if t < 10.0 { format!("{t:.2} s") } else { format!("{t:.0} s") }
+}
+
+/// `3 hold, 1 violated, 1 open`
+fn summary(rows: &[Row]) -> String {
+    let count = |v: Verdict| rows.iter().filter(|r| r.verdict == v).count();
+    let kinds = [
+        (Verdict::Holds, "hold"),
+        (Verdict::Violated, "violated"),
+        (Verdict::Satisfied, "satisfied"),
+        (Verdict::NotSatisfied, "not satisfied"),
+        (Verdict::Answered, "answered"),
+        (Verdict::NotOnTheModel, "not on the model"),
+        (Verdict::Fault, "with a fault of the model"),
+        (Verdict::Open, "open"),
+    ];
+    let parts = kinds.iter().map(|(v, words)| (count(*v), words)).filter(|(n, _)| *n > 0);
+    parts.map(|(n, words)| format!("{n} {words}")).collect::<Vec<_>>().join(", ")
+}
+
+#[derive(Serialize)]
+struct Document<'r> {
+    format: &'static str,
+    version: u32,
+    scenario: &'r str,
+    networks: Vec<NetworkRows<'r>>,
+}
+
+#[derive(Serialize)]
+struct NetworkRows<'r> {
+    network: &'r str,
+    requirements: Vec<RowJson<'r>>,
+    queries: Vec<RowJson<'r>>,
+}
+
+#[derive(Serialize)]
+struct RowJson<'r> {
+    name: &'r str,
+    title: &'r str,
+    text: &'r str,
+    verdict: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    remark: Option<&'r str>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    bounds: &'r [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    states: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<&'r Story>,
+}
+
+/// The same as one document; without times, so that it is the same each time.
+///
+/// # Errors
+/// What cannot be printed.
+pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
+    let mut networks: Vec<NetworkRows<'_>> = Vec::new();
+    for row in rows {
+        if networks.last().is_none_or(|n| n.network != row.network) {
+            networks.push(NetworkRows { network: &row.network, requirements: vec![], queries: vec![] });
+        }
+        let Some(last) = networks.last_mut() else { continue };
+        match row.kind {
+            Kind::Requirement => last.requirements.push(of(row)),
+            Kind::Query => last.queries.push(of(row)),
+        }
+    }
+    let document = Document { format: "hrdsl-prove", version: 1, scenario: &program.name, networks };
+    let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
+    Ok(text + "\n")
+}
+
+fn of(row: &Row) -> RowJson<'_> {
+    RowJson {
+        name: &row.name,
+        title: &row.title,
+        text: &row.text,
+        verdict: row.verdict.key(),
+        remark: row.remark.as_deref(),
+        bounds: &row.bounds,
+        states: row.states,
+        run: row.story.as_ref(),
+    }
+}

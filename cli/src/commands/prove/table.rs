@@ -1,0 +1,148 @@
+//! What was decided, as rows of a table.
+
+use std::time::Duration;
+
+use hrdsl_ir::Program;
+use hrdsl_runtime::prove::{Answered, Found, Proof, Run, Status, Story};
+
+use crate::exit::Exit;
+
+/// One requirement or query.
+pub struct Row {
+    pub network: String,
+    pub kind: Kind,
+    pub name: String,
+    /// Its title, or else its text.
+    pub title: String,
+    pub text: String,
+    pub verdict: Verdict,
+    /// What else there is to say.
+    pub remark: Option<String>,
+    /// For a `sup` or `inf`: of each measure.
+    pub bounds: Vec<String>,
+    pub story: Option<Story>,
+    /// Symbolic states stored, if that is known.
+    pub states: Option<usize>,
+    pub time: Duration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Requirement,
+    Query,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Holds,
+    Violated,
+    Satisfied,
+    NotSatisfied,
+    /// `sup` and `inf`.
+    Answered,
+    Open,
+    NotOnTheModel,
+    Fault,
+}
+
+impl Verdict {
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::Holds => "holds",
+            Verdict::Violated => "violated",
+            Verdict::Satisfied => "satisfied",
+            Verdict::NotSatisfied => "not satisfied",
+            Verdict::Answered => "answered",
+            Verdict::Open => "open",
+            Verdict::NotOnTheModel => "not on the model",
+            Verdict::Fault => "fault of the model",
+        }
+    }
+
+    /// `not_satisfied`
+    pub fn key(self) -> String {
+        self.words().replace(' ', "_")
+    }
+}
+
+impl Row {
+    /// What the row alone makes the command end with.
+    pub fn exit(&self) -> Exit {
+        match self.verdict {
+            Verdict::Holds | Verdict::Satisfied | Verdict::Answered | Verdict::NotOnTheModel => Exit::Ok,
+            Verdict::Violated | Verdict::NotSatisfied => Exit::Findings,
+            Verdict::Open => Exit::Open,
+            Verdict::Fault => Exit::Errors,
+        }
+    }
+
+    pub fn of_proof(program: &Program, proof: &Proof) -> Self {
+        let monitor = &program.monitors[proof.monitor];
+        let (verdict, remark, run) = match &proof.status {
+            Status::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
+            Status::Holds { triggered } => (Verdict::Holds, untriggered(*triggered), None),
+            Status::Open(why) => (Verdict::Open, Some(why.clone()), None),
+            Status::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
+            Status::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
+        };
+        let story = run.map(Run::story);
+        Self {
+            network: String::new(),
+            kind: Kind::Requirement,
+            name: monitor.name.clone(),
+            title: monitor.title.clone(),
+            text: monitor.text.clone(),
+            verdict,
+            remark: remark.or_else(|| story.as_ref().map(shape)),
+            bounds: Vec::new(),
+            story,
+            states: Some(proof.states),
+            time: Duration::ZERO,
+        }
+    }
+
+    pub fn of_answer(program: &Program, answer: &Answered) -> Self {
+        let query = &program.queries[answer.query];
+        let (verdict, remark) = match &answer.found {
+            Found::Satisfied => (Verdict::Satisfied, None),
+            Found::NotSatisfied => (Verdict::NotSatisfied, None),
+            Found::Bounds(_) => (Verdict::Answered, None),
+            Found::Open(why) => (Verdict::Open, Some(why.clone())),
+            Found::Fault(what) => (Verdict::Fault, Some(what.clone())),
+        };
+        let bounds = match &answer.found {
+            Found::Bounds(bounds) => bounds.clone(),
+            Found::Satisfied | Found::NotSatisfied | Found::Open(_) | Found::Fault(_) => Vec::new(),
+        };
+        let story = answer.run.as_deref().map(Run::story);
+        let remarks: Vec<String> =
+            remark.into_iter().chain(answer.notes.iter().cloned()).chain(story.as_ref().map(shape)).collect();
+        Self {
+            network: String::new(),
+            kind: Kind::Query,
+            name: query.name.clone(),
+            title: query.title.clone(),
+            text: query.text.clone(),
+            verdict,
+            remark: (!remarks.is_empty()).then(|| remarks.join("; ")),
+            bounds,
+            story,
+            states: answer.states,
+            time: Duration::ZERO,
+        }
+    }
+}
+
+fn untriggered(triggered: Option<bool>) -> Option<String> {
+    match triggered {
+        Some(true) => None,
+        Some(false) => Some("it is never triggered".to_owned()),
+        None => Some("whether it is ever triggered is open".to_owned()),
+    }
+}
+
+/// `in 7 steps, at 12.5 s`
+fn shape(story: &Story) -> String {
+    let steps = story.scenes.len();
+    format!("in {steps} {}, at {} s", if steps == 1 { "step" } else { "steps" }, story.end)
+}

@@ -1,0 +1,264 @@
+//! `hrdsl prove`, through the binary.
+
+mod support;
+
+use serde_json::Value;
+use support::{expect_code, folder, hrdsl_in, stderr, stdout};
+
+/// A robot that answers within 4 s to 6 s, or never, if it is asked a second time.
+const SCENARIO: &str = "\
+scenario door
+
+actor person : environment
+actor robot  : system
+
+event asked(again: bool) from person to robot
+event opened             from robot
+event closed             from robot
+event rung               from person
+
+var opens: 0..3
+
+automaton Person plays person {
+  clock x
+  init location outside
+  location waiting
+  location tired
+  outside -> waiting when x >= 10 s do asked(false); x = 0
+  waiting -> outside on opened do x = 0
+  waiting -> tired when x >= 2 s do asked(true)
+}
+
+automaton Door plays robot {
+  clock x
+  init location shut
+  location moving { invariant x <= 6 s }
+  location stuck
+  location open { invariant x <= 2 s }
+  shut   -> moving on asked(false) do x = 0
+  moving -> stuck  on asked(true)
+  moving -> open   when x >= 4 s && opens < 3 do opened; opens += 1; x = 0
+  moving -> open   when x >= 4 s && opens == 3 do opened; x = 0
+  open   -> shut   when x >= 2 s do closed
+}
+
+network house = Person | Door
+
+require R1 functional \"who asks gets in\" asked(_) causes opened within 6 s
+require R2 functional \"who asks once gets in, or stops\" asked(false) causes opened or asked(true) within 6 s
+require R3 safety never rung
+require R4 safety \"nobody is pushed\" never opened while distance(hand, leaf) < 1 cm
+require R5 safety opened forbids opened until closed
+
+query waits \"somebody waits\" of house = E<> Person.waiting and Door.moving
+query ends of house = A[] not deadlock
+query in_time of house = A[] Person.waiting and not Door.stuck imply Person.x <= 6 s
+query served of house = Person.waiting --> Person.outside
+query longest of house = sup{Person.waiting and Door.moving}: Person.x, opens
+
+suite all_of_it by search of house {
+  reach each location
+  reach each pair
+  reach each use
+  reach violation of R1, R2
+  reach trigger of R1, R3
+  reach query waits
+  witness shortest
+  tests 20
+}
+
+world {
+  body hand : fixed sphere(1 cm) at (0 m, 0 m, 0 m)
+  body leaf : fixed sphere(1 cm) at (1 m, 0 m, 0 m)
+}
+";
+
+fn proved(args: &str) -> (std::process::Output, Value) {
+    let folder = folder(&[("door.hri", SCENARIO)]);
+    let out = hrdsl_in(folder.path(), &format!("prove door.hri --json {args}"));
+    let json = serde_json::from_slice(&out.stdout)
+        .unwrap_or_else(|e| panic!("{e}: {} {}", stdout(&out), stderr(&out)));
+    (out, json)
+}
+
+fn row<'v>(document: &'v Value, kind: &str, name: &str) -> &'v Value {
+    let rows = document["networks"][0][kind].as_array().unwrap();
+    rows.iter().find(|r| r["name"] == name).unwrap_or_else(|| panic!("no {name}: {document:#}"))
+}
+
+#[test]
+fn requirements_and_queries_are_decided() {
+    let (out, all) = proved("");
+    expect_code(&out, 3);
+    let requirement = |name| row(&all, "requirements", name);
+    let query = |name| row(&all, "queries", name);
+    assert_eq!((&all["format"], &all["scenario"]), (&"hrdsl-prove".into(), &"door".into()));
+    assert_eq!(requirement("R1")["verdict"], "violated");
+    assert_eq!(requirement("R2")["verdict"], "holds");
+    assert!(requirement("R2").get("remark").is_none());
+    assert_eq!(requirement("R3")["verdict"], "holds");
+    assert_eq!(requirement("R3")["remark"], "it is never triggered");
+    assert_eq!(requirement("R4")["verdict"], "not_on_the_model");
+    assert_eq!(requirement("R5")["verdict"], "holds");
+    assert_eq!(query("waits")["verdict"], "satisfied");
+    assert_eq!(query("ends")["verdict"], "not_satisfied");
+    assert_eq!(query("in_time")["verdict"], "satisfied");
+    assert_eq!(query("served")["verdict"], "not_satisfied");
+    assert_eq!(query("longest")["verdict"], "answered");
+    let bounds: Vec<&str> =
+        query("longest")["bounds"].as_array().unwrap().iter().map(|b| b.as_str().unwrap()).collect();
+    assert_eq!(bounds, ["6 s", "3"]);
+    // The second time is asked 2 s after the first at the earliest, and the obligation counts from the first.
+    let run = &requirement("R1")["run"];
+    let scenes = run["scenes"].as_array().unwrap();
+    assert_eq!(scenes.len(), 2, "{run:#}");
+    assert!(run["end_nanos"].as_i64().unwrap() > 16_000_000_000, "{run:#}");
+}
+
+#[test]
+fn some_can_be_chosen_and_asked() {
+    let (out, one) = proved("--requirement R2 --query waits");
+    expect_code(&out, 0);
+    let network = &one["networks"][0];
+    assert_eq!(network["requirements"].as_array().unwrap().len(), 1);
+    assert_eq!(network["queries"].as_array().unwrap().len(), 1);
+    let folder = folder(&[("door.hri", SCENARIO)]);
+    let ask = |query: &str| {
+        let mut command = support::command();
+        command.current_dir(folder.path()).args(["prove", "door.hri", "--ask", query]);
+        command.output().unwrap()
+    };
+    let out = ask("E<> Door.open && not Person.outside || opens == 3");
+    expect_code(&out, 0);
+    assert!(stdout(&out).contains("satisfied") && !stdout(&out).contains("R1"), "{}", stdout(&out));
+    expect_code(&ask("E<> opens > 2 and Door.stuck and Door.x > 100 s"), 0);
+    expect_code(&ask("A[] Person.x - Door.x < 0 s"), 3);
+    let wrong = ask("E<> Door.opn");
+    expect_code(&wrong, 1);
+    assert!(stderr(&wrong).contains("did you mean `open`?"), "{}", stderr(&wrong));
+}
+
+#[test]
+fn names_that_do_not_exist_are_said() {
+    let folder = folder(&[("door.hri", SCENARIO)]);
+    for (args, said) in [
+        ("--requirement R9", "no requirement `R9`; the scenario has: R1, R2"),
+        ("--query what", "no query `what`; the scenario has: waits"),
+        ("--network home", "no network `home`; the scenario has: house"),
+        ("--timeout 3parsecs", "no unit of time"),
+        ("--budget-memory 2lots", "no unit of memory"),
+    ] {
+        let out = hrdsl_in(folder.path(), &format!("prove door.hri {args}"));
+        expect_code(&out, 2);
+        assert!(stderr(&out).contains(said), "{}", stderr(&out));
+    }
+}
+
+#[test]
+fn what_the_budget_does_not_suffice_for_is_open() {
+    let (out, open) = proved("--requirement R2 --budget-states 2");
+    expect_code(&out, 4);
+    let r2 = row(&open, "requirements", "R2");
+    assert_eq!((&r2["verdict"], &r2["remark"]), (&"open".into(), &"the budget of states was used up".into()));
+    let (out, late) = proved("--timeout 0s --query served");
+    expect_code(&out, 4);
+    assert_eq!(row(&late, "queries", "served")["remark"], "the time was over");
+}
+
+#[test]
+fn all_orders_witnesses_and_threads_agree() {
+    let (_, usual) = proved("");
+    let verdicts = |document: &Value| -> Vec<String> {
+        let network = &document["networks"][0];
+        let rows = ["requirements", "queries"].into_iter().flat_map(|k| network[k].as_array().unwrap());
+        rows.map(|r| format!("{} {}", r["name"], r["verdict"])).collect()
+    };
+    for args in [
+        "--order depth",
+        "--order random --seed 7",
+        "--order topological --threads 2",
+        "--witness fastest",
+        "--witness any --delays latest",
+        "--delays sampled --seed 3",
+    ] {
+        let (out, other) = proved(args);
+        expect_code(&out, 3);
+        assert_eq!(verdicts(&usual), verdicts(&other), "{args}");
+    }
+    assert_eq!(proved("--delays sampled --seed 3").1, proved("--delays sampled --seed 3").1);
+}
+
+#[test]
+fn a_run_is_told_and_drawn() {
+    let folder = folder(&[("door.hri", SCENARIO)]);
+    let line = "prove door.hri --requirement R1 --trace --mermaid run.mmd --dot run.dot";
+    let out = hrdsl_in(folder.path(), line);
+    expect_code(&out, 3);
+    let text = stdout(&out);
+    assert!(
+        text.contains("R1  violated") && text.contains("asked(false)") && text.contains("10 s"),
+        "{text}"
+    );
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(read("run.mmd").starts_with("sequenceDiagram"), "{}", read("run.mmd"));
+    assert!(read("run.dot").contains("digraph"), "{}", read("run.dot"));
+}
+
+#[test]
+fn a_fault_of_the_model_is_told_with_the_way_to_it() {
+    let broken = SCENARIO.replace("&& opens < 3", "&& opens < 4");
+    let folder = folder(&[("door.hri", broken.as_str())]);
+    let out = hrdsl_in(folder.path(), "prove door.hri --requirement R2 --json");
+    expect_code(&out, 1);
+    let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let r2 = row(&all, "requirements", "R2");
+    assert_eq!(r2["verdict"], "fault_of_the_model");
+    assert!(r2["remark"].as_str().unwrap().contains("`opens` becomes 4"), "{r2:#}");
+    assert!(r2["run"]["scenes"].as_array().unwrap().len() > 5, "{r2:#}");
+}
+
+#[test]
+fn a_search_reaches_what_it_is_asked_for_and_keeps_few_tests() {
+    let folder = folder(&[("door.hri", SCENARIO)]);
+    let out = hrdsl_in(folder.path(), "gen door.hri --json");
+    expect_code(&out, 0);
+    let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let suite = &all["suites"][0];
+    let goals = suite["goals"].as_array().unwrap();
+    let goal = |name: &str| {
+        goals.iter().find(|g| g["goal"] == name).unwrap_or_else(|| panic!("no {name}: {suite:#}"))
+    };
+    for reached in [
+        "location Door.stuck",
+        "pair Person: outside -> waiting (edge 1), waiting -> outside (edge 2)",
+        "use of opens: set by Door: moving -> open (edge 3), read by Door: moving -> open (edge 4)",
+        "violation of R1",
+        "trigger of R1",
+        "query waits",
+    ] {
+        assert_eq!(goal(reached)["status"], "reached", "{reached}");
+        let test = goal(reached)["test"].as_str().unwrap();
+        assert!(test.starts_with("all_of_it.t0"), "{test}");
+    }
+    for unreachable in [
+        "violation of R2",
+        "trigger of R3",
+        "use of opens: its first value, read by Door: moving -> open (edge 4)",
+    ] {
+        assert_eq!(goal(unreachable)["status"], "unreachable", "{unreachable}");
+        assert!(goal(unreachable).get("test").is_none());
+    }
+    assert!(goals.iter().all(|g| g["status"] != "open"));
+    let reached = goals.iter().filter(|g| g["status"] == "reached").count() as u64;
+    assert!(suite["abstract_tests"].as_u64().unwrap() < reached / 3, "{suite:#}");
+    for args in ["--witness fastest", "--delays latest --order depth", "--threads 2"] {
+        let out = hrdsl_in(folder.path(), &format!("gen door.hri --json {args}"));
+        expect_code(&out, 0);
+        let other: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let fates = |v: &Value| -> Vec<String> {
+            let goals = v["suites"][0]["goals"].as_array().unwrap();
+            goals.iter().map(|g| format!("{} {}", g["goal"], g["status"])).collect()
+        };
+        assert_eq!(fates(&all), fates(&other), "{args}");
+    }
+}

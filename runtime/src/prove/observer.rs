@@ -1,0 +1,245 @@
+//! Requirements as automata: a monitor becomes one more automaton of the network, which only listens.
+//!
+//! # The observer of a monitor
+//! Its locations are the monitor's states and `violated`, which it never leaves: what comes after the first violation does
+//! not matter. An edge of the monitor on events becomes a receiving edge for each of its events. Since events are broadcast
+//! and the observer has no invariants, the network does what it does without it.
+//!
+//! A deadline D of a pending state is no edge. The requirement is violated where the clock is **greater** than D in that
+//! state: an event at the very instant of the deadline is still in time, so that the observer takes it if the clock is at most
+//! D. In a run in which time does not go on after D the deadline is not missed on the model; a trace that ends there is
+//! judged more strictly by the monitor, which knows that nothing comes any more.
+
+use hrdsl_ir::{
+    ActorId, EventPattern, Expr, Nanos, Program,
+    expr::Place,
+    monitor::{Effect, Monitor, On},
+    ta::{
+        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Formula, Location, LocationId,
+        LocationKind, Network, Sync, Time, Update, Var,
+    },
+};
+
+use super::matching::receptions;
+
+/// A program with observers in one of its networks.
+#[derive(Clone, Debug)]
+pub struct Observed {
+    pub program: Program,
+    /// The network with the observers behind its own automata.
+    pub network: Network,
+}
+
+/// What to look for in the network with an observer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdicts {
+    /// The requirement is violated. `None`: it cannot be, whatever happens.
+    pub violated: Option<Formula>,
+    /// It was triggered.
+    pub triggered: Formula,
+}
+
+impl Observed {
+    /// A copy of the program with this network, without observers.
+    #[must_use]
+    pub fn new(program: &Program, network: &Network) -> Self {
+        Self { program: program.clone(), network: network.clone() }
+    }
+
+    /// Adds the observer of a monitor.
+    ///
+    /// # Errors
+    /// Why the requirement cannot be judged on a model.
+    pub fn add(&mut self, monitor: &Monitor) -> Result<Verdicts, String> {
+        let plan = Plan::of(monitor)?;
+        let shared_clocks = self.program.clocks.len();
+        let before = self.members().map(|a| a.clocks.len()).sum::<usize>();
+        let automaton = plan.automaton(&self.program)?;
+        let verdicts = plan.verdicts(
+            number(self.network.automata.len()),
+            ClockId(number(shared_clocks + before)),
+            number(self.program.shared.len() + self.members().map(|a| a.vars.len()).sum::<usize>()),
+        );
+        self.push(automaton);
+        Ok(verdicts)
+    }
+
+    /// Adds an automaton to the program and to the network.
+    pub(super) fn push(&mut self, automaton: Automaton) {
+        self.network.automata.push(AutomatonId(number(self.program.automata.len())));
+        self.program.automata.push(automaton);
+    }
+
+    fn members(&self) -> impl Iterator<Item = &Automaton> {
+        self.network.automata.iter().filter_map(|id| self.program.automata.get(usize::from(id.0)))
+    }
+}
+
+pub(super) fn number(n: usize) -> u16 {
+    u16::try_from(n).unwrap_or(u16::MAX)
+}
+
+/// How a monitor is made an automaton.
+struct Plan<'m> {
+    monitor: &'m Monitor,
+    /// For each state: when it fails.
+    deadlines: Vec<Option<Nanos>>,
+    fails: bool,
+    /// The locations that tell that it was triggered; `None`: a variable does.
+    telling: Option<Vec<u16>>,
+}
+
+impl<'m> Plan<'m> {
+    fn of(monitor: &'m Monitor) -> Result<Self, String> {
+        let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == On::Sample);
+        if samples || !monitor.signals.is_empty() {
+            return Err("it reads signals of the world, which a network does not have".to_owned());
+        }
+        let deadlines =
+            (0..monitor.states.len()).map(|s| deadline(monitor, s)).collect::<Result<Vec<_>, _>>()?;
+        let fails = monitor.edges.iter().any(|e| e.effects.contains(&Effect::Fail) && e.on != On::Deadline)
+            || deadlines.iter().any(Option::is_some);
+        let mut plan = Self { monitor, deadlines, fails, telling: None };
+        plan.telling = plan.telling_locations();
+        Ok(plan)
+    }
+
+    /// The location for what follows the first violation.
+    fn violated(&self) -> u16 {
+        number(self.monitor.states.len())
+    }
+
+    fn target(&self, edge: &hrdsl_ir::monitor::Edge) -> u16 {
+        if edge.effects.contains(&Effect::Fail) { self.violated() } else { edge.to.0 }
+    }
+
+    fn on_events(&self) -> impl Iterator<Item = (&'m hrdsl_ir::monitor::Edge, &'m [EventPattern])> {
+        self.monitor.edges.iter().filter_map(|e| match &e.on {
+            On::Event(patterns) => Some((e, patterns.as_slice())),
+            On::Sample | On::Deadline => None,
+        })
+    }
+
+    /// The targets of the edges that trigger, if to be in one of them means that it was triggered: each edge that leads there
+    /// from elsewhere triggers.
+    fn telling_locations(&self) -> Option<Vec<u16>> {
+        let triggers = |e: &hrdsl_ir::monitor::Edge| e.effects.contains(&Effect::Trigger);
+        let mut targets: Vec<u16> =
+            self.on_events().filter(|(e, _)| triggers(e)).map(|(e, _)| self.target(e)).collect();
+        targets.sort_unstable();
+        targets.dedup();
+        let inside = |s: u16| targets.contains(&s);
+        let tells = !inside(self.monitor.initial.0)
+            && self.on_events().all(|(e, _)| inside(e.from.0) || !inside(self.target(e)) || triggers(e));
+        tells.then_some(targets)
+    }
+
+    fn automaton(&self, program: &Program) -> Result<Automaton, String> {
+        let monitor = self.monitor;
+        let location = |name: &str| Location {
+            name: name.to_owned(),
+            kind: LocationKind::Normal,
+            invariant: Vec::new(),
+            holds: None,
+            origin: monitor.origin,
+        };
+        let mut locations: Vec<Location> = monitor.states.iter().map(|s| location(&s.name)).collect();
+        locations.push(location("violated"));
+        let flag =
+            Var { name: "triggered".to_owned(), lo: 0, hi: 1, init: 0, is_bool: true, enumeration: None };
+        let vars = if self.telling.is_none() { vec![flag] } else { Vec::new() };
+        let timed = self.deadlines.iter().any(Option::is_some);
+        let mut edges = Vec::new();
+        for state in 0..monitor.states.len() {
+            self.edges_of(program, state, number(program.shared.len() + vars.len()), timed, &mut edges)?;
+        }
+        Ok(Automaton {
+            name: monitor.name.clone(),
+            actor: program.actors.first().map(|_| ActorId(0)),
+            clocks: if timed { vec!["since".to_owned()] } else { Vec::new() },
+            vars,
+            locations,
+            initial: LocationId(monitor.initial.0),
+            edges,
+            origin: monitor.origin,
+        })
+    }
+
+    fn edges_of(
+        &self,
+        program: &Program,
+        state: usize,
+        binders: u16,
+        timed: bool,
+        out: &mut Vec<Edge>,
+    ) -> Result<(), String> {
+        let rules: Vec<_> = self.on_events().filter(|(e, _)| usize::from(e.from.0) == state).collect();
+        let patterns: Vec<&[EventPattern]> = rules.iter().map(|(_, p)| *p).collect();
+        let clock = ClockId(number(program.clocks.len()));
+        let in_time =
+            |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: Time::constant(d) };
+        for reception in receptions(program, &patterns, binders)? {
+            let edge = rules[reception.rule].0;
+            let to = self.target(edge);
+            let mut updates = Vec::new();
+            if timed && edge.effects.contains(&Effect::ResetClock) {
+                updates.push(Update::zero(clock));
+            }
+            if self.telling.is_none() && edge.effects.contains(&Effect::Trigger) {
+                let place = Place::slot(number(program.shared.len()));
+                updates.push(Update::Assign { place, value: Expr::bool(true) });
+            }
+            if to == edge.from.0 && updates.is_empty() {
+                // Nothing comes of it.
+                continue;
+            }
+            out.push(Edge {
+                from: LocationId(edge.from.0),
+                to: LocationId(to),
+                selects: Vec::new(),
+                clock_guard: self.deadlines[state].map(in_time).into_iter().collect(),
+                guard: reception.guard,
+                sync: Sync::Receive { event: reception.event, args: reception.args },
+                updates,
+                origin: self.monitor.origin,
+            });
+        }
+        Ok(())
+    }
+
+    /// The formulas over the network in which the observer has this place, and its clock and variable these numbers.
+    fn verdicts(&self, automaton: u16, clock: ClockId, flag: u16) -> Verdicts {
+        let at = |location: u16| Formula::At { automaton, location: LocationId(location) };
+        let late = self.deadlines.iter().zip(0u16..).filter_map(|(d, state)| {
+            let past = ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: Time::constant((*d)?) };
+            Some(Formula::And(vec![at(state), Formula::Clock(past)]))
+        });
+        let violated = Formula::Or(std::iter::once(at(self.violated())).chain(late).collect());
+        let triggered = match &self.telling {
+            Some(locations) => Formula::Or(locations.iter().map(|l| at(*l)).collect()),
+            None => Formula::Data(Expr::Var(flag)),
+        };
+        Verdicts { violated: self.fails.then_some(violated), triggered }
+    }
+}
+
+/// When a state fails if nothing happens.
+fn deadline(monitor: &Monitor, state: usize) -> Result<Option<Nanos>, String> {
+    let Some(after) = monitor.states[state].deadline else { return Ok(None) };
+    let here = |e: &&hrdsl_ir::monitor::Edge| usize::from(e.from.0) == state && e.on == On::Deadline;
+    let Some(edge) = monitor.edges.iter().find(here) else { return Ok(None) };
+    if !edge.effects.contains(&Effect::Fail) {
+        return Err("a deadline of its monitor passes without a violation".to_owned());
+    }
+    // INVARIANT: the clock counts from when the state is entered, so that at the entry it is not past the deadline.
+    let entered_late = monitor.edges.iter().any(|e| {
+        usize::from(e.to.0) == state
+            && e.from != e.to
+            && !e.effects.contains(&Effect::ResetClock)
+            && e.on != On::Deadline
+    });
+    if entered_late {
+        return Err("a deadline of its monitor does not count from the trigger".to_owned());
+    }
+    Ok(Some(after))
+}

@@ -1,0 +1,187 @@
+//! Queries of a scenario, answered about their networks.
+
+use hrdsl_ir::{
+    Program,
+    ta::{Ask, Formula, Network, Query},
+};
+use hrdsl_ta::{Answer, Error, Extremum, Manner, Outcome, Quantity, Reach, Verdict};
+
+use super::{
+    Observed, Run, Settings, Watch,
+    goals::{exhausted, of_formula},
+    settings::search,
+};
+
+/// What became of a query.
+#[derive(Clone, Debug)]
+pub struct Answered {
+    /// Index into [`Program::queries`].
+    pub query: usize,
+    pub found: Found,
+    /// Shows it, if a run can.
+    pub run: Option<Box<Run>>,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// Symbolic states stored, if that is known.
+    pub states: Option<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Found {
+    Satisfied,
+    NotSatisfied,
+    /// Of a `sup` or `inf`, for each measure.
+    Bounds(Vec<String>),
+    /// Not decided: why.
+    Open(String),
+    /// The model is at fault, and where.
+    Fault(String),
+}
+
+/// Answers a query. It is about the network alone: assumptions do not restrict it.
+///
+/// # Errors
+/// If the engine contradicts itself, or there is no such query.
+pub fn answer(
+    program: &Program,
+    query: usize,
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Answered, String> {
+    let asked = program.queries.get(query).ok_or_else(|| format!("there is no query {query}"))?;
+    let network = program
+        .networks
+        .get(usize::from(asked.network))
+        .ok_or_else(|| format!("query `{}` is about no network", asked.name))?;
+    let plain = Observed::new(program, network);
+    let result = match reachability(&asked.ask) {
+        Some(goal) => by_search(&plain, query, &goal, settings, watch),
+        None => in_general(program, network, asked, settings).map(|a| told(&plain, query, &asked.ask, a)),
+    };
+    match result {
+        Ok(answered) => Ok(answered),
+        Err(Error::Model { error, witness }) => Ok(Answered {
+            query,
+            found: Found::Fault(error.to_string()),
+            run: witness.map(|witness| Box::new(Run { observed: plain, witness: *witness })),
+            notes: Vec::new(),
+            states: None,
+        }),
+        Err(Error::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
+    }
+}
+
+/// What a search looks for, and what it means to find it.
+struct Sought {
+    formula: Formula,
+    reached: Found,
+    not: Found,
+}
+
+/// For what reachability decides.
+fn reachability(ask: &Ask) -> Option<Sought> {
+    let sought = match ask {
+        Ask::Possibly(f) => {
+            Sought { formula: f.clone(), reached: Found::Satisfied, not: Found::NotSatisfied }
+        }
+        Ask::Invariantly(f) => Sought {
+            formula: Formula::Not(Box::new(f.clone())),
+            reached: Found::NotSatisfied,
+            not: Found::Satisfied,
+        },
+        Ask::PotentiallyAlways(_)
+        | Ask::Eventually(_)
+        | Ask::LeadsTo(..)
+        | Ask::Sup { .. }
+        | Ask::Inf { .. } => return None,
+    };
+    (!asks_deadlock(&sought.formula)).then_some(sought)
+}
+
+/// Deadlocks need zones that tell more apart than the search for many goals keeps.
+fn asks_deadlock(formula: &Formula) -> bool {
+    match formula {
+        Formula::Deadlock => true,
+        Formula::Not(f) => asks_deadlock(f),
+        Formula::And(fs) | Formula::Or(fs) => fs.iter().any(asks_deadlock),
+        Formula::At { .. } | Formula::Data(_) | Formula::Clock(_) => false,
+    }
+}
+
+fn by_search(
+    plain: &Observed,
+    query: usize,
+    sought: &Sought,
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Answered, Error> {
+    let report = search(plain, &[of_formula(&sought.formula)], &[], &[], settings, watch)?;
+    let states = Some(report.states_stored);
+    let (found, run) = match report.goals.into_iter().next() {
+        Some(Outcome::Reached(witness)) => {
+            (sought.reached.clone(), Some(Box::new(Run { observed: plain.clone(), witness: *witness })))
+        }
+        Some(Outcome::Open(what)) => (Found::Open(exhausted(what)), None),
+        Some(Outcome::Unreachable) | None => (sought.not.clone(), None),
+    };
+    Ok(Answered { query, found, run, notes: Vec::new(), states })
+}
+
+fn in_general(
+    program: &Program,
+    network: &Network,
+    query: &Query,
+    settings: &Settings,
+) -> Result<Answer, Error> {
+    let manner = Manner {
+        budget: settings.budget,
+        witness: settings.witness,
+        delays: settings.delays,
+        seed: settings.seed,
+        threads: settings.threads,
+    };
+    hrdsl_ta::answer(program, network, query, &manner)
+}
+
+fn told(plain: &Observed, query: usize, ask: &Ask, answer: Answer) -> Answered {
+    let bounds = matches!(ask, Ask::Sup { .. } | Ask::Inf { .. });
+    let run = answer.run.or_else(|| answer.extrema.iter().find_map(|e| e.run.clone()));
+    let found = match answer.verdict {
+        Verdict::Open => Found::Open(answer.why.clone()),
+        Verdict::Holds | Verdict::Fails if bounds => {
+            Found::Bounds(answer.extrema.iter().map(bound).collect())
+        }
+        Verdict::Holds => Found::Satisfied,
+        Verdict::Fails => Found::NotSatisfied,
+    };
+    let said = matches!(found, Found::Open(_) | Found::Bounds(_));
+    Answered {
+        query,
+        found,
+        run: run.map(|witness| Box::new(Run { observed: plain.clone(), witness: *witness })),
+        notes: if said { Vec::new() } else { vec![answer.why] },
+        states: None,
+    }
+}
+
+/// `5 s`, `less than 5 s`, `no bound`
+fn bound(extremum: &Extremum) -> String {
+    let text = |q: &Quantity| match q {
+        Quantity::Nanos(t) => format!("{} s", decimal(*t)),
+        Quantity::Number(n) => n.to_string(),
+    };
+    match &extremum.limit {
+        Reach::At { value, attained: true } => text(value),
+        Reach::At { value, attained: false } => format!("{}, which is not attained", text(value)),
+        Reach::Unbounded => "without bound".to_owned(),
+        Reach::Nowhere => "the formula holds nowhere".to_owned(),
+        Reach::Open { seen: Some(seen) } => format!("open; at least {} is attained", text(seen)),
+        Reach::Open { seen: None } => "open".to_owned(),
+    }
+}
+
+/// Seconds, exactly.
+fn decimal(nanos: i64) -> String {
+    let text = format!("{}.{:09}", nanos / 1_000_000_000, (nanos % 1_000_000_000).abs());
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

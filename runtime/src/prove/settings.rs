@@ -1,0 +1,124 @@
+//! How networks are searched, and the one place that calls the search.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use hrdsl_ir::{
+    suite::{Delays, WitnessKind},
+    ta::Formula,
+};
+pub use hrdsl_ta::Order;
+use hrdsl_ta::{
+    Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing, Witness,
+};
+
+use super::Observed;
+
+/// How to search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    pub budget: Budget,
+    /// In which order states are looked at; `None`: as the witness needs it. Another order than breadth first finds witnesses
+    /// that are not the shortest.
+    pub order: Option<Order>,
+    /// Threads that search at once; 0 is 1.
+    pub threads: usize,
+    pub witness: WitnessKind,
+    pub delays: Delays,
+    /// Of what is drawn: sampled delays, a random order.
+    pub seed: u64,
+    /// First look for what keeps windowed assumptions for certain: better for tests. Otherwise first for what cannot be
+    /// reached even without them: better for proofs.
+    pub keep_first: bool,
+}
+
+/// For watching a search from another thread.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Set: the search ends soon, and what is not decided is open.
+    pub stop: AtomicBool,
+    /// How many states are stored so far.
+    pub stored: AtomicUsize,
+}
+
+impl Settings {
+    pub(super) fn options(&self) -> Options {
+        let usual = match self.witness {
+            WitnessKind::Shortest => Options::shortest(),
+            WitnessKind::Any | WitnessKind::Fastest => Options::default(),
+        };
+        Options {
+            order: self.order.unwrap_or(usual.order),
+            threads: self.threads.max(1),
+            budget: self.budget,
+            seed: self.seed,
+            ..usual
+        }
+    }
+
+    pub(super) fn timing(&self) -> Timing {
+        Timing { delays: self.delays, seed: self.seed, prompt: false }
+    }
+}
+
+fn formula(goal: &Goal) -> Option<Formula> {
+    match &goal.what {
+        GoalKind::Formula(f) => Some(f.clone()),
+        GoalKind::Edge { .. }
+        | GoalKind::Location { .. }
+        | GoalKind::Pair { .. }
+        | GoalKind::Use { .. }
+        | GoalKind::Condition(_) => None,
+    }
+}
+
+pub(crate) fn search(
+    observed: &Observed,
+    goals: &[Goal],
+    counters: &[Counter],
+    limits: &[Limit],
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Report, Error> {
+    let observe = Observe {
+        counters: counters.to_vec(),
+        limits: limits.to_vec(),
+        pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
+        uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
+        formulas: goals.iter().filter_map(formula).collect(),
+        ..Observe::default()
+    };
+    let model = Model::new(&observed.program, &observed.network, &observe)?;
+    let go_on = |p: &hrdsl_ta::Progress| {
+        watch.stored.store(p.stored, Ordering::Relaxed);
+        !watch.stop.load(Ordering::Relaxed)
+    };
+    let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
+    for (goal, outcome) in goals.iter().zip(&mut report.goals) {
+        if let Outcome::Reached(found) = outcome
+            && let Some(run) = chosen(&model, goal, found, settings)?
+        {
+            *found = run;
+        }
+    }
+    Ok(report)
+}
+
+/// The run that the settings ask for, instead of the one that was found; `None`: that one.
+fn chosen(
+    model: &Model<'_>,
+    goal: &Goal,
+    found: &Witness,
+    settings: &Settings,
+) -> Result<Option<Box<Witness>>, Error> {
+    let by_time = !matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. });
+    if settings.witness == WitnessKind::Fastest
+        && by_time
+        && let Some(run) = hrdsl_ta::fastest(model, goal, settings.budget, settings.timing())?
+    {
+        return Ok(Some(run));
+    }
+    if settings.delays == Delays::Earliest {
+        return Ok(None);
+    }
+    hrdsl_ta::retimed(model, found, goal, settings.timing()).map(|run| Some(Box::new(run)))
+}
