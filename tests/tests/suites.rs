@@ -17,7 +17,7 @@ fn program(example: &str) -> Program {
 fn pairwise(example: &str, bins: usize) -> (usize, usize) {
     let program = program(example);
     let suite = program.suites.iter().find(|s| matches!(s.method, Method::Agents { .. })).unwrap();
-    let options = Options { count: Some(1), seed: 0, ..Options::default() };
+    let options = Options { count: Some(1), ..Options::default() };
     let whole = generate_with(&program, suite, options).unwrap();
     let options = Options { minimise: Some(true), count: Some(1000), ..options };
     let least = generate_with(&program, suite, options).unwrap();

@@ -9,7 +9,7 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_runtime::testgen::{generate, write};
-use hrdsl_ta::{Budget, Goal, GoalKind, Outcome, Player, check};
+use hrdsl_ta::{Budget, Goal, GoalKind, Model, Observe, Options, Outcome, Player, check, explore};
 
 const ACTORS: &str = "actor person : environment\nactor robot : system\n";
 
@@ -245,7 +245,10 @@ fn arrays_and_single_variables_have_the_same_states() {
     by_hand += "}\nnetwork n = P | R\n";
     let states = |text: &str| {
         let p = program(text, &[]);
-        let report = check(&p, &p.networks[0], &[], &[], &[], Budget::default()).unwrap();
+        // What nothing reads is kept, too.
+        let options = Options { reduce: false, ..Options::reference() };
+        let model = Model::new(&p, &p.networks[0], &Observe::default()).unwrap();
+        let report = explore(&model, &[], &options, &|_| true).unwrap();
         assert!(report.complete);
         (report.states_stored, report.discrete_states)
     };

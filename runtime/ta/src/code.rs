@@ -260,9 +260,10 @@ impl<'e> Env<'e> {
 
     /// Assigns to a variable of the network or a local.
     pub(crate) fn assign(&mut self, place: &Reach, value: &Code, routine: Option<u32>) -> Result<(), Fault> {
-        // As the language reads: the value first, then the place.
+        // The place is chosen before the value is worked out: a function in the value may change its indices.
+        let at = place.resolve(self)?;
         let n = value.eval(self)?;
-        match place.resolve(self)? {
+        match at {
             At::State(i) => self.put(i, n),
             At::Local(i) => {
                 let range = routine.map(|r| self.library.routines[r as usize].frame[i as usize]);

@@ -33,7 +33,7 @@ fn the_reference_reaches_the_same_goals() {
 #[test]
 fn the_reference_reaches_the_same_goals_over_channels() {
     let (reached, unreachable) = compared("network_channels.hri", CHANNELS);
-    assert!(reached.len() > 25 && unreachable.len() > 3, "{reached:?}\n{unreachable:?}");
+    assert!(reached.len() > 20 && unreachable.len() > 10, "{reached:?}\n{unreachable:?}");
 }
 
 /// The goals that both reach, and those that neither does.
