@@ -26,7 +26,7 @@ use hrdsl_trace::{Observer as _, Trace, What};
 
 pub use goals::{Decided, Fate, decide, of_formula};
 pub use observer::{Observed, Verdicts};
-pub use query::{Answered, Found, answer};
+pub use query::{Answered, Found, answer, answers};
 pub use settings::{Order, Settings, Watch};
 
 /// What became of a requirement.

@@ -4,7 +4,7 @@ use hrdsl_ir::{
     Program,
     ta::{Ask, Formula, Network, Query},
 };
-use hrdsl_ta::{Answer, Error, Extremum, Manner, Outcome, Quantity, Reach, Verdict};
+use hrdsl_ta::{Answer, Error, Extremum, Goal, Manner, Outcome, Quantity, Reach, Verdict};
 
 use super::{
     Observed, Run, Settings, Watch,
@@ -55,7 +55,7 @@ pub fn answer(
         .ok_or_else(|| format!("query `{}` is about no network", asked.name))?;
     let plain = Observed::new(program, network);
     let result = match reachability(&asked.ask) {
-        Some(goal) => by_search(&plain, query, &goal, settings, watch),
+        Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
         None => in_general(program, network, asked, settings).map(|a| told(&plain, query, &asked.ask, a)),
     };
     match result {
@@ -69,6 +69,38 @@ pub fn answer(
         }),
         Err(Error::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
     }
+}
+
+/// Answers several queries of one network: those that reachability decides in one exploration, the others one by one.
+///
+/// # Errors
+/// As [`answer`].
+pub fn answers(
+    program: &Program,
+    queries: &[usize],
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Vec<Answered>, String> {
+    let sought = |q: &usize| Some((*q, reachability(&program.queries.get(*q)?.ask)?));
+    let together: Vec<(usize, Sought)> = queries.iter().filter_map(sought).collect();
+    let network =
+        together.first().and_then(|(q, _)| program.networks.get(usize::from(program.queries[*q].network)));
+    let mut found: Vec<Answered> = Vec::new();
+    if let Some(network) = network
+        && together.len() > 1
+    {
+        match by_search(&Observed::new(program, network), &together, settings, watch) {
+            Ok(all) => found = all,
+            // Which of them come upon the fault is seen one by one.
+            Err(Error::Model { .. }) => {}
+            Err(Error::Internal(what)) => return Err(format!("network `{}`: {what}", network.name)),
+        }
+    }
+    let one = |query: &usize| match found.iter().position(|a| a.query == *query) {
+        Some(at) => Ok(found[at].clone()),
+        None => answer(program, *query, settings, watch),
+    };
+    queries.iter().map(one).collect()
 }
 
 /// What a search looks for, and what it means to find it.
@@ -108,23 +140,31 @@ fn asks_deadlock(formula: &Formula) -> bool {
     }
 }
 
+/// One answer for each of the queries, all from one exploration.
 fn by_search(
     plain: &Observed,
-    query: usize,
-    sought: &Sought,
+    asked: &[(usize, Sought)],
     settings: &Settings,
     watch: &Watch,
-) -> Result<Answered, Error> {
-    let report = search(plain, &[of_formula(&sought.formula)], &[], &[], settings, watch)?;
+) -> Result<Vec<Answered>, Error> {
+    let goals: Vec<Goal> = asked.iter().map(|(_, sought)| of_formula(&sought.formula)).collect();
+    let report = search(plain, &goals, &[], &[], settings, watch)?;
     let states = Some(report.states_stored);
-    let (found, run) = match report.goals.into_iter().next() {
-        Some(Outcome::Reached(witness)) => {
-            (sought.reached.clone(), Some(Box::new(Run { observed: plain.clone(), witness: *witness })))
-        }
-        Some(Outcome::Open(what)) => (Found::Open(exhausted(what)), None),
-        Some(Outcome::Unreachable) | None => (sought.not.clone(), None),
-    };
-    Ok(Answered { query, found, run, notes: Vec::new(), states })
+    let mut notes = Vec::new();
+    if let Some(reason) = &report.global_because {
+        notes.push(format!("searched without local time: {reason}"));
+    }
+    let answered = asked.iter().zip(report.goals).map(|((query, sought), outcome)| {
+        let (found, run) = match outcome {
+            Outcome::Reached(witness) => {
+                (sought.reached.clone(), Some(Box::new(Run { observed: plain.clone(), witness: *witness })))
+            }
+            Outcome::Open(what) => (Found::Open(exhausted(what)), None),
+            Outcome::Unreachable => (sought.not.clone(), None),
+        };
+        Answered { query: *query, found, run, notes: notes.clone(), states }
+    });
+    Ok(answered.collect())
 }
 
 fn in_general(

@@ -20,6 +20,8 @@ pub struct Settings {
     /// In which order states are looked at; `None`: as the witness needs it. Another order than breadth first finds witnesses
     /// that are not the shortest.
     pub order: Option<Order>,
+    /// Each automaton has a time of its own, where that serves.
+    pub local_time: bool,
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
     pub witness: WitnessKind,
@@ -49,6 +51,7 @@ impl Settings {
         Options {
             order: self.order.unwrap_or(usual.order),
             threads: self.threads.max(1),
+            local_time: self.local_time,
             budget: self.budget,
             seed: self.seed,
             ..usual

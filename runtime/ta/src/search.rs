@@ -15,6 +15,7 @@ use crate::{
     dbm::Number,
     expand::{Batch, Context, Taken, Worker},
     goals::Goals,
+    local,
     network::Width,
     order::Waiting,
     slice,
@@ -59,6 +60,8 @@ pub struct Report {
     pub peak_bytes: usize,
     /// Nothing was left to explore. Without goals a search goes on to this end or to that of its budget.
     pub complete: bool,
+    /// Why local time, which was asked for, does not serve this network or these goals.
+    pub global_because: Option<String>,
 }
 
 /// In which order waiting states are expanded.
@@ -101,6 +104,9 @@ pub struct Options {
     pub keep_committed: bool,
     /// Variables that nothing depends on are left out of the state.
     pub reduce: bool,
+    /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`]. Then `subsumption`,
+    /// `abstraction`, `threads`, `keep_committed` and `reduce` have no meaning.
+    pub local_time: bool,
     pub budget: Budget,
     pub seed: u64,
 }
@@ -114,6 +120,7 @@ impl Default for Options {
             threads: 1,
             keep_committed: false,
             reduce: true,
+            local_time: false,
             budget: Budget::default(),
             seed: 0,
         }
@@ -176,6 +183,28 @@ pub fn check(
 /// # Errors
 /// If a fault of the model is met, or the engine contradicts itself.
 pub fn explore(
+    model: &Model,
+    goals: &[Goal],
+    options: &Options,
+    go_on: &dyn Fn(&Progress) -> bool,
+) -> Result<Report, Error> {
+    if !options.local_time {
+        return global(model, goals, options, go_on);
+    }
+    let Options { order, seed, budget, .. } = *options;
+    let alone = local::Options { order, seed, budget, ..local::Options::default() };
+    match local::explore(model, goals, &alone, go_on) {
+        Ok(report) => Ok(report),
+        Err(local::Failure::Search(error)) => Err(error),
+        Err(local::Failure::NotApplicable(reason)) => {
+            let report = global(model, goals, options, go_on)?;
+            Ok(Report { global_because: Some(reason.to_string()), ..report })
+        }
+    }
+}
+
+/// With one time for all.
+fn global(
     model: &Model,
     goals: &[Goal],
     options: &Options,
@@ -271,6 +300,7 @@ impl<'m, 'p, N: Number> Search<'m, 'p, N> {
             transitions: self.transitions,
             peak_bytes: self.peak,
             complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes),
+            global_because: None,
         })
     }
 

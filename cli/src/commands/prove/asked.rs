@@ -59,11 +59,14 @@ impl Asked {
                     jobs.push(Job { network, what: What::Requirement(monitor) });
                 }
             }
-            for (query, q) in program.queries.iter().enumerate() {
-                let wanted = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
-                if wanted && usize::from(q.network) == network {
-                    jobs.push(Job { network, what: What::Query(query) });
-                }
+            let wanted = |(_, q): &(usize, &hrdsl_ir::ta::Query)| {
+                let named = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
+                named && usize::from(q.network) == network
+            };
+            let queries: Vec<usize> =
+                program.queries.iter().enumerate().filter(wanted).map(|(query, _)| query).collect();
+            if !queries.is_empty() {
+                jobs.push(Job { network, what: What::Queries(queries) });
             }
         }
         Ok(jobs)

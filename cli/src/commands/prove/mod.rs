@@ -84,6 +84,9 @@ pub struct How {
     /// In which order states are looked at [default: what the witness needs].
     #[arg(long, value_enum)]
     order: Option<Way>,
+    /// Give each automaton a time of its own, where that serves: often fewer states if automata share little.
+    #[arg(long)]
+    local_time: bool,
     /// Threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
@@ -105,6 +108,7 @@ impl How {
             witness: self.witness.unwrap_or(usual).into(),
             delays: self.delays.into(),
             order: self.order.map(Into::into),
+            local_time: self.local_time,
             threads: usize::from(self.threads),
             seed: self.seed,
             ..Settings::default()
@@ -136,7 +140,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
     for job in &jobs {
-        rows.push(job.row(&shared, &settings, &clock)?);
+        rows.extend(job.rows(&shared, &settings, &clock)?);
     }
     clock.finish();
     write_run(args, &rows)?;
@@ -153,40 +157,49 @@ pub struct Job {
 }
 
 /// By their places in the program.
-#[derive(Clone, Copy)]
 pub enum What {
     Requirement(usize),
-    Query(usize),
+    /// All of one network: what one exploration can decide is decided by one.
+    Queries(Vec<usize>),
 }
 
 impl Job {
-    fn row(&self, program: &Arc<Program>, settings: &Settings, clock: &Clock) -> Result<Row, Fault> {
+    fn rows(&self, program: &Arc<Program>, settings: &Settings, clock: &Clock) -> Result<Vec<Row>, Fault> {
         let started = now();
         let (of, settings, network) = (Arc::clone(program), *settings, self.network);
-        let mut row = match self.what {
+        let mut rows = match &self.what {
             What::Requirement(monitor) => {
+                let monitor = *monitor;
                 let work =
                     move |watch: &Watch| prove::prove(&of, &of.networks[network], monitor, &settings, watch);
                 let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0 };
                 let proof = clock.watched(&program.monitors[monitor].name, work)?;
-                Row::of_proof(program, &proof.unwrap_or_else(late))
+                vec![Row::of_proof(program, &proof.unwrap_or_else(late))]
             }
-            What::Query(query) => {
-                let work = move |watch: &Watch| prove::answer(&of, query, &settings, watch);
-                let late = || Answered {
-                    query,
+            What::Queries(queries) => {
+                let asked = queries.clone();
+                let work = move |watch: &Watch| prove::answers(&of, &asked, &settings, watch);
+                let late = |query: &usize| Answered {
+                    query: *query,
                     found: Found::Open(LATE.to_owned()),
                     run: None,
                     notes: Vec::new(),
                     states: None,
                 };
-                let answer = clock.watched(&program.queries[query].name, work)?;
-                Row::of_answer(program, &answer.unwrap_or_else(late))
+                let label = match queries.as_slice() {
+                    [query] => program.queries[*query].name.clone(),
+                    several => format!("{} queries", several.len()),
+                };
+                let answers = clock.watched(&label, work)?;
+                let answers = answers.unwrap_or_else(|| queries.iter().map(late).collect());
+                answers.iter().map(|a| Row::of_answer(program, a)).collect()
             }
         };
-        row.network.clone_from(&program.networks[network].name);
-        row.time = started.elapsed();
-        Ok(row)
+        for row in &mut rows {
+            row.network.clone_from(&program.networks[network].name);
+            row.time = started.elapsed();
+        }
+        Ok(rows)
     }
 }
 

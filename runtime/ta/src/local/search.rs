@@ -74,6 +74,7 @@ pub(super) fn explore(
         transitions: search.transitions,
         peak_bytes: search.peak,
         complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes),
+        global_because: None,
     })
 }
 
