@@ -22,6 +22,8 @@ pub struct Settings {
     pub order: Option<Order>,
     /// Each automaton has a time of its own, where that serves.
     pub local_time: bool,
+    /// States with a committed location are not stored: less memory, more time.
+    pub skip_committed: bool,
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
     pub witness: WitnessKind,
@@ -52,6 +54,7 @@ impl Settings {
             order: self.order.unwrap_or(usual.order),
             threads: self.threads.max(1),
             local_time: self.local_time,
+            keep_committed: !self.skip_committed,
             budget: self.budget,
             seed: self.seed,
             ..usual

@@ -1,7 +1,7 @@
 //! Exhaustive exploration of the standard families, next to the figures of TChecker (covreach, one core).
 //!
 //! `cargo bench -p hrdsl-ta --bench families -- [NAME] [--threads N] [--reference] [--order breadth|depth|topological]
-//! [--keep] [--size N]`
+//! [--skip-committed] [--size N]`
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -66,7 +66,7 @@ fn main() {
     let mut options = if has("--reference") { Options::reference() } else { Options::default() };
     options.budget = hrdsl_ta::Budget { states: 200_000_000, bytes: 4 << 30 };
     options.threads = after("--threads").and_then(|n| n.parse().ok()).unwrap_or(1);
-    options.keep_committed |= has("--keep");
+    options.keep_committed &= !has("--skip-committed");
     match after("--order").map(String::as_str) {
         Some("breadth") => options.order = Order::Breadth,
         Some("depth") => options.order = Order::Depth,

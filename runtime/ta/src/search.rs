@@ -118,7 +118,7 @@ impl Default for Options {
             subsumption: Subsumption::default(),
             abstraction: Abstraction::default(),
             threads: 1,
-            keep_committed: false,
+            keep_committed: true,
             reduce: true,
             local_time: false,
             budget: Budget::default(),
@@ -131,19 +131,13 @@ impl Options {
     /// The plain zone graph by ExtraLU+ and inclusion, breadth first, of all states.
     #[must_use]
     pub fn reference() -> Self {
-        Self {
-            order: Order::Breadth,
-            subsumption: Subsumption::Inclusion,
-            keep_committed: true,
-            reduce: false,
-            ..Self::default()
-        }
+        Self { order: Order::Breadth, subsumption: Subsumption::Inclusion, reduce: false, ..Self::default() }
     }
 
     /// Witnesses have as few transitions as any.
     #[must_use]
     pub fn shortest() -> Self {
-        Self { order: Order::Breadth, keep_committed: true, ..Self::default() }
+        Self { order: Order::Breadth, ..Self::default() }
     }
 }
 
@@ -243,7 +237,7 @@ struct Search<'m, 'p, N> {
 }
 
 /// States of one round.
-const ROUND: usize = 1024;
+const ROUND: usize = 4096;
 /// States that one thread expands in one go.
 const CHUNK: usize = 16;
 

@@ -87,6 +87,9 @@ pub struct How {
     /// Give each automaton a time of its own, where that serves: often fewer states if automata share little.
     #[arg(long)]
     local_time: bool,
+    /// Do not store states with a committed location: less memory, more time. Runs may not be the shortest.
+    #[arg(long)]
+    skip_committed: bool,
     /// Threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
@@ -109,6 +112,7 @@ impl How {
             delays: self.delays.into(),
             order: self.order.map(Into::into),
             local_time: self.local_time,
+            skip_committed: self.skip_committed,
             threads: usize::from(self.threads),
             seed: self.seed,
             ..Settings::default()

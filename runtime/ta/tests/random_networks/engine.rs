@@ -78,7 +78,8 @@ fn modes() -> Vec<(&'static str, Options)> {
         ("random depth", Options { seed: 7, ..with(Order::RandomDepth, 1) }),
         ("two threads", with(Order::Topological, 2)),
         ("two threads, depth", with(Order::Depth, 2)),
-        ("everything stored", Options { keep_committed: true, reduce: false, ..with(Order::Depth, 1) }),
+        ("everything kept", Options { reduce: false, ..with(Order::Depth, 1) }),
+        ("committed states passed", Options { keep_committed: false, ..with(Order::Depth, 1) }),
     ]
 }
 
