@@ -733,6 +733,7 @@ module.exports = grammar({
               keyword($, "location"),
               keyword($, "edge"),
               keyword($, "plan"),
+              keyword($, "use"),
               field("what", $.identifier),
             ),
           ),
