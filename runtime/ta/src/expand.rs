@@ -312,6 +312,7 @@ impl<'m, 'p, N: Number> Worker<'m, 'p, N> {
     fn transition(&mut self, at: usize, number: u32) -> Option<Taken> {
         let mut current = std::mem::replace(&mut self.locals[at], Local::empty());
         let mut found = None;
+        let side = self.side(&current.zone);
         let _ = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
             if s.number < number {
                 return ControlFlow::Continue(());
@@ -320,13 +321,22 @@ impl<'m, 'p, N: Number> Worker<'m, 'p, N> {
                 parts: s.firing.parts.to_vec(),
                 medium: s.firing.medium,
                 args: s.firing.args.to_vec(),
-                guard: s.firing.guard.to_vec(),
+                guard: s.firing.guard.iter().chain(&side).copied().collect(),
                 resets: s.resets.to_vec(),
             });
             ControlFlow::Break(())
         });
         self.locals[at] = current;
         found
+    }
+
+    /// On which side of the compared differences a zone lies: zones were split along them, and what a transition needs may
+    /// follow from the side alone.
+    fn side(&self, zone: &Dbm<N>) -> Vec<Constraint> {
+        let excluded =
+            |c: &Constraint| !zone.is_empty() && !zone.meets(usize::from(c.i), usize::from(c.j), c.bound);
+        let compared = self.model.extrapolation.differences().into_iter();
+        compared.flat_map(|c| [c, c.negated()]).filter(excluded).map(Constraint::negated).collect()
     }
 
     /// Compares a zone with those of its discrete state that were stored from node `first` on. `None`: one covers it;

@@ -130,7 +130,6 @@ fn a_bound_argument_is_not_asked_for_without_a_sender() {
 
 /// A receiver with `x == 0 s` stays away from a broadcast after a difference was compared.
 #[test]
-#[ignore = "the witness lets it stay away where it must take part"]
 fn a_receiver_that_stays_away_has_time_to() {
     let p = crate::dice::network(569, crate::dice::Flavour::Differences);
     agrees(&p);
