@@ -4,10 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use hrdsl_compiler::Compilation;
-use hrdsl_export::{
-    Obstacle, picture, tchecker,
-    uppaal::{self, Exported},
-};
+use hrdsl_export::{Obstacle, picture, tchecker, uppaal};
 use hrdsl_ir::{Program, ta::Network};
 
 use crate::{
@@ -106,10 +103,7 @@ fn plain(
     let index = network(program, args.network.as_deref(), &args.file.display().to_string())?;
     match export(program, &program.networks[index]) {
         Ok(text) => {
-            match &args.out {
-                Some(path) => input::write(path, &text)?,
-                None => input::print(&text)?,
-            }
+            write(args.out.as_deref(), &text)?;
             Ok(Exit::Ok)
         }
         Err(obstacles) => Ok(refused(&args.file, &compilation, &obstacles)),
@@ -129,7 +123,10 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
     match uppaal::export(program, network) {
         Ok(exported) => {
             said(&compilation, &exported.left_out, "left out");
-            write(args, &exported)?;
+            if let Some(path) = &args.queries {
+                input::write(path, &exported.queries)?;
+            }
+            write(args.out.as_deref(), &exported.text)?;
             Ok(Exit::Ok)
         }
         Err(faults) => Ok(refused(&args.file, &compilation, &faults)),
@@ -142,13 +139,11 @@ fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
     }
 }
 
-fn write(args: &Uppaal, exported: &Exported) -> Result<(), Fault> {
-    if let Some(path) = &args.queries {
-        input::write(path, &exported.queries)?;
-    }
-    match &args.out {
-        Some(path) => input::write(path, &exported.text),
-        None => input::print(&exported.text),
+/// To the file, or to stdout.
+fn write(out: Option<&Path>, text: &str) -> Result<(), Fault> {
+    match out {
+        Some(path) => input::write(path, text),
+        None => input::print(text),
     }
 }
 

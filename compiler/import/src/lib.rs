@@ -7,6 +7,7 @@
 //! What a scenario cannot say is left out, with a comment at its place and a [`Note`]; nothing is left out silently.
 
 pub mod agentspeak;
+mod name;
 mod note;
 pub mod tchecker;
 pub mod uppaal;

@@ -3,6 +3,8 @@
 use hrdsl_syntax::token::{Class, KEYWORDS};
 use indexmap::{IndexMap, IndexSet};
 
+pub(crate) use crate::name::unused;
+
 use super::{
     System,
     ast::Key,
@@ -40,14 +42,9 @@ pub struct Names {
     ambiguous: IndexSet<String>,
 }
 
-/// Only ASCII letters, digits and `_`; a letter first.
+/// A name of the language, with its namespace.
 fn clean(name: &str) -> String {
-    let mut out: String =
-        name.replace("::", "_").chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if !out.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        out.insert_str(0, "x_");
-    }
-    out
+    crate::name::clean(&name.replace("::", "_"))
 }
 
 /// The same, and no keyword.
@@ -83,15 +80,6 @@ pub fn parameter(name: &str) -> String {
         out.push(c.to_ascii_lowercase());
     }
     ident(&out)
-}
-
-/// A name that is not yet in `used`.
-pub fn unused(name: String, used: &IndexSet<String>) -> String {
-    let mut name = name;
-    while used.contains(&name) {
-        name.push('_');
-    }
-    name
 }
 
 fn called<'k>(keys: impl Iterator<Item = &'k Key>) -> IndexMap<Key, String> {

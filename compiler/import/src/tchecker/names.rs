@@ -4,6 +4,7 @@ use hrdsl_syntax::token::KEYWORDS;
 use indexmap::IndexSet;
 
 use super::ast::{At, Model};
+use crate::name::{clean, unused};
 
 /// Words with a meaning of their own in expressions.
 const TAKEN: [&str; 6] = ["min", "max", "abs", "norm", "deadlock", "int"];
@@ -27,7 +28,7 @@ pub struct Names {
 impl Names {
     pub fn new(model: &Model) -> Self {
         let mut names = Self {
-            scenario: clean(&model.name),
+            scenario: ident(&model.name),
             network: String::new(),
             processes: Vec::new(),
             locations: Vec::new(),
@@ -63,7 +64,7 @@ impl Names {
             let mut used = names.used.clone();
             let mut own = Vec::new();
             for l in &p.locations {
-                let name = unused(clean(&l.name), &used);
+                let name = unused(ident(&l.name), &used);
                 names.note("location", &l.name, &name, l.at);
                 used.insert(name.clone());
                 own.push(name);
@@ -76,7 +77,7 @@ impl Names {
 
     /// A new name for the whole scenario.
     pub fn fresh(&mut self, wanted: &str) -> String {
-        let name = unused(clean(wanted), &self.used);
+        let name = unused(ident(wanted), &self.used);
         self.used.insert(name.clone());
         name
     }
@@ -94,21 +95,11 @@ impl Names {
     }
 }
 
-/// Only ASCII letters, digits and `_`, a letter first, and no word of the language.
-fn clean(name: &str) -> String {
-    let mut out: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if !out.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        out.insert_str(0, "x_");
-    }
+/// The same as a name of the language, and no word of it.
+fn ident(name: &str) -> String {
+    let mut out = clean(name);
     if KEYWORDS.iter().any(|k| k.word == out) || TAKEN.contains(&out.as_str()) {
         out.push('_');
     }
     out
-}
-
-fn unused(mut name: String, used: &IndexSet<String>) -> String {
-    while used.contains(&name) {
-        name.push('_');
-    }
-    name
 }

@@ -265,7 +265,7 @@ impl Names {
 
     /// The same for what has no name in the model.
     pub fn unused(&mut self, wanted: &str, owner: Owner) -> String {
-        let base = clean(wanted);
+        let base = crate::name::clean(wanted);
         let mut name = base.clone();
         let mut n = 1;
         while is_reserved(&name) || self.has(&name, owner) {
@@ -321,14 +321,6 @@ fn is_soft_word(name: &str) -> bool {
         "broadcast",
     ];
     WORDS.contains(&name)
-}
-
-fn clean(name: &str) -> String {
-    let mut out: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if !out.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        out.insert_str(0, "x_");
-    }
-    out
 }
 
 /// Every combination of indices, the last fastest.
