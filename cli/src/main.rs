@@ -7,6 +7,7 @@ mod fix;
 mod input;
 mod project;
 mod render;
+mod results_folder;
 
 use std::process::ExitCode;
 
@@ -46,6 +47,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    let mut args = std::env::args_os().skip(1);
+    if args.next().is_some_and(|word| word == commands::sim::SUPERVISE) {
+        return hrdsl_runtime::campaign::supervise(&args.collect::<Vec<_>>());
+    }
     let choice = color::from_args(std::env::args_os());
     let matches = Cli::command().color(choice.into()).get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());

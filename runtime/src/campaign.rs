@@ -1,9 +1,10 @@
 //! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted.
 
 use std::{
+    ffi::OsString,
     path::{Path, PathBuf},
     sync::{
-        Mutex,
+        Mutex, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
     time::Duration,
@@ -12,19 +13,27 @@ use std::{
 use hrdsl_coverage::Collector;
 use hrdsl_ir::{Program, system::System, test::Test};
 use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_sut::{Answer, Launch, Process, PythonEnv, Reply, SutError};
+use hrdsl_sut::{Answer, Finished, Launch, Process, PythonEnv, Reply, SutError, cell::KeptFiles};
+pub use hrdsl_sut::{
+    Cells, Output, ProgramLimits, StopFlag,
+    cell::{Isolation, Supervisor, supervise},
+};
 use hrdsl_trace::{Trace, print, record};
 
 use crate::{
-    harness::{Ended, Fault, Harness, Player, ProgramPlayer, Run, ScriptPlayer, Stage, SutFault},
-    results::{self, Failure, Ratios, TestResult, VerdictResult, WitnessStep},
+    harness::{
+        Ended, Fault, Harness, Player, ProgramPlayer, Run, ScriptPlayer, Stage, SutFault, SutFaultKind,
+    },
+    results::{self, Failure, OutputSummary, Ratios, RunMark, TestResult, VerdictResult, WitnessStep},
     testgen,
 };
 
 /// How much of the program's output is kept, in bytes for each stream.
-const OUTPUT_LIMIT: usize = 64 * 1024;
-/// Wall-clock time that the program has to end when its test is over.
+const OUTPUT_KEPT: usize = 64 * 1024;
+/// Processor time, or sleep, that the program has to end when its test is over.
 const GRACE: Duration = Duration::from_secs(5);
+/// Lines of a program's complaints that go into the results.
+const LAST_LINES: usize = 20;
 
 /// What a campaign runs with.
 pub struct Campaign<'a> {
@@ -32,16 +41,44 @@ pub struct Campaign<'a> {
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
+    pub cells: Cells,
+    pub limits: ProgramLimits,
+    /// Variables that the program gets besides the default ones.
+    pub variables: Vec<(OsString, OsString)>,
+    /// The folder in which each test's files are kept, in a folder of the test's [`file_stem`](TestResult::file_stem).
+    pub keep: Option<PathBuf>,
     /// Workers; at least one.
     pub jobs: usize,
+    /// Set when the campaign is to end before its last test.
+    pub stop: StopFlag,
 }
 
-/// A finished test, with its recording.
+/// A finished test, with what belongs to it.
 pub struct Done<'a> {
     pub index: usize,
     pub result: &'a TestResult,
     /// JSON Lines.
     pub recording: &'a str,
+    pub output: &'a Output,
+    pub kept: Option<&'a KeptFiles>,
+}
+
+/// What a campaign came to.
+#[derive(Clone, Debug, Default)]
+pub struct CampaignOutcome {
+    /// The tests that ended, in the order in which they were given.
+    pub tests: Vec<TestResult>,
+    pub planned: usize,
+    pub interrupted: bool,
+}
+
+/// A test that was run, and what wall time has to do with it.
+struct Attempt {
+    result: TestResult,
+    recording: String,
+    output: Output,
+    kept: Option<KeptFiles>,
+    fault: Option<SutFaultKind>,
 }
 
 /// Installs what the program under test needs, into `cache` on first use.
@@ -54,67 +91,116 @@ pub fn prepare(dir: &Path, cache: &Path) -> Result<PythonEnv, SutError> {
 }
 
 impl Campaign<'_> {
-    /// Runs the tests. `on_done` is called for each as it ends, in any order, one at a time.
+    /// Runs the tests. `on_done` is called for each as it ends, in any order, one at a time; what it gives is why the test
+    /// cannot count, which is then its error.
+    ///
+    /// A test that wall time has ended is run once more when all others are done, alone: if it then comes to another end,
+    /// that is its result, and it is marked.
     ///
     /// # Errors
     /// Only if the scenario has no system under test; what befalls a test is its result.
-    pub fn run(&self, tests: &[Test], on_done: impl Fn(Done<'_>) + Sync) -> Result<Vec<TestResult>, String> {
+    pub fn run(
+        &self,
+        tests: &[Test],
+        on_done: impl Fn(Done<'_>) -> Result<(), String> + Sync,
+    ) -> Result<CampaignOutcome, String> {
         let system =
             self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
         let next = AtomicUsize::new(0);
         let results: Mutex<Vec<Option<TestResult>>> = Mutex::new(vec![None; tests.len()]);
-        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let finish = |index: usize, mut attempt: Attempt| {
+            let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+            let Attempt { result, recording, output, kept, .. } = &attempt;
+            if let Err(why) = on_done(Done { index, result, recording, output, kept: kept.as_ref() }) {
+                attempt.result.break_off(why);
+            }
+            results[index] = Some(attempt.result);
+        };
+        let again: Mutex<Vec<(usize, Attempt)>> = Mutex::default();
         std::thread::scope(|scope| {
-            for worker in 0..self.jobs.max(1) {
-                let (next, results, on_done) = (&next, &results, &on_done);
-                scope.spawn(move || {
-                    if self.jobs <= cores {
-                        // A speed-up only; the run is right on any core.
-                        let _ = hrdsl_sut::pin_to_core(worker);
-                    }
-                    loop {
-                        let index = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(test) = tests.get(index) else { return };
-                        let (result, recording) = self.run_one(system, test);
-                        let mut results = results.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                        on_done(Done { index, result: &result, recording: &recording });
-                        results[index] = Some(result);
+            for _ in 0..self.jobs.max(1) {
+                scope.spawn(|| {
+                    // A speed-up, and one processor for the program whatever the number of workers.
+                    let _pinned = hrdsl_sut::pin_to_free_core();
+                    while let Some(test) = self.next_test(tests, &next) {
+                        let attempt = self.run_one(system, &tests[test]);
+                        match attempt.fault {
+                            Some(SutFaultKind::Interrupted) => return,
+                            Some(SutFaultKind::WallTime) => {
+                                again.lock().unwrap_or_else(PoisonError::into_inner).push((test, attempt));
+                            }
+                            Some(SutFaultKind::Program) | None => finish(test, attempt),
+                        }
                     }
                 });
             }
         });
-        let results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Ok(results.into_iter().flatten().collect())
+        let mut again = again.into_inner().unwrap_or_else(PoisonError::into_inner);
+        again.sort_by_key(|(index, _)| *index);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let _pinned = hrdsl_sut::pin_to_free_core();
+                for (index, first) in again {
+                    let attempt = self.run_again(system, &tests[index], first);
+                    finish(index, attempt);
+                }
+            });
+        });
+        let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let interrupted = self.stop.is_set() && results.iter().any(Option::is_none);
+        Ok(CampaignOutcome {
+            tests: results.into_iter().flatten().collect(),
+            planned: tests.len(),
+            interrupted,
+        })
     }
 
-    /// Runs and judges one test; gives its result and recording.
-    fn run_one(&self, system: &System, test: &Test) -> (TestResult, String) {
-        let (run, files) = self.execute(system, test);
+    fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {
+        let index = next.fetch_add(1, Ordering::Relaxed);
+        (index < tests.len() && !self.stop.is_set()).then_some(index)
+    }
+
+    /// Runs a test once more that wall time has ended.
+    fn run_again(&self, system: &System, test: &Test, first: Attempt) -> Attempt {
+        if self.stop.is_set() {
+            return first;
+        }
+        let mut second = self.run_one(system, test);
+        match second.fault {
+            Some(SutFaultKind::Interrupted) => first,
+            Some(SutFaultKind::WallTime) => second,
+            Some(SutFaultKind::Program) | None => {
+                second.result.marks.push(RunMark::DependsOnLoad);
+                second
+            }
+        }
+    }
+
+    /// Runs and judges one test.
+    fn run_one(&self, system: &System, test: &Test) -> Attempt {
+        let (run, finished) = self.execute(system, test);
         let header = record::Header {
             scenario: self.program.name.clone(),
             test: Some(test.name.clone()),
             seed: Some(test.seed),
         };
         let recording = record::write(self.program, &header, &run.trace);
-        (judge(self.program, test, &run, files), recording)
+        let fault = match &run.ended {
+            Ended::Fault(Fault::System(fault)) => Some(fault.kind),
+            Ended::Fault(Fault::Model(_) | Fault::World(_)) | Ended::Quiet | Ended::Limit => None,
+        };
+        let (output, kept) =
+            finished.as_ref().map(|f| (f.output.clone(), f.kept.clone())).unwrap_or_default();
+        Attempt { result: judge(self.program, test, &run, finished), recording, output, kept, fault }
     }
 
-    fn execute(&self, system: &System, test: &Test) -> (Run, Vec<hrdsl_sut::FileCoverage>) {
-        let failed = |fault| (Run { trace: Trace::default(), ended: Ended::Fault(fault) }, Vec::new());
+    fn execute(&self, system: &System, test: &Test) -> (Run, Option<Finished>) {
+        let failed = |fault| (Run { trace: Trace::default(), ended: Ended::Fault(fault) }, None);
         let stage = match Stage::new(self.program) {
             Ok(stage) => stage,
             Err(why) => return failed(Fault::World(why)),
         };
-        let launch = Launch {
-            command: system.run.clone(),
-            dir: self.dir.clone(),
-            seed: test.seed,
-            coverage: system.coverage.clone(),
-            env: self.env.clone(),
-            budget: Duration::from_nanos(system.budget.max(0).unsigned_abs()),
-            output_limit: OUTPUT_LIMIT,
-        };
-        let mut process = match Process::spawn(&launch) {
+        let mut process = match Process::spawn(&self.launch(system, test)) {
             Ok(process) => process,
             Err(error) => return failed(Fault::System(SutFault::from(error))),
         };
@@ -127,23 +213,38 @@ impl Campaign<'_> {
             // It may have ended by itself: then nobody reads this.
             let _ = process.reply(&Reply { time: run.trace.end, answer: Answer::Stop });
         }
-        let finished = process.finish(GRACE);
-        (run, finished.coverage.unwrap_or_default())
+        (run, Some(process.finish(GRACE)))
+    }
+
+    fn launch(&self, system: &System, test: &Test) -> Launch {
+        Launch {
+            command: system.run.clone(),
+            dir: self.dir.clone(),
+            seed: test.seed,
+            coverage: system.coverage.clone(),
+            env: self.env.clone(),
+            variables: self.variables.clone(),
+            cells: self.cells.clone(),
+            limits: self.limits,
+            output_kept: OUTPUT_KEPT,
+            keep: self.keep.as_ref().map(|folder| folder.join(results::file_stem(&test.name))),
+            stop: self.stop.clone(),
+        }
     }
 }
 
 /// Judges a run: verdicts and coverage, from the trace alone.
-fn judge(program: &Program, test: &Test, run: &Run, files: Vec<hrdsl_sut::FileCoverage>) -> TestResult {
+fn judge(program: &Program, test: &Test, run: &Run, finished: Option<Finished>) -> TestResult {
     let mut checker = Checker::new(program);
     run.trace.replay(&mut checker);
-    let mut collector = Collector::new(program);
-    run.trace.replay(&mut collector);
     let error = match &run.ended {
         Ended::Fault(fault) => Some(fault.to_string()),
         Ended::Quiet | Ended::Limit => None,
     };
     let verdicts = checker.verdicts();
     let verdict = |v: &Verdict| verdict_result(program, &run.trace, v, error.is_some());
+    let (output, others, files) = finished
+        .map_or_else(Default::default, |f| (summary(&f.output), f.others, f.coverage.unwrap_or_default()));
     TestResult {
         name: test.name.clone(),
         suite: test.provenance.suite.clone(),
@@ -156,13 +257,31 @@ fn judge(program: &Program, test: &Test, run: &Run, files: Vec<hrdsl_sut::FileCo
         },
         duration: results::in_seconds(run.trace.end),
         verdicts: verdicts.iter().map(verdict).collect(),
-        bins: collector.finish().cross_names(&program.coverage),
+        // What a run that broke off did not do, it might have done.
+        bins: if error.is_some() { Vec::new() } else { bins(program, &run.trace) },
         predicted: test.provenance.predicts.clone(),
         because: test.provenance.because.clone(),
         code: ratios(&files),
         steps: test.steps.iter().map(|s| testgen::step_text(program, s)).collect(),
+        marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
+        output,
         files,
         error,
+    }
+}
+
+/// The cross-product bins that a trace hits.
+fn bins(program: &Program, trace: &Trace) -> Vec<String> {
+    let mut collector = Collector::new(program);
+    trace.replay(&mut collector);
+    collector.finish().cross_names(&program.coverage)
+}
+
+fn summary(output: &Output) -> OutputSummary {
+    OutputSummary {
+        stdout_bytes: output.stdout.bytes,
+        stderr_bytes: output.stderr.bytes,
+        stderr_end: output.stderr.last_lines(LAST_LINES),
     }
 }
 

@@ -6,6 +6,7 @@
 use hrdsl_ir::{Nanos, Program, Span, value::seconds};
 use hrdsl_sut::FileCoverage;
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::testgen::{Explanation, GoalReport, ModelCoverage};
 
@@ -17,12 +18,20 @@ pub struct Results {
     pub version: String,
     /// The seed of the campaign.
     pub seed: u64,
+    /// Whether the campaign was interrupted: then `tests` are those that had ended.
+    pub interrupted: bool,
+    /// How many tests were to be run.
+    pub planned: usize,
     pub requirements: Vec<Requirement>,
     pub suites: Vec<SuiteInfo>,
     pub bins: Vec<BinResult>,
     pub code: Vec<CodeFile>,
     /// In the order in which they were given.
     pub tests: Vec<TestResult>,
+    /// The command that runs one test again, up to its name, as it is typed in the folder of the results; empty if there is
+    /// none.
+    #[serde(skip)]
+    pub rerun: String,
 }
 
 /// A requirement with its tally in each suite.
@@ -154,6 +163,9 @@ pub struct TestResult {
     pub ended: &'static str,
     /// Of a test in error: what happened, with the program's last output.
     pub error: Option<String>,
+    /// What must be known about the run to trust it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<RunMark>,
     /// Simulated seconds.
     pub duration: f64,
     /// One for each requirement, in order.
@@ -167,8 +179,52 @@ pub struct TestResult {
     pub code: Ratios,
     /// The test's steps as they are written.
     pub steps: Vec<String>,
+    /// What the program wrote.
+    pub output: OutputSummary,
     #[serde(skip)]
     pub files: Vec<FileCoverage>,
+}
+
+/// Something about a run that limits what its verdicts say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunMark {
+    /// Wall time ended it once, and it came to another end when it ran alone.
+    DependsOnLoad,
+    /// The program started other processes: their clocks and chance are not simulated.
+    OtherProcesses,
+}
+
+impl RunMark {
+    /// The sentence about it.
+    #[must_use]
+    pub fn sentence(self) -> &'static str {
+        match self {
+            RunMark::DependsOnLoad => "depends on load: wall time ended it, and alone it came to another end",
+            RunMark::OtherProcesses => "started other processes: their clocks and chance are not simulated",
+        }
+    }
+}
+
+/// How much a program wrote, and the end of what it complained about.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct OutputSummary {
+    pub stdout_bytes: u64,
+    pub stderr_bytes: u64,
+    /// The last lines on standard error.
+    pub stderr_end: String,
+}
+
+impl Results {
+    /// The command that runs a test again, as it is typed in the folder of the results; `None` if there is none.
+    #[must_use]
+    pub fn rerun_of(&self, test: &TestResult) -> Option<String> {
+        let name =
+            test.name.strip_prefix(&self.scenario).and_then(|n| n.strip_prefix('.')).unwrap_or(&test.name);
+        let plain = name.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_' | '-'));
+        let name = if plain { name.to_owned() } else { format!("'{}'", name.replace('\'', "'\\''")) };
+        (!self.rerun.is_empty()).then(|| format!("{} {name}", self.rerun))
+    }
 }
 
 impl TestResult {
@@ -176,6 +232,23 @@ impl TestResult {
     #[must_use]
     pub fn has_failed(&self) -> bool {
         self.verdicts.iter().any(|v| v.outcome == "fail")
+    }
+
+    /// The test is in error after all: what befell it besides its run. A violation still counts.
+    pub fn break_off(&mut self, why: String) {
+        self.ended = "error";
+        self.error.get_or_insert(why);
+        self.bins.clear();
+        for verdict in self.verdicts.iter_mut().filter(|v| v.outcome != "fail") {
+            verdict.outcome = "error";
+        }
+    }
+
+    /// The name of the test's files, without folder and ending: its own name, or if that is too long or cannot be the name
+    /// of a file, a part of it and a digest.
+    #[must_use]
+    pub fn file_stem(&self) -> String {
+        file_stem(&self.name)
     }
 }
 
@@ -213,6 +286,26 @@ pub struct WitnessStep {
     pub text: String,
 }
 
+/// The longest name that leaves room for an ending in any file system.
+const LONGEST_STEM: usize = 200;
+
+/// The name of a test's files, as [`TestResult::file_stem`] says.
+pub(crate) fn file_stem(name: &str) -> String {
+    let fits = |c: char| c.is_alphanumeric() || matches!(c, '.' | '_' | '-');
+    if name.len() <= LONGEST_STEM && name.chars().all(fits) && !name.starts_with('.') {
+        return name.to_owned();
+    }
+    let digest = Sha256::digest(name).iter().take(8).fold(0_u64, |n, byte| n << 8 | u64::from(*byte));
+    let mut stem = String::new();
+    for c in name.chars().map(|c| if fits(c) { c } else { '_' }) {
+        if stem.len() + c.len_utf8() > LONGEST_STEM - 17 {
+            break;
+        }
+        stem.push(c);
+    }
+    format!("{}-{digest:016x}", stem.trim_start_matches('.'))
+}
+
 /// Seconds for a report.
 #[must_use]
 pub fn in_seconds(time: Nanos) -> f64 {
@@ -236,4 +329,21 @@ pub fn requirements(program: &Program, suites: usize) -> Vec<Requirement> {
         origin: m.origin,
     };
     program.monitors.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_stem;
+
+    #[test]
+    fn names_of_files_are_short_and_differ() {
+        assert_eq!(file_stem("bdi_tests.t017"), "bdi_tests.t017");
+        let (a, b) =
+            (file_stem(&format!("{}a", "x".repeat(300))), file_stem(&format!("{}b", "x".repeat(300))));
+        assert!(a.len() <= 200 && b.len() <= 200 && a != b, "{a} {b}");
+        for odd in ["../up", "a/b", ".hidden", "a b", "ä".repeat(150).as_str()] {
+            let stem = file_stem(odd);
+            assert!(stem.len() <= 200 && !stem.contains('/') && !stem.starts_with('.'), "{odd}: {stem}");
+        }
+    }
 }

@@ -6,6 +6,7 @@ use hrdsl_coverage::name;
 use hrdsl_ir::Program;
 
 use crate::{
+    campaign::CampaignOutcome,
     results::{BinResult, CodeFile, Margin, Ratios, Results, SuiteInfo, TestResult, requirements},
     testgen::{Generated, GoalStatus, bin_goal},
 };
@@ -16,9 +17,10 @@ pub fn tally(
     program: &Program,
     seed: u64,
     generated: &[Generated],
-    tests: Vec<TestResult>,
+    outcome: CampaignOutcome,
     sources: &BTreeMap<String, String>,
 ) -> Results {
+    let CampaignOutcome { tests, planned, interrupted } = outcome;
     let suites = suites(generated, &tests);
     let place: BTreeMap<&str, usize> = suites.iter().enumerate().map(|(i, s)| (s.name.as_str(), i)).collect();
     let mut requirements = requirements(program, suites.len());
@@ -50,11 +52,14 @@ pub fn tally(
         scenario: program.name.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         seed,
+        interrupted,
+        planned,
         requirements,
         bins,
         code,
         suites,
         tests,
+        rerun: String::new(),
     }
 }
 
@@ -141,7 +146,10 @@ fn bins(
                 let suite = place.get(test.suite.as_str()).copied().unwrap_or(0);
                 if test.bins.contains(&id) {
                     result.hits[suite] += 1;
-                    result.first.get_or_insert_with(|| test.name.clone());
+                    // By the alphabet: the same whatever the order of the tests.
+                    if result.first.as_ref().is_none_or(|first| test.name < *first) {
+                        result.first = Some(test.name.clone());
+                    }
                 }
                 result.predicted[suite] += u32::from(test.predicted.contains(&id));
             }

@@ -21,7 +21,7 @@ pub use agent::{AgentPlayer, Company, Snapshot};
 pub use automaton::AutomatonPlayer;
 pub use hrdsl_bdi::{Detail, Standing, Status};
 pub use model::{How, Inspection, LogLine, ModelRun, inspect, model_run};
-pub use program::{ProgramPlayer, SutFault};
+pub use program::{ProgramPlayer, SutFault, SutFaultKind};
 pub use script::ScriptPlayer;
 pub use stage::Stage;
 pub use stimulus::draw_samples;

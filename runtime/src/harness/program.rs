@@ -2,7 +2,11 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use hrdsl_ir::{ActorId, EventId, Nanos, Param, Program, Type, Value, value::nanos, world::GripperId};
+use hrdsl_ir::{
+    ActorId, EventId, Nanos, Param, Program, Type, Value,
+    value::{nanos, seconds},
+    world::GripperId,
+};
 use hrdsl_sim::{Command, CommandId};
 use hrdsl_sut::{Answer, Arg, Process, Reply, Request, SutError};
 
@@ -18,11 +22,33 @@ const REQUESTS_AT_AN_INSTANT: usize = 100_000;
 #[error("{message}")]
 pub struct SutFault {
     pub message: String,
+    pub kind: SutFaultKind,
+}
+
+/// What a fault of the program says about another run of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SutFaultKind {
+    /// It would happen again.
+    Program,
+    /// Wall time ended the run: it may be the machine's load.
+    WallTime,
+    /// The campaign was interrupted: it says nothing about the program.
+    Interrupted,
 }
 
 impl From<SutError> for SutFault {
     fn from(error: SutError) -> Self {
-        Self { message: error.to_string() }
+        let kind = match &error {
+            SutError::Overrun { overrun, .. } if overrun.is_of_wall_time() => SutFaultKind::WallTime,
+            SutError::Stopped { .. } => SutFaultKind::Interrupted,
+            SutError::Overrun { .. }
+            | SutError::Absent { .. }
+            | SutError::Exited { .. }
+            | SutError::Rubbish { .. }
+            | SutError::Environment { .. }
+            | SutError::Io { .. } => SutFaultKind::Program,
+        };
+        Self { message: error.to_string(), kind }
     }
 }
 
@@ -33,6 +59,8 @@ pub struct ProgramPlayer<'p, 'r> {
     process: &'r mut Process,
     waits: Waits,
     mailbox: VecDeque<Mail>,
+    /// How many requests the program has made at the instant at which it made the last.
+    at_instant: (Nanos, usize),
 }
 
 struct Mail {
@@ -68,7 +96,14 @@ struct Confirm {
 impl<'p, 'r> ProgramPlayer<'p, 'r> {
     #[must_use]
     pub fn new(program: &'p Program, actor: ActorId, process: &'r mut Process) -> Self {
-        Self { program, actors: [actor], process, waits: Waits::No, mailbox: VecDeque::new() }
+        Self {
+            program,
+            actors: [actor],
+            process,
+            waits: Waits::No,
+            mailbox: VecDeque::new(),
+            at_instant: (0, 0),
+        }
     }
 
     fn reply(&mut self, now: Nanos, answer: Answer) -> Result<(), Fault> {
@@ -78,16 +113,31 @@ impl<'p, 'r> ProgramPlayer<'p, 'r> {
 
     /// Answers requests until one waits.
     fn serve(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
-        for _ in 0..REQUESTS_AT_AN_INSTANT {
-            if !matches!(self.waits, Waits::No) {
-                return Ok(());
-            }
+        while matches!(self.waits, Waits::No) {
             let request = self.process.next().map_err(|e| Fault::System(e.into()))?;
+            self.count(cx.now)?;
             let Some(answer) = self.answer(request, cx) else { continue };
             self.reply(cx.now, answer)?;
         }
-        let message = format!("the program made {REQUESTS_AT_AN_INSTANT} requests without letting time pass");
-        Err(Fault::System(SutFault { message }))
+        Ok(())
+    }
+
+    /// Counts a request at this instant: waits that end at once let no time pass either, so that the count goes on over
+    /// them, and starts anew only when time has moved.
+    fn count(&mut self, now: Nanos) -> Result<(), Fault> {
+        let (instant, requests) = &mut self.at_instant;
+        if *instant != now {
+            (*instant, *requests) = (now, 0);
+        }
+        *requests += 1;
+        if *requests <= REQUESTS_AT_AN_INSTANT {
+            return Ok(());
+        }
+        let message = format!(
+            "the program made {REQUESTS_AT_AN_INSTANT} requests without letting simulated time pass (at {} s)",
+            seconds(now)
+        );
+        Err(Fault::System(SutFault { message, kind: SutFaultKind::Program }))
     }
 
     /// The answer, or `None` if the request waits.

@@ -6,8 +6,8 @@ use hrdsl_sut::FileCoverage;
 
 use crate::{
     results::{
-        BinResult, CodeFile, Failure, Margin, Ratios, Requirement, Results, SuiteInfo, Tally, TestResult,
-        VerdictResult, WitnessStep,
+        BinResult, CodeFile, Failure, Margin, OutputSummary, Ratios, Requirement, Results, RunMark,
+        SuiteInfo, Tally, TestResult, VerdictResult, WitnessStep,
     },
     testgen::{
         AgentCoverage, Explanation, GoalReport, GoalStatus, KindCoverage, ModelCoverage, TestExplanation,
@@ -150,6 +150,9 @@ pub fn campaign(per_suite: usize) -> Results {
         suites: (0..SUITES.len()).map(|s| suite(s, &of(s).collect::<Vec<_>>())).collect(),
         bins: BINS.iter().map(|b| bin(b, &tests)).collect(),
         code: vec![code(&tests)],
+        interrupted: false,
+        planned: tests.len(),
+        rerun: "hrdsl sim ../scenario.hri tests --test".into(),
         tests,
     }
 }
@@ -183,12 +186,21 @@ fn test(s: usize, i: usize) -> TestResult {
         ended: if error.is_some() { "error" } else { ["quiet", "limit"][i % 2] },
         duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
         verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
-        error,
         bins,
         predicted,
         because: because(s, i),
         code: ratios(&files),
         steps: steps(s, i),
+        marks: if i % 29 == 6 { vec![RunMark::DependsOnLoad] } else { Vec::new() },
+        output: OutputSummary {
+            stdout_bytes: 120,
+            stderr_bytes: if error.is_some() { 42 } else { 0 },
+            stderr_end: error
+                .as_ref()
+                .map(|_| "RuntimeError: no leg in the gripper".into())
+                .unwrap_or_default(),
+        },
+        error,
         files,
     }
 }

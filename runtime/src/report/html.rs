@@ -247,6 +247,13 @@ fn conclusion(results: &Results) -> Vec<Part> {
     };
     let mut parts = Vec::new();
     let mut say = |class: &'static str, text: String| parts.push(Part { class, text });
+    if results.interrupted {
+        let missing = results.planned.saturating_sub(results.tests.len());
+        say(
+            "e",
+            format!("The campaign was interrupted: {missing} of {} tests are missing.", results.planned),
+        );
+    }
     let violated = named(Outcome::Fail);
     let held = named(Outcome::Pass);
     if violated.is_empty() {

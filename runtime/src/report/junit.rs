@@ -53,6 +53,13 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
     suite.set_time(simulated(tests()));
     suite.add_property(Property::new("hrdsl.version", text::line(&results.version)));
     suite.add_property(Property::new("hrdsl.seed", results.seed.to_string()));
+    if results.interrupted {
+        let missing = results.planned.saturating_sub(results.tests.len());
+        suite.add_property(Property::new(
+            "hrdsl.interrupted",
+            format!("{missing} of {} tests missing", results.planned),
+        ));
+    }
     if let Some(info) = results.suites.iter().find(|s| s.name == name) {
         suite.add_property(Property::new("hrdsl.method", text::line(&info.method)));
         if let Some(number) = info.abstract_tests {
@@ -93,6 +100,12 @@ fn test_case(results: &Results, test: &TestResult) -> TestCase {
     let verdict = |v: &VerdictResult| format!("{}: {}", text::line(&v.requirement), Outcome::of(v).word());
     let verdicts: Vec<String> = test.verdicts.iter().map(verdict).collect();
     case.add_property(Property::new("hrdsl.verdicts", verdicts.join(", ")));
+    for mark in &test.marks {
+        case.add_property(Property::new("hrdsl.mark", mark.sentence()));
+    }
+    if !test.output.stderr_end.is_empty() {
+        case.set_system_err(text::clean(&test.output.stderr_end));
+    }
     let bins: Vec<String> = test.bins.iter().map(|b| text::line(b)).collect();
     if !bins.is_empty() {
         case.add_property(Property::new("hrdsl.bins", bins.join(", ")));
@@ -112,7 +125,8 @@ fn status(results: &Results, test: &TestResult) -> TestCaseStatus {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
         status.set_type("broken test");
         status.set_message(text::cut(&text::line(error), 200));
-        status.set_description(format!("{}\n{violations}{}", text::ends(&text::clean(error)), steps(test)));
+        let error = text::ends(&text::clean(error));
+        status.set_description(format!("{error}\n{violations}{}{}", steps(test), again(results, test)));
         return status;
     }
     if violated.is_empty() {
@@ -121,7 +135,7 @@ fn status(results: &Results, test: &TestResult) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type("requirement violated");
     status.set_message(format!("{} violated", text::enumeration(&violated)));
-    status.set_description(format!("{violations}{}", steps(test)));
+    status.set_description(format!("{violations}{}{}", steps(test), again(results, test)));
     status
 }
 
@@ -166,6 +180,12 @@ fn steps(test: &TestResult) -> String {
         let _ = writeln!(out, "  {}", text::line(step));
     }
     out
+}
+
+/// How to run it again.
+fn again(results: &Results, test: &TestResult) -> String {
+    let Some(command) = results.rerun_of(test) else { return String::new() };
+    format!("to run it again, in the folder of the results:\n  {}\n", text::line(&command))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::{
 };
 use hrdsl_bdi::coverage::Kind;
 
-use crate::results::{BinResult, Ratios, Requirement, Results, SuiteInfo, TestResult};
+use crate::results::{BinResult, Ratios, Requirement, Results, RunMark, SuiteInfo, TestResult};
 
 /// Room for a label at the start of a line, at the least.
 const LABEL: usize = 20;
@@ -29,6 +29,7 @@ pub fn summary(results: &Results, width: usize, color: bool) -> String {
     models(&mut page, results);
     code(&mut page, results);
     errors(&mut page, results);
+    marks(&mut page, results);
     page.out
 }
 
@@ -101,6 +102,17 @@ impl Page {
         self.out.push('\n');
     }
 
+    /// The command that runs a test again, whole: it is there to be copied.
+    fn command(&mut self, results: &Results, test: &TestResult) {
+        if let Some(command) = results.rerun_of(test) {
+            let command = format!("  {}", text::line(&command));
+            let all = command.chars().count();
+            let width = std::mem::replace(&mut self.width, all);
+            self.line(&[Cell(command, Style::Dim)]);
+            self.width = width;
+        }
+    }
+
     /// How many columns of a width fit beside the least label.
     fn fit(&self, column: usize) -> usize {
         (self.width.saturating_sub(LABEL) / column).max(1)
@@ -126,6 +138,12 @@ fn header(page: &mut Page, results: &Results) {
         Cell(text::count(broken, "error"), if broken > 0 { Style::Warn } else { Style::Good }),
         Cell(format!(", {} simulated", text::stretch(simulated)), Style::Plain),
     ]);
+    if results.interrupted {
+        let missing = results.planned.saturating_sub(results.tests.len());
+        let what =
+            format!("interrupted: {missing} of {} had not ended", text::count(results.planned, "test"));
+        page.line(&[Cell(what, Style::Warn)]);
+    }
 }
 
 /// The outcomes with a column: the first three always, the others if there are any.
@@ -230,6 +248,7 @@ fn violations(page: &mut Page, results: &Results) {
             left(&what, page.width.saturating_sub(used), Style::Plain),
             Cell(others, Style::Dim),
         ]);
+        page.command(results, tests[0].1);
     }
 }
 
@@ -407,9 +426,31 @@ fn errors(page: &mut Page, results: &Results) {
             Cell(format!("{}  ", text::cut(&name, page.width / 3)), Style::Plain),
             Cell(first, Style::Plain),
         ]);
+        if let Some(last) = text::clean(&test.output.stderr_end).lines().rfind(|l| !l.trim().is_empty()) {
+            page.line(&[Cell(format!("  its last line on stderr: {}", text::line(last)), Style::Dim)]);
+        }
+        page.command(results, test);
     }
     if broken.len() > ERRORS {
         page.line(&[Cell(format!("  and {} more", broken.len() - ERRORS), Style::Dim)]);
+    }
+}
+
+/// What must be known about some runs to trust them.
+fn marks(page: &mut Page, results: &Results) {
+    for mark in [RunMark::DependsOnLoad, RunMark::OtherProcesses] {
+        let marked: Vec<&TestResult> = results.tests.iter().filter(|t| t.marks.contains(&mark)).collect();
+        if let Some(first) = marked.first() {
+            page.out.push('\n');
+            let name = text::line(facts::short(results, &first.name));
+            let who = format!(
+                "{} ({name}{})",
+                text::count(marked.len(), "test"),
+                if marked.len() > 1 { ", …" } else { "" }
+            );
+            page.line(&[Cell("! ".into(), Style::Warn), Cell(who, Style::Plain)]);
+            page.line(&[Cell(format!("  {}", mark.sentence()), Style::Plain)]);
+        }
     }
 }
 
@@ -433,7 +474,7 @@ mod tests {
                 let widest = text.lines().map(|l| l.chars().count()).max();
                 assert!(widest <= Some(width), "{widest:?} > {width}\n{text}");
             }
-            assert!(summary(&results, 100, false).lines().count() <= 45);
+            assert!(summary(&results, 100, false).lines().count() <= 65);
         }
     }
 

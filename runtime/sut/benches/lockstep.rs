@@ -2,7 +2,10 @@
 
 use std::{path::PathBuf, time::Duration};
 
-use hrdsl_sut::{Answer, Launch, Process, PythonEnv, Reply, Request, pin_to_core};
+use hrdsl_sut::{
+    Answer, Cells, Launch, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag, cell::Supervisor,
+    pin_to_free_core,
+};
 
 fn main() {
     divan::main();
@@ -18,8 +21,13 @@ fn launch(script: &str, coverage: bool) -> Launch {
         seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
         env,
-        budget: Duration::from_secs(10),
-        output_limit: 1 << 16,
+        variables: Vec::new(),
+        cells: Cells::probe(Supervisor::program(env!("CARGO_BIN_EXE_hrdsl-cell")), &root, None)
+            .expect("a cell"),
+        limits: ProgramLimits::default(),
+        output_kept: 1 << 16,
+        keep: None,
+        stop: StopFlag::default(),
     }
 }
 
@@ -34,7 +42,7 @@ fn answer(process: &mut Process) -> Request {
 #[divan::bench(args = [false, true], sample_count = 50)]
 fn thousand_round_trips(bencher: divan::Bencher, pinned: bool) {
     if pinned {
-        pin_to_core(0).expect("a core");
+        let _pinned = pin_to_free_core().expect("a core");
     }
     let mut process = Process::spawn(&launch("ask_forever.py", false)).expect("a process");
     answer(&mut process);

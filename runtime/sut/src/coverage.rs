@@ -1,6 +1,10 @@
 //! Code coverage as the runner writes it.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::{Read, Seek},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -22,13 +26,11 @@ pub struct FileCoverage {
 }
 
 /// Reads what the runner wrote, in the order of `files`; `None` if it wrote nothing or was cut short.
-pub(crate) fn read(path: &Path, files: &[String]) -> Option<Vec<FileCoverage>> {
-    let text = std::fs::read(path).ok()?;
+pub(crate) fn read(mut written: File, files: &[String]) -> Option<Vec<FileCoverage>> {
+    let mut text = Vec::new();
+    written.rewind().ok()?;
+    written.read_to_end(&mut text).ok()?;
     let mut found: BTreeMap<String, FileCoverage> = serde_json::from_slice(&text).ok()?;
-    Some(
-        files
-            .iter()
-            .filter_map(|file| found.remove(file).map(|c| FileCoverage { file: file.clone(), ..c }))
-            .collect(),
-    )
+    let known = |file: &String| found.remove(file).map(|c| FileCoverage { file: file.clone(), ..c });
+    Some(files.iter().filter_map(known).collect())
 }

@@ -38,6 +38,8 @@ const SDK: &[(&str, &str)] =
 /// An interpreter, and where the modules are that programs under test need.
 #[derive(Clone, Debug)]
 pub struct PythonEnv {
+    /// The interpreter's version.
+    version: String,
     /// The word by which the interpreter was looked for.
     pub(crate) word: String,
     /// The interpreter itself, behind any wrapper on the path.
@@ -79,6 +81,12 @@ impl PythonEnv {
         Self::prepare_with("python3", cache_dir, requirements)
     }
 
+    /// The interpreter's version, in full.
+    #[must_use]
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
     /// As [`prepare`](Self::prepare), for another interpreter: a name on the path, or a path.
     ///
     /// # Errors
@@ -112,7 +120,15 @@ impl PythonEnv {
             path.push(dir.to_string_lossy().into_owned());
         }
         path.extend(probe.path);
-        Ok(Self { word: python.to_owned(), python: probe.executable, sdk, coverage, analyses, path })
+        Ok(Self {
+            version: probe.tag,
+            word: python.to_owned(),
+            python: probe.executable,
+            sdk,
+            coverage,
+            analyses,
+            path,
+        })
     }
 }
 

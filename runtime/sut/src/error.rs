@@ -1,10 +1,10 @@
 //! What can go wrong with a program under test: each is an error verdict for its test, and none stops a campaign.
 
-use std::{io, time::Duration};
+use std::{fmt, io};
 
 use thiserror::Error;
 
-use crate::{Exit, Output};
+use crate::{Exit, Output, Overrun};
 
 /// Why there is no further request, or no process at all. Those about a running program carry its last output.
 #[derive(Debug, Error)]
@@ -17,11 +17,25 @@ pub enum SutError {
         looked_for: String,
     },
     /// The program ended although the test had not.
-    #[error("the program ended ({exit}) before the test was over{output}")]
-    Exited { exit: Exit, output: Box<Output> },
-    /// The program made no request, or took no reply, within its wall-clock budget.
-    #[error("the program did not {what} within {} ms of wall time{output}", budget.as_millis())]
-    Hung { what: &'static str, budget: Duration, output: Box<Output> },
+    #[error("the program ended ({exit}) before the test was over{}{output}", silence(*spoke))]
+    Exited {
+        exit: Exit,
+        /// Whether it had ever made a request.
+        spoke: bool,
+        output: Box<Output>,
+    },
+    /// The program went over one of its limits while it was to `what`.
+    #[error("{}{}{output}", Sentence(*overrun, what), silence(*spoke))]
+    Overrun {
+        what: &'static str,
+        overrun: Overrun,
+        /// Whether it had ever made a request.
+        spoke: bool,
+        output: Box<Output>,
+    },
+    /// The campaign is to end.
+    #[error("the run was interrupted")]
+    Stopped { output: Box<Output> },
     /// The program wrote something that is no request.
     #[error("the program wrote rubbish to the harness: {why}: {line:?}{output}")]
     Rubbish {
@@ -53,9 +67,24 @@ impl SutError {
     pub fn output(&self) -> Option<&Output> {
         match self {
             SutError::Exited { output, .. }
-            | SutError::Hung { output, .. }
+            | SutError::Overrun { output, .. }
+            | SutError::Stopped { output }
             | SutError::Rubbish { output, .. } => Some(output),
             SutError::Absent { .. } | SutError::Environment { .. } | SutError::Io { .. } => None,
         }
     }
+}
+
+/// What went over a limit, as a sentence.
+struct Sentence<'a>(Overrun, &'a str);
+
+impl fmt::Display for Sentence<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.describe(self.1, f)
+    }
+}
+
+/// A program that never made a request may not know how to.
+fn silence(spoke: bool) -> &'static str {
+    if spoke { "" } else { "; it never spoke to the harness (does it make a `hrdsl.Node`?)" }
 }

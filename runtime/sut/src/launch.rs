@@ -3,11 +3,12 @@
 use std::{
     ffi::OsString,
     path::{Path, PathBuf},
-    process::Command,
-    time::Duration,
 };
 
-use crate::{PythonEnv, SutError};
+use crate::{
+    ProgramLimits, PythonEnv, StopFlag, SutError,
+    cell::{CellOrder, Cells},
+};
 
 /// All that determines a run of the program under test.
 #[derive(Clone, Debug)]
@@ -22,10 +23,25 @@ pub struct Launch {
     /// The Python files whose coverage is measured; empty: none.
     pub coverage: Vec<String>,
     pub env: PythonEnv,
-    /// Wall time within which the program must make its next request, or take a reply.
-    pub budget: Duration,
+    /// Variables of the environment that the program gets besides the [default](DEFAULT_VARIABLES), with their values.
+    pub variables: Vec<(OsString, OsString)>,
+    pub cells: Cells,
+    pub limits: ProgramLimits,
     /// How many bytes of each output stream are kept.
-    pub output_limit: usize,
+    pub output_kept: usize,
+    /// Where to put the files that it writes, if they are to be kept.
+    pub keep: Option<PathBuf>,
+    /// Set when everything is to end.
+    pub stop: StopFlag,
+}
+
+/// The variables of the harness's environment that every program gets. Others are named in the scenario.
+pub const DEFAULT_VARIABLES: [&str; 2] = ["PATH", "LD_LIBRARY_PATH"];
+
+/// A command with the variables that belong to it.
+struct Start {
+    command: Vec<OsString>,
+    env: Vec<(OsString, OsString)>,
 }
 
 /// How a command is started.
@@ -41,26 +57,52 @@ enum Kind<'a> {
 }
 
 impl Launch {
-    /// The command to start, without pipes; the coverage goes to `out`.
-    pub(crate) fn command(&self, out: Option<&Path>) -> Result<Command, SutError> {
+    /// The order for a cell in which the program runs. `descriptors` are the variables that tell the numbers of those that
+    /// go with it.
+    pub(crate) fn order(&self, descriptors: Vec<String>) -> Result<CellOrder, SutError> {
         if !self.dir.is_dir() {
             return Err(absent("folder of the program", self.dir.display().to_string()));
+        }
+        let dir = self.dir.canonicalize().map_err(SutError::io("cannot find the folder of the program"))?;
+        if let Some(folder) = &self.keep {
+            let what = || format!("cannot make {}", folder.display());
+            std::fs::create_dir_all(folder).map_err(SutError::io(what()))?;
         }
         let Some(word) = self.command.first() else {
             return Err(absent("program", "an empty command".to_owned()));
         };
-        let mut command = match self.kind(word) {
-            Kind::Script { flags, script } => self.script(word, flags, script, out)?,
-            Kind::Interpreter => self.plain(&self.interpreter(word)?),
-            Kind::Other => self.plain(&self.program(word)),
+        let mut start = match self.kind(word) {
+            Kind::Script { flags, script } => self.script(word, flags, script)?,
+            Kind::Interpreter => self.plain(self.interpreter(word)?.into_os_string()),
+            Kind::Other => self.plain(self.program(word, &dir)),
         };
-        command.current_dir(&self.dir);
-        command.env("HRDSL_SEED", self.seed.to_string());
-        command.env("PYTHONHASHSEED", (self.seed % (1 << 32)).to_string());
-        command.env("PYTHONIOENCODING", "utf-8:backslashreplace");
-        command.env("TZ", "UTC");
-        command.env_remove("PYTHONSAFEPATH");
-        Ok(command)
+        start.env.splice(0..0, self.variables());
+        Ok(CellOrder {
+            isolation: self.cells.isolation,
+            command: start.command,
+            env: start.env,
+            dir: dir.into_os_string(),
+            hidden: self.cells.hidden.iter().map(|f| f.clone().into_os_string()).collect(),
+            descriptors,
+            memory: self.limits.memory,
+            keep: self.keep.as_ref().map(|f| f.clone().into_os_string()),
+            network: self.cells.network,
+            terminal: self.cells.terminal,
+        })
+    }
+
+    /// What every program finds in its environment.
+    fn variables(&self) -> Vec<(OsString, OsString)> {
+        let given = DEFAULT_VARIABLES.iter().filter_map(|name| Some((name.into(), std::env::var_os(name)?)));
+        let fixed = [
+            ("LANG", "C.UTF-8".to_owned()),
+            ("TZ", "UTC".to_owned()),
+            ("HRDSL_SEED", self.seed.to_string()),
+            ("PYTHONHASHSEED", (self.seed % (1 << 32)).to_string()),
+            ("PYTHONIOENCODING", "utf-8:backslashreplace".to_owned()),
+        ];
+        let fixed = fixed.into_iter().map(|(name, value)| (name.into(), value.into()));
+        given.chain(fixed).chain(self.variables.iter().cloned()).collect()
     }
 
     fn kind(&self, word: &str) -> Kind<'_> {
@@ -81,44 +123,37 @@ impl Launch {
         Kind::Interpreter
     }
 
-    fn script(
-        &self,
-        word: &str,
-        flags: &[String],
-        script: &[String],
-        out: Option<&Path>,
-    ) -> Result<Command, SutError> {
+    fn script(&self, word: &str, flags: &[String], script: &[String]) -> Result<Start, SutError> {
         let file = self.dir.join(&script[0]);
         if script[0] != "-m" && !file.is_file() {
             return Err(absent("script", file.display().to_string()));
         }
         let env = &self.env;
-        let mut command = Command::new(self.interpreter(word)?);
         // Without `site`: its hooks can cost more than all else. The runner sets the search path instead.
-        command.arg("-S").args(flags).arg(env.sdk.join("hrdsl").join("run.py"));
-        if let Some(out) = out {
-            for file in &self.coverage {
-                command.arg("--coverage").arg(file);
-            }
-            command.arg("--coverage-out").arg(out);
+        let mut command = vec![self.interpreter(word)?.into_os_string(), "-S".into()];
+        command.extend(flags.iter().map(OsString::from));
+        command.push(env.sdk.join("hrdsl").join("run.py").into_os_string());
+        for file in &self.coverage {
+            command.extend(["--coverage".into(), OsString::from(file)]);
         }
-        command.args(script);
-        command.env_remove("PYTHONUNBUFFERED"); // the runner writes line by line
-        command.env("HRDSL_SYS_PATH", join(env.path.iter().map(OsString::from)));
-        command.env("HRDSL_COVERAGE_PACKAGE", &env.coverage);
-        command.env("HRDSL_COVERAGE_CACHE", &env.analyses);
-        Ok(command)
+        command.extend(script.iter().map(OsString::from));
+        let variables = [
+            ("HRDSL_SYS_PATH", join(env.path.iter().map(OsString::from))),
+            ("HRDSL_COVERAGE_PACKAGE", env.coverage.clone().into_os_string()),
+            ("HRDSL_COVERAGE_CACHE", env.analyses.clone().into_os_string()),
+        ];
+        Ok(Start { command, env: variables.map(|(name, value)| (name.into(), value)).into() })
     }
 
     /// A command that is started as it is; any Python below it finds the SDK.
-    fn plain(&self, program: &Path) -> Command {
-        let mut command = Command::new(program);
-        command.args(&self.command[1..]);
-        let before = std::env::var_os("PYTHONPATH");
+    fn plain(&self, program: OsString) -> Start {
+        let words = self.command[1..].iter().map(OsString::from);
         let folders = [self.env.sdk.clone().into_os_string()].into_iter();
-        command
-            .env("PYTHONPATH", join(folders.chain(self.env.path.first().map(OsString::from)).chain(before)));
-        command
+        let path = join(folders.chain(self.env.path.first().map(OsString::from)));
+        Start {
+            command: [program].into_iter().chain(words).collect(),
+            env: vec![("PYTHONPATH".into(), path)],
+        }
     }
 
     /// The interpreter that a word of the command means.
@@ -133,8 +168,8 @@ impl Launch {
     }
 
     /// A program with a slash is relative to the folder, one without is searched for on the path.
-    fn program(&self, word: &str) -> PathBuf {
-        if word.contains('/') { self.dir.join(word) } else { PathBuf::from(word) }
+    fn program(&self, word: &str, dir: &Path) -> OsString {
+        if word.contains('/') { dir.join(word).into_os_string() } else { word.into() }
     }
 }
 

@@ -3,8 +3,9 @@
 //! # Steps
 //!
 //! 1. [`PythonEnv::prepare`] installs, once, what robot code in Python needs: the SDK, coverage.py, its requirements.
-//! 2. [`Process::spawn`] starts the program of a [`Launch`], with its output captured in bounded memory.
-//! 3. [`Process::next`] waits for the program's [`Request`], at most for the launch's budget of wall time.
+//! 2. [`Cells::probe`] finds out how the machine can keep the programs of several tests apart.
+//! 3. [`Process::spawn`] starts the program of a [`Launch`] in a [`cell`] of its own, with its output captured in bounded
+//!    memory. [`Process::next`] waits for the program's [`Request`], within the [`ProgramLimits`].
 //! 4. [`Process::reply`] answers it with a [`Reply`], which carries the simulated time.
 //! 5. [`Process::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
 //!
@@ -12,19 +13,23 @@
 //! blocked harness. The protocol is `spec/protocol.md`.
 
 mod affinity;
+pub mod cell;
 mod coverage;
 mod environment;
 mod error;
 mod launch;
+mod limits;
 mod output;
 mod process;
 mod protocol;
 
-pub use affinity::pin_to_core;
+pub use affinity::{PinnedCore, pin_to_free_core};
+pub use cell::Cells;
 pub use coverage::FileCoverage;
 pub use environment::PythonEnv;
 pub use error::SutError;
-pub use launch::Launch;
+pub use launch::{DEFAULT_VARIABLES, Launch};
+pub use limits::{Overrun, ProgramLimits, StopFlag};
 pub use output::{Captured, Output};
 pub use process::{Exit, Finished, Process};
 pub use protocol::{Answer, Arg, PROTOCOL_VERSION, Reply, Request};

@@ -1,6 +1,6 @@
 //! Captured output in bounded memory: the beginning, the end, and how much there was.
 
-use std::{collections::VecDeque, fmt};
+use std::{collections::VecDeque, ffi::OsString, fmt};
 
 /// What a program wrote to one of its streams.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,21 +83,32 @@ impl Capture {
         self.tail.extend(rest);
     }
 
-    pub(crate) fn captured(&self) -> Captured {
+    /// How many bytes have come in all.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// What was collected, with the beginnings of paths put back to what they stand for.
+    pub(crate) fn captured(&self, moved: &[(OsString, OsString)]) -> Captured {
         let kept = self.head.len() + self.tail.len();
         let tail: Vec<u8> = self.tail.iter().copied().collect();
         if kept as u64 == self.bytes {
             // Nothing is missing: a character that lies across the halves stays whole.
             let all = [self.head.as_slice(), &tail].concat();
-            return Captured { head: lossy(&all), tail: String::new(), bytes: self.bytes, dropped: 0 };
+            let head = put_back(lossy(&all), moved);
+            return Captured { head, tail: String::new(), bytes: self.bytes, dropped: 0 };
         }
         Captured {
-            head: lossy(&self.head),
-            tail: lossy(&tail),
+            head: put_back(lossy(&self.head), moved),
+            tail: put_back(lossy(&tail), moved),
             bytes: self.bytes,
             dropped: self.bytes - kept as u64,
         }
     }
+}
+
+fn put_back(text: String, moved: &[(OsString, OsString)]) -> String {
+    moved.iter().fold(text, |text, (from, to)| text.replace(&*from.to_string_lossy(), &to.to_string_lossy()))
 }
 
 fn lossy(bytes: &[u8]) -> String {
@@ -113,7 +124,7 @@ mod tests {
         for chunk in chunks {
             c.push(chunk);
         }
-        c.captured()
+        c.captured(&[])
     }
 
     #[test]

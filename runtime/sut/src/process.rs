@@ -1,29 +1,29 @@
-//! The process under test: spawned with pipes of its own, spoken to in lock-step, killed with all its children.
+//! The process under test: runs in a cell with pipes of its own, and is spoken to in lock-step.
 //!
-//! One poll loop in the calling thread reads the requests, drains the output and notices the end; there are no threads.
+//! One poll loop in the calling thread reads the requests, drains the output, watches the limits and notices the end; there are
+//! no threads.
 
 use std::{
-    fmt, io,
-    os::fd::{AsFd, AsRawFd, OwnedFd},
-    os::unix::process::{CommandExt, ExitStatusExt},
-    process::{Child, ExitStatus, Stdio},
-    sync::{Mutex, PoisonError},
+    fmt,
+    fs::File,
+    io,
+    os::fd::{AsFd, BorrowedFd, OwnedFd},
     time::{Duration, Instant},
 };
 
 use hrdsl_ir::Nanos;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
-    fs::{OFlags, fcntl_getfl, fcntl_setfl},
-    io::{Errno, FdFlags, fcntl_setfd},
+    fs::{MemfdFlags, OFlags, fcntl_getfl, fcntl_setfl, memfd_create},
+    io::Errno,
     pipe::{PipeFlags, pipe_with},
-    process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid},
 };
-use tempfile::TempPath;
+use serde::{Deserialize, Serialize};
 
 use crate::{
-    Answer, FileCoverage, Launch, Output, Reply, Request, SutError, coverage,
-    launch::absent,
+    Answer, FileCoverage, Launch, Output, Overrun, ProgramLimits, Reply, Request, StopFlag, SutError,
+    cell::{Cell, CellRequest, CellUsage, KeptFiles},
+    coverage,
     output::Capture,
     protocol::{self, Line},
 };
@@ -31,20 +31,16 @@ use crate::{
 /// A request longer than this is rubbish.
 const LONGEST_LINE: usize = 1 << 20;
 
-/// How long a program may take to write its coverage after it was asked to terminate.
+/// How long a program may work on its coverage after it was asked to terminate.
 const LAST_WORDS: Duration = Duration::from_millis(500);
 
-/// Between looks at a child whose end cannot be polled for.
-const LOOK: Duration = Duration::from_millis(10);
+/// Between looks at what the program uses.
+const LOOK: Duration = Duration::from_millis(100);
 
-/// A program under test, running. Dropping it kills it and its whole process group.
-///
-/// A child of the program that makes itself a session of its own (a daemon) leaves the group, and is not killed.
+/// A program under test, running. Dropping it kills it and whatever it started.
 #[derive(Debug)]
 pub struct Process {
-    child: Child,
-    /// Readable when the child has ended; `None` where the system has no such thing.
-    ended: Option<OwnedFd>,
+    cell: Cell,
     /// `None` once every writer has closed it.
     requests: Option<OwnedFd>,
     /// `None` once the program was told to finish.
@@ -57,10 +53,15 @@ pub struct Process {
     scanned: usize,
     outbox: Vec<u8>,
     chunk: Box<[u8]>,
-    budget: Duration,
+    limits: ProgramLimits,
+    stop: StopFlag,
+    begun: Instant,
+    /// When the supervisor was last asked what the program uses.
+    asked: Instant,
     time: Nanos,
-    status: Option<ExitStatus>,
-    coverage: Option<(TempPath, Vec<String>)>,
+    /// Whether it has made a request.
+    spoke: bool,
+    coverage: Option<(File, Vec<String>)>,
 }
 
 #[derive(Debug)]
@@ -70,7 +71,8 @@ struct Stream {
 }
 
 /// How a program ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Exit {
     Code(i32),
     Signal(i32),
@@ -95,6 +97,10 @@ pub struct Finished {
     pub output: Output,
     /// `None` if it was not asked for, or the program was killed before it could be written.
     pub coverage: Option<Vec<FileCoverage>>,
+    /// Whether it ever started another process.
+    pub others: bool,
+    /// The files that it wrote, if they were to be kept.
+    pub kept: Option<KeptFiles>,
 }
 
 /// What a turn of the poll loop waits for, besides output and the program's end.
@@ -108,41 +114,68 @@ enum For {
 /// What a turn of the poll loop found.
 enum Found {
     Something,
-    TimeUp,
     Ended,
 }
 
+/// How long a wait has lasted, as the program experiences it: load on the machine does not count.
+struct Patience {
+    /// Of processor time, or of sleep.
+    budget: Duration,
+    /// The cell's processor time when the wait began, and when it was last looked at.
+    cpu: Option<(Duration, Duration)>,
+    looked: Instant,
+    /// How long all of the cell was asleep.
+    asleep: Duration,
+}
+
+impl Patience {
+    fn new(budget: Duration) -> Self {
+        Self { budget, cpu: None, looked: Instant::now(), asleep: Duration::ZERO }
+    }
+
+    /// Takes in what the cell has used, and says whether the wait has been too long.
+    fn look(&mut self, usage: CellUsage) -> Option<Overrun> {
+        // A wait between two looks that was longer than planned was a wait of our own.
+        let passed = self.looked.elapsed().min(2 * LOOK);
+        self.looked = Instant::now();
+        let (first, last) = self.cpu.unwrap_or((usage.cpu, usage.cpu));
+        self.cpu = Some((first, usage.cpu));
+        if usage.asleep && last == usage.cpu {
+            self.asleep += passed;
+        }
+        if usage.cpu.saturating_sub(first) >= self.budget {
+            Some(Overrun::Budget(self.budget))
+        } else if self.asleep >= self.budget {
+            Some(Overrun::Asleep(self.budget))
+        } else {
+            None
+        }
+    }
+}
+
 impl Process {
-    /// Starts the program.
+    /// Starts the program of a launch in a cell.
     ///
     /// # Errors
-    /// [`SutError::Absent`] if there is no such program, script or folder; [`SutError::Io`] if the system refuses.
+    /// [`SutError::Absent`] if something to run does not exist; [`SutError::Environment`] if the command asks for an
+    /// interpreter that was not prepared; [`SutError::Io`] if the system refuses pipes, a cell or a process.
     pub fn spawn(launch: &Launch) -> Result<Self, SutError> {
-        let coverage = if launch.coverage.is_empty() { None } else { Some(coverage_file(launch)?) };
-        let mut command = launch.command(coverage.as_ref().map(|(path, _)| &**path))?;
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
-        let pipes = SutError::io("cannot make pipes");
-        let (mut child, requests, replies) = {
-            // Between making the pipes inheritable and closing our copies, no other child may be started: it would
-            // hold them open, and the end of this one would go unnoticed.
-            static SPAWN: Mutex<()> = Mutex::new(());
-            let _alone = SPAWN.lock().unwrap_or_else(PoisonError::into_inner);
-            let (requests, its_requests, its_replies, replies) = pipes_for_child().map_err(pipes)?;
-            command.env("HRDSL_REQUEST_FD", its_requests.as_raw_fd().to_string());
-            command.env("HRDSL_REPLY_FD", its_replies.as_raw_fd().to_string());
-            let child = command.spawn().map_err(|e| match e.kind() {
-                io::ErrorKind::NotFound => {
-                    absent("program", command.get_program().to_string_lossy().into_owned())
-                }
-                _ => SutError::io(format!("cannot start {}", command.get_program().to_string_lossy()))(e),
-            })?;
-            (child, requests, replies)
-        };
-        let stdout = Stream::new(child.stdout.take().map(Into::into), launch.output_limit);
-        let stderr = Stream::new(child.stderr.take().map(Into::into), launch.output_limit);
+        let io = || SutError::io("cannot make pipes");
+        let (requests, its_requests, its_replies, replies) = pipes_for_child().map_err(io())?;
+        let mut descriptors = vec![its_requests.as_fd(), its_replies.as_fd()];
+        let mut names = vec!["HRDSL_REQUEST_FD", "HRDSL_REPLY_FD"];
+        let measures = !launch.coverage.is_empty();
+        let memory = if measures { Some(coverage_file().map_err(io())?) } else { None };
+        if let Some(memory) = &memory {
+            descriptors.push(memory.as_fd());
+            names.push("HRDSL_COVERAGE_FD");
+        }
+        let order = launch.order(names.into_iter().map(str::to_owned).collect())?;
+        let mut cell = Cell::start(&launch.cells.supervisor, &order, &descriptors)?;
+        let stdout = Stream::new(cell.stdout.take(), launch.output_kept);
+        let stderr = Stream::new(cell.stderr.take(), launch.output_kept);
         Ok(Self {
-            ended: end_of(&child),
-            child,
+            cell,
             requests: Some(requests),
             replies: Some(replies),
             stdout,
@@ -151,10 +184,13 @@ impl Process {
             scanned: 0,
             outbox: Vec::new(),
             chunk: vec![0; 1 << 16].into_boxed_slice(),
-            budget: launch.budget,
+            limits: launch.limits,
+            stop: launch.stop.clone(),
+            begun: Instant::now(),
+            asked: Instant::now(),
             time: 0,
-            status: None,
-            coverage,
+            spoke: false,
+            coverage: memory.map(|file| (file, launch.coverage.clone())),
         })
     }
 
@@ -162,26 +198,29 @@ impl Process {
     /// kind, wrong types, another protocol version) are refused here, and the wait goes on.
     ///
     /// # Errors
-    /// [`SutError::Exited`], [`SutError::Hung`], [`SutError::Rubbish`]; [`SutError::Io`] if the system fails. After an
-    /// error, [`finish`](Self::finish) is the only sensible call.
+    /// [`SutError::Exited`], [`SutError::Overrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
+    /// system fails. After an error, [`finish`](Self::finish) is the only sensible call.
     #[allow(clippy::should_implement_trait)] // not an iterator: each request must be answered first
     pub fn next(&mut self) -> Result<Request, SutError> {
-        let until = Instant::now() + self.budget;
+        let mut patience = Patience::new(self.limits.budget);
         loop {
             if let Some(line) = self.take_line()? {
                 match protocol::parse(&line) {
-                    Line::Request(request) => return Ok(request),
+                    Line::Request(request) => {
+                        self.spoke = true;
+                        return Ok(request);
+                    }
                     Line::Rubbish(why) => return Err(self.rubbish(&line, why)),
                     Line::Refused(error) => {
+                        self.spoke = true;
                         let answer = Answer::Error { error, help: Some("see spec/protocol.md".to_owned()) };
                         self.reply(&Reply { time: self.time, answer })?;
                         continue;
                     }
                 }
             }
-            match self.turn(For::Request, until)? {
+            match self.turn(For::Request, &mut patience)? {
                 Found::Something => {}
-                Found::TimeUp => return Err(self.hung("make a request")),
                 // What it wrote before it ended comes first.
                 Found::Ended if self.inbox.contains(&b'\n') => {}
                 Found::Ended => return Err(self.exited()),
@@ -192,7 +231,7 @@ impl Process {
     /// Answers the request. That the program has ended meanwhile is for [`next`](Self::next) to say.
     ///
     /// # Errors
-    /// [`SutError::Hung`] if the program does not read its replies; [`SutError::Io`] if the system fails.
+    /// [`SutError::Overrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
     pub fn reply(&mut self, reply: &Reply) -> Result<(), SutError> {
         self.time = reply.time;
         self.outbox.clear();
@@ -200,20 +239,16 @@ impl Process {
             .map_err(|e| SutError::io("cannot write a reply")(io::Error::other(e)))?;
         self.outbox.push(b'\n');
         let mut sent = 0;
-        let mut until = None;
+        let mut patience = Patience::new(self.limits.budget);
         while sent < self.outbox.len() {
             let Some(fd) = &self.replies else { return Ok(()) };
             match rustix::io::write(fd, &self.outbox[sent..]) {
                 Ok(n) => sent += n,
                 Err(Errno::INTR) => {}
-                Err(Errno::AGAIN) => {
-                    let until = *until.get_or_insert_with(|| Instant::now() + self.budget);
-                    match self.turn(For::RoomToReply, until)? {
-                        Found::Something => {}
-                        Found::TimeUp => return Err(self.hung("read its replies")),
-                        Found::Ended => return Ok(()),
-                    }
-                }
+                Err(Errno::AGAIN) => match self.turn(For::RoomToReply, &mut patience)? {
+                    Found::Something => {}
+                    Found::Ended => return Ok(()),
+                },
                 Err(Errno::PIPE) => {
                     self.replies = None;
                     return Ok(());
@@ -224,43 +259,50 @@ impl Process {
         Ok(())
     }
 
-    /// Ends the program: it gets `grace` to end by itself, then half a second to write its coverage on SIGTERM, then
-    /// it is killed. Its children are killed in any case.
+    /// Ends the program: it gets `grace` (of processor time or sleep) to end by itself, then half a second to write its
+    /// coverage on SIGTERM, then it is killed. Whatever it started is killed in any case.
     #[must_use]
     pub fn finish(mut self, grace: Duration) -> Finished {
         // A program that still waits for a reply learns that there is none.
         self.replies = None;
-        let mut exit = None;
-        if self.wait_for_end(grace).is_none() {
-            exit = Some(Exit::Killed);
-            self.signal(Signal::TERM);
-            self.wait_for_end(LAST_WORDS);
+        let mut killed = false;
+        if !self.wait_for_end(grace) {
+            killed = true;
+            self.cell.ask(CellRequest::Terminate);
+            if !self.wait_for_end(LAST_WORDS) {
+                self.cell.ask(CellRequest::Kill);
+                let _ = self.cell.await_end(Duration::from_secs(30));
+            }
         }
-        if self.status.is_none() {
-            self.signal(Signal::KILL);
-            self.status = self.child.wait().ok();
-            self.drain();
-        }
-        let exit = exit.or(self.status.map(exit_of)).unwrap_or(Exit::Killed);
-        let coverage = self.coverage.take().and_then(|(path, files)| coverage::read(&path, &files));
-        Finished { exit, output: self.output(), coverage }
+        self.drain();
+        let ending = self.cell.ending().cloned();
+        let exit = ending.as_ref().filter(|_| !killed).map_or(Exit::Killed, |e| e.exit);
+        let coverage = self.coverage.take().and_then(|(file, names)| coverage::read(file, &names));
+        let (others, kept) = ending.map_or((false, None), |e| (e.others, e.kept));
+        Finished { exit, output: self.output(), coverage, others, kept }
     }
 
-    /// What the program has written to its output so far.
+    /// What the program has written to its output so far, with the paths of the project.
     #[must_use]
     pub fn output(&self) -> Output {
-        Output { stdout: self.stdout.capture.captured(), stderr: self.stderr.capture.captured() }
+        let moved = &self.cell.moved;
+        Output { stdout: self.stdout.capture.captured(moved), stderr: self.stderr.capture.captured(moved) }
     }
 
     // ── errors ──
 
     fn exited(&mut self) -> SutError {
-        let exit = self.status.map_or(Exit::Killed, exit_of);
-        SutError::Exited { exit, output: Box::new(self.output()) }
+        let exit = self.cell.ending().map_or(Exit::Killed, |e| e.exit);
+        SutError::Exited { exit, spoke: self.spoke, output: Box::new(self.output()) }
     }
 
-    fn hung(&self, what: &'static str) -> SutError {
-        SutError::Hung { what, budget: self.budget, output: Box::new(self.output()) }
+    fn overrun(&self, what: For, overrun: Overrun) -> SutError {
+        let what = match what {
+            For::Request => "make a request",
+            For::RoomToReply => "read its replies",
+            For::End => "end",
+        };
+        SutError::Overrun { what, overrun, spoke: self.spoke, output: Box::new(self.output()) }
     }
 
     fn rubbish(&self, line: &[u8], why: String) -> SutError {
@@ -290,14 +332,9 @@ impl Process {
         Ok(Some(line))
     }
 
-    /// Waits once, until `until` at the latest; reads whatever there is.
-    fn turn(&mut self, what: For, until: Instant) -> Result<Found, SutError> {
-        let fail = || SutError::io("cannot wait for the program");
-        let left = until.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Ok(Found::TimeUp);
-        }
-        let ready = self.poll(what, left).map_err(|e| fail()(e.into()))?;
+    /// Waits once, for a look's time at most; reads whatever there is, and watches the limits.
+    fn turn(&mut self, what: For, patience: &mut Patience) -> Result<Found, SutError> {
+        let ready = self.poll(what).map_err(|e| SutError::io("cannot wait for the program")(e.into()))?;
         if ready.stdout {
             self.stdout.read(&mut self.chunk);
         }
@@ -307,57 +344,68 @@ impl Process {
         if ready.requests {
             self.read_requests();
         }
-        if ready.ended || (self.ended.is_none() && self.has_ended()) {
-            // The group may have other members, who may hold the pipes: nothing more is to be waited for. They are
-            // killed before the child is reaped, while its number cannot be another's.
-            self.signal(Signal::KILL);
-            self.status = Some(self.child.wait().map_err(fail())?);
+        if ready.control {
+            self.cell.listen();
+        }
+        if self.cell.ending().is_some() || self.cell.is_lost() {
+            // Nobody is left who could write.
             self.drain();
             return Ok(Found::Ended);
         }
-        Ok(Found::Something)
+        match self.watch(what, patience) {
+            Some(overrun) => Err(self.overrun(what, overrun)),
+            None if self.stop.is_set() => Err(SutError::Stopped { output: Box::new(self.output()) }),
+            None => Ok(Found::Something),
+        }
     }
 
-    /// Whether the child has ended; it is left to be reaped.
-    fn has_ended(&self) -> bool {
-        let Some(pid) = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw) else { return false };
-        let how = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        !matches!(waitid(WaitId::Pid(pid), how), Ok(None))
+    /// Which limit the program has gone over, if any.
+    fn watch(&mut self, what: For, patience: &mut Patience) -> Option<Overrun> {
+        let limits = self.limits;
+        // Output is not counted against a program that is over.
+        if what != For::End && self.stdout.capture.bytes() + self.stderr.capture.bytes() > limits.output {
+            return Some(Overrun::Output(limits.output));
+        }
+        if let Some(usage) = self.cell.take_usage() {
+            if usage.cpu > limits.cpu {
+                return Some(Overrun::Cpu(limits.cpu));
+            }
+            if let Some(overrun) = patience.look(usage) {
+                return Some(overrun);
+            }
+        }
+        if self.asked.elapsed() >= LOOK {
+            self.asked = Instant::now();
+            self.cell.ask(CellRequest::Usage);
+        }
+        (self.begun.elapsed() > limits.wall).then_some(Overrun::Wall(limits.wall))
     }
 
-    fn poll(&self, what: For, left: Duration) -> Result<Ready, Errno> {
-        let blind = self.ended.is_none();
-        let left = if blind { left.min(LOOK) } else { left };
-        let left = Timespec {
-            tv_sec: left.as_secs().try_into().unwrap_or(i64::MAX),
-            tv_nsec: left.subsec_nanos().into(),
-        };
-        let mut fds: [Option<(&OwnedFd, PollFlags)>; 5] = [
-            self.requests.as_ref().map(|fd| (fd, PollFlags::IN)),
-            self.stdout.fd.as_ref().map(|fd| (fd, PollFlags::IN)),
-            self.stderr.fd.as_ref().map(|fd| (fd, PollFlags::IN)),
-            self.ended.as_ref().map(|fd| (fd, PollFlags::IN)),
-            self.replies.as_ref().filter(|_| what == For::RoomToReply).map(|fd| (fd, PollFlags::OUT)),
+    fn poll(&self, what: For) -> Result<Ready, Errno> {
+        let look = Timespec { tv_sec: 0, tv_nsec: LOOK.subsec_nanos().into() };
+        let mut fds: [Option<(BorrowedFd<'_>, PollFlags)>; 5] = [
+            self.requests.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
+            self.stdout.fd.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
+            self.stderr.fd.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
+            self.cell.control().map(|fd| (fd, PollFlags::IN)),
+            self.replies.as_ref().filter(|_| what == For::RoomToReply).map(|fd| (fd.as_fd(), PollFlags::OUT)),
         ];
         if self.inbox.len() > LONGEST_LINE && what != For::Request {
             // Nobody takes lines now; the program waits.
             fds[0] = None;
         }
         // A fixed array, since `poll` takes no holes: places without a descriptor repeat the first, for nothing.
-        let Some(spare) = fds.iter().flatten().next().map(|(fd, _)| *fd) else {
-            std::thread::sleep(LOOK);
-            return Ok(Ready::default());
-        };
+        let Some(spare) = fds.iter().flatten().next().map(|(fd, _)| *fd) else { return Ok(Ready::default()) };
         let mut polled = fds.map(|fd| match fd {
-            Some((fd, flags)) => PollFd::new(fd, flags),
-            None => PollFd::new(spare, PollFlags::empty()),
+            Some((fd, flags)) => PollFd::from_borrowed_fd(fd, flags),
+            None => PollFd::from_borrowed_fd(spare, PollFlags::empty()),
         });
-        match poll(&mut polled, Some(&left)) {
+        match poll(&mut polled, Some(&look)) {
             Ok(_) | Err(Errno::INTR) => {}
             Err(e) => return Err(e),
         }
         let is = |k: usize| fds[k].is_some() && !polled[k].revents().is_empty();
-        Ok(Ready { requests: is(0), stdout: is(1), stderr: is(2), ended: is(3) })
+        Ok(Ready { requests: is(0), stdout: is(1), stderr: is(2), control: is(3) })
     }
 
     fn read_requests(&mut self) {
@@ -381,33 +429,18 @@ impl Process {
         }
     }
 
-    fn wait_for_end(&mut self, time: Duration) -> Option<ExitStatus> {
-        let until = Instant::now() + time;
-        while self.status.is_none() {
+    /// Whether the program ended within its time.
+    fn wait_for_end(&mut self, time: Duration) -> bool {
+        let mut patience = Patience::new(time);
+        while self.cell.ending().is_none() && !self.cell.is_lost() {
             self.inbox.clear();
             self.scanned = 0;
-            match self.turn(For::End, until) {
+            match self.turn(For::End, &mut patience) {
                 Ok(Found::Something | Found::Ended) => {}
-                Ok(Found::TimeUp) | Err(_) => break,
+                Err(_) => return false,
             }
         }
-        self.status
-    }
-
-    /// Sends a signal to the program and all its children that have not left its group.
-    fn signal(&self, signal: Signal) {
-        if let Some(group) = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw) {
-            let _ = kill_process_group(group, signal);
-        }
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        if self.status.is_none() {
-            self.signal(Signal::KILL);
-            let _ = self.child.wait();
-        }
+        self.cell.ending().is_some()
     }
 }
 
@@ -416,7 +449,7 @@ struct Ready {
     requests: bool,
     stdout: bool,
     stderr: bool,
-    ended: bool,
+    control: bool,
 }
 
 impl Stream {
@@ -439,44 +472,23 @@ impl Stream {
     }
 }
 
-fn exit_of(status: ExitStatus) -> Exit {
-    match (status.code(), status.signal()) {
-        (Some(code), _) => Exit::Code(code),
-        (None, Some(signal)) => Exit::Signal(signal),
-        (None, None) => Exit::Killed,
-    }
-}
-
 fn unblock(fd: impl AsFd) -> io::Result<()> {
     let flags = fcntl_getfl(&fd)?;
     fcntl_setfl(&fd, flags | OFlags::NONBLOCK)?;
     Ok(())
 }
 
-/// Requests: our end, its end; replies: its end, our end. Ours do not block, and only its ends are inherited.
+/// Requests: our end, its end; replies: its end, our end. Ours do not block. None is inherited by whatever else is started:
+/// its ends are handed to the cell.
 fn pipes_for_child() -> io::Result<(OwnedFd, OwnedFd, OwnedFd, OwnedFd)> {
     let (requests, its_requests) = pipe_with(PipeFlags::CLOEXEC)?;
     let (its_replies, replies) = pipe_with(PipeFlags::CLOEXEC)?;
     unblock(&requests)?;
     unblock(&replies)?;
-    fcntl_setfd(&its_requests, FdFlags::empty())?;
-    fcntl_setfd(&its_replies, FdFlags::empty())?;
     Ok((requests, its_requests, its_replies, replies))
 }
 
-#[cfg(any(target_os = "linux", target_os = "android"))]
-fn end_of(child: &Child) -> Option<OwnedFd> {
-    let pid = Pid::from_raw(i32::try_from(child.id()).ok()?)?;
-    rustix::process::pidfd_open(pid, rustix::process::PidfdFlags::empty()).ok()
-}
-
-#[cfg(not(any(target_os = "linux", target_os = "android")))]
-fn end_of(_: &Child) -> Option<OwnedFd> {
-    None
-}
-
-fn coverage_file(launch: &Launch) -> Result<(TempPath, Vec<String>), SutError> {
-    let file = tempfile::Builder::new().prefix("hrdsl-coverage-").tempfile();
-    let file = file.map_err(SutError::io("cannot make a temporary file"))?;
-    Ok((file.into_temp_path(), launch.coverage.clone()))
+/// A file in memory, for the coverage: it has no name, and is gone with the last who has it open.
+fn coverage_file() -> io::Result<File> {
+    Ok(File::from(memfd_create("hrdsl-coverage", MemfdFlags::CLOEXEC)?))
 }

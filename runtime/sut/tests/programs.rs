@@ -88,7 +88,7 @@ fn what_is_absent_is_named() {
 fn one_that_exits_is_reported_with_its_output() {
     let mut process = Process::spawn(&launch(&["python3", "exits.py"])).unwrap();
     let error = process.next().unwrap_err();
-    let SutError::Exited { exit, output } = &error else { panic!("{error}") };
+    let SutError::Exited { exit, output, .. } = &error else { panic!("{error}") };
     assert_eq!((*exit, output.stdout.text().as_str()), (Exit::Code(3), "going\n"));
     assert!(error.to_string().contains("exit code 3") && error.to_string().contains("  going"), "{error}");
     assert_eq!(process.finish(GRACE).exit, Exit::Code(3));
@@ -112,7 +112,7 @@ fn one_that_hangs_is_given_up_and_its_coverage_kept() {
     let mut process = Process::spawn(&hanging).unwrap();
     hello(&mut process);
     drop(process);
-    hanging.budget = Duration::from_millis(300);
+    hanging.limits.budget = Duration::from_millis(300);
     let mut process = Process::spawn(&hanging).unwrap();
     let mut error = None;
     while error.is_none() {
@@ -122,7 +122,7 @@ fn one_that_hangs_is_given_up_and_its_coverage_kept() {
             Err(e) => error = Some(e),
         }
     }
-    assert!(matches!(error, Some(SutError::Hung { .. })), "{error:?}");
+    assert!(matches!(error, Some(SutError::Overrun { .. })), "{error:?}");
     let finished = process.finish(Duration::from_millis(10));
     assert_eq!(finished.exit, Exit::Killed);
 }
@@ -173,7 +173,7 @@ fn a_flood_of_output_is_kept_in_bounds() {
 #[test]
 fn one_that_reads_no_reply_does_not_block_the_harness() {
     let mut deaf = launch(&["sh", "-c", "exec python3 deaf.py"]);
-    deaf.budget = Duration::from_millis(500);
+    deaf.limits.budget = Duration::from_millis(500);
     let mut process = Process::spawn(&deaf).unwrap();
     let error = loop {
         let request = match process.next() {
@@ -185,30 +185,19 @@ fn one_that_reads_no_reply_does_not_block_the_harness() {
             break e;
         }
     };
-    assert!(matches!(error, SutError::Hung { .. }), "{error}");
+    assert!(matches!(error, SutError::Overrun { .. }), "{error}");
     assert_eq!(process.finish(Duration::ZERO).exit, Exit::Killed);
 }
 
 #[test]
-fn a_child_left_behind_is_noticed_and_killed() {
+fn a_child_left_behind_does_not_hide_the_end() {
     let mut process = Process::spawn(&launch(&["python3", "forks.py"])).unwrap();
     hello(&mut process);
-    let Request::Emit { args, .. } = process.next().unwrap() else { panic!() };
-    let Arg::Scalar(Value::Int(child)) = args["pid"] else { panic!() };
+    assert!(matches!(process.next().unwrap(), Request::Emit { .. }));
     reply(&mut process, 0, Answer::Ok);
     let error = process.next().unwrap_err();
     assert!(matches!(error, SutError::Exited { exit: Exit::Code(7), .. }), "{error}");
-    drop(process);
-    // Gone, or a zombie that waits for whoever adopted it; the system takes a moment for that.
-    let is_gone = || {
-        let state = std::fs::read_to_string(format!("/proc/{child}/stat")).unwrap_or_default();
-        state.is_empty() || state.contains(") Z ") || state.contains(") X ")
-    };
-    let until = std::time::Instant::now() + GRACE;
-    while !is_gone() {
-        assert!(std::time::Instant::now() < until, "process {child} lives on");
-        std::thread::yield_now();
-    }
+    assert!(process.finish(GRACE).others);
 }
 
 #[test]

@@ -57,7 +57,7 @@ class Recorder:
             tracer.stop()
 
     def write(self, out):
-        """Writes {file: statements, executed, branches, executed_branches} as JSON."""
+        """Writes to a file (a name or a descriptor) {file: statements, executed, branches, executed_branches} as JSON."""
         result = {}
         arcs = self._arcs()
         for path, name in self._files.items():

@@ -1,9 +1,10 @@
 """Runs a script as `__main__` with simulated time, seeded chance and, if asked, coverage.
 
-    python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT] (script.py | -m module) args...
+    python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
-for modules), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE.
+for modules), HRDSL_COVERAGE_FD (the descriptor to write coverage to), HRDSL_COVERAGE_PACKAGE (the folder that has
+coverage.py) and HRDSL_COVERAGE_CACHE.
 """
 
 import _signal
@@ -15,12 +16,13 @@ from hrdsl import link as _links
 from hrdsl import virtual
 from hrdsl.errors import ProtocolError, Stopped
 
-USAGE = "usage: python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT] (script.py | -m module) args...\n"
+USAGE = "usage: python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...\n"
 
 
 def main(argv):
     """Never returns: exits with 0 at a normal end or a stop, with 1 after an uncaught exception."""
-    files, out, module, words = _arguments(argv)
+    files, module, words = _arguments(argv)
+    out = _coverage_descriptor()
     _search_path()
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -32,7 +34,7 @@ def main(argv):
         sys.exit("hrdsl: %s" % error)
     _signal.signal(_signal.SIGTERM, _terminated)
     recorder = None
-    if files and out:
+    if files and out is not None:
         from hrdsl.cover import Recorder
 
         environment = os.environ.get
@@ -59,23 +61,30 @@ def _save(recorder, out):
 
 
 def _arguments(argv):
-    files, out, module, rest = [], None, False, list(argv)
+    files, module, rest = [], False, list(argv)
     while rest and rest[0].startswith("-"):
         option = rest.pop(0)
         if option == "-m":
             module = True
             break
-        if option not in ("--coverage", "--coverage-out") or not rest:
+        if option != "--coverage" or not rest:
             sys.stderr.write(USAGE)
             sys.exit(2)
-        if option == "--coverage":
-            files.append(rest.pop(0))
-        else:
-            out = rest.pop(0)
+        files.append(rest.pop(0))
     if not rest:
         sys.stderr.write(USAGE)
         sys.exit(2)
-    return files, out, module, rest
+    return files, module, rest
+
+
+def _coverage_descriptor():
+    """The descriptor for the coverage, which programs that the robot code starts do not inherit; None: not asked for."""
+    try:
+        descriptor = int(os.environ.pop("HRDSL_COVERAGE_FD"))
+    except (KeyError, ValueError):
+        return None
+    os.set_inheritable(descriptor, False)
+    return descriptor
 
 
 def _search_path():

@@ -48,6 +48,14 @@ struct Test {
     bins_hit: usize,
     coverage: String,
     steps: Vec<String>,
+    /// The command that runs it again; empty unless something is wrong.
+    again: String,
+    /// What must be known to trust it.
+    notes: Vec<&'static str>,
+    /// The last lines that the program complained.
+    stderr: String,
+    /// Where its output is; empty if there was none.
+    output: String,
 }
 
 #[derive(Serialize)]
@@ -136,6 +144,17 @@ fn test(results: &Results, index: usize, test: &TestResult) -> Test {
             String::new()
         },
         steps: test.steps.clone(),
+        again: results
+            .rerun_of(test)
+            .filter(|_| test.error.is_some() || test.has_failed())
+            .unwrap_or_default(),
+        notes: test.marks.iter().map(|m| m.sentence()).collect(),
+        stderr: text::clean(&test.output.stderr_end),
+        output: if test.output.stdout_bytes + test.output.stderr_bytes > 0 {
+            format!("output/{}.txt", test.file_stem())
+        } else {
+            String::new()
+        },
     }
 }
 

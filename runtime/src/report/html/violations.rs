@@ -32,6 +32,8 @@ pub struct Violated {
 pub struct Shown {
     test: Link,
     witness: Option<Witness>,
+    /// The command that runs the test again.
+    again: String,
 }
 
 /// How a verdict came about.
@@ -75,6 +77,7 @@ fn violated(
     let shown = |(_, test): &(usize, &TestResult)| Shown {
         test: link(&test.name),
         witness: facts::failure(test, &requirement.name).map(|(verdict, failure)| witness(verdict, failure)),
+        again: results.rerun_of(test).unwrap_or_default(),
     };
     let number = |suite: &str| failing.iter().filter(|(_, t)| t.suite == suite).count();
     let others = failing.iter().filter(|(i, _)| chosen.iter().all(|(c, _)| c != i));

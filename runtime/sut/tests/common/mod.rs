@@ -6,7 +6,10 @@ use std::{
     time::Duration,
 };
 
-use hrdsl_sut::{Answer, Finished, Launch, Process, PythonEnv, Reply, Request};
+use hrdsl_sut::{
+    Answer, Cells, Finished, Launch, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
+    cell::{Isolation, Supervisor},
+};
 
 pub const GRACE: Duration = Duration::from_secs(20);
 
@@ -29,9 +32,19 @@ pub fn launch(words: &[&str]) -> Launch {
         seed: 17,
         coverage: Vec::new(),
         env: plain_environment(),
-        budget: Duration::from_secs(20),
-        output_limit: 1 << 16,
+        variables: Vec::new(),
+        cells: cells(None),
+        limits: ProgramLimits { budget: Duration::from_secs(20), ..ProgramLimits::default() },
+        output_kept: 1 << 16,
+        keep: None,
+        stop: StopFlag::default(),
     }
+}
+
+/// Cells of one kind, or of the best that the machine allows.
+pub fn cells(isolation: Option<Isolation>) -> Cells {
+    let supervisor = Supervisor::program(env!("CARGO_BIN_EXE_hrdsl-cell"));
+    Cells::probe(supervisor, Path::new(env!("CARGO_MANIFEST_DIR")), isolation).unwrap()
 }
 
 pub fn reply(process: &mut Process, time: i64, answer: Answer) {

@@ -1,0 +1,386 @@
+//! `hrdsl sim`: the tests against the code under test, and the reports.
+
+mod determinism;
+mod run;
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use hrdsl_ir::{Program, system::System, test::Test};
+use hrdsl_runtime::{
+    campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare},
+    report,
+    results::Results,
+    tally,
+    testgen::{Generated, generate},
+};
+use serde::Serialize;
+
+use super::generate::{chosen, describe, save};
+use crate::{
+    color,
+    exit::Exit,
+    input::{self, Fault},
+    results_folder::ResultsFolder,
+};
+
+/// What `sim` writes into its folder, the reports last.
+const NAMES: [&str; 8] =
+    ["tests", "traces", "output", "files", "run.json", "results.json", "junit.xml", "report.html"];
+const REPORTS: [&str; 4] = ["run.json", "results.json", "junit.xml", "report.html"];
+
+/// The argument that makes this program the supervisor of a cell.
+pub const SUPERVISE: &str = "supervise-cell";
+
+/// Run tests against the code under test in simulation, and report.
+///
+/// Without tests, the scenario's suites are generated first. In the output folder: report.html, results.json, junit.xml,
+/// run.json, the tests, a recording of each, and what the program wrote in each.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --check-determinism"
+)]
+pub struct Args {
+    /// The scenario.
+    file: PathBuf,
+    /// Files or folders of tests; without, the scenario's suites are generated.
+    tests: Vec<PathBuf>,
+    /// Only this suite; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    suite: Vec<String>,
+    /// Only this test, as `SUITE.tNNN`; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    test: Vec<String>,
+    /// How many concrete tests of each suite, instead of what the suite says.
+    #[arg(short = 'n', long, value_name = "N")]
+    count: Option<u32>,
+    /// Tests that run at once; by default as many as there are cores.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Everything random comes from this.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The folder for the results [default: hrdsl-out/<scenario>].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Exit with 0 even if requirements were violated or tests broke off.
+    #[arg(long)]
+    exit_zero: bool,
+    /// Run the tests twice, and name the first event of each test that differs.
+    #[arg(long)]
+    check_determinism: bool,
+    /// Keep the files that the program writes in each test, in `files/`.
+    #[arg(long)]
+    keep_files: bool,
+    /// How tests are kept apart [default: namespaces where the system allows them, otherwise copies].
+    #[arg(long, value_enum, value_name = "HOW")]
+    isolation: Option<IsolationArg>,
+    /// Processor time that the program may use in a test, as `90s` or `5min`, instead of what the scenario says.
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    cpu_limit: Option<Duration>,
+    /// Wall time after which a test is given up.
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    wall_limit: Option<Duration>,
+    /// Memory that each process of the program may use, as `500MB` or `2GB`.
+    #[arg(long, value_name = "SIZE")]
+    memory_limit: Option<bytesize::ByteSize>,
+    /// Output that the program may write in a test.
+    #[arg(long, value_name = "SIZE")]
+    output_limit: Option<bytesize::ByteSize>,
+}
+
+/// How tests are kept apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum IsolationArg {
+    /// Namespaces of the kernel: everything that a test writes is its own.
+    Namespaces,
+    /// A copy of the scenario's folder for each test.
+    Copies,
+}
+
+/// # Errors
+/// A file, a suite or test that does not exist, a folder whose files would be lost, a model that cannot be run, or what the
+/// code needs cannot be installed.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let compilation = input::load(&args.file, &args.tests)?;
+    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let system =
+        program.system.as_ref().ok_or("the scenario has no `system` block: there is nothing to run")?;
+    let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
+    let folder = ResultsFolder::open(&out, &NAMES)?;
+
+    let generated = generate_suites(args, program, &folder.staging())?;
+    let tests = selected(args, program, &generated)?;
+    let campaign = prepared(args, program, system, &out, &folder)?;
+    let begun = Instant::now();
+    let outcome = run::execute(&campaign, &tests, &folder.staging())?;
+    let differences = if args.check_determinism && !outcome.interrupted {
+        Some(determinism::compare(&campaign, &tests, &folder.staging())?)
+    } else {
+        None
+    };
+    let interrupted = outcome.interrupted;
+    let dir = campaign.dir.clone();
+    let sources = system.coverage.iter().filter_map(|f| Some((f.clone(), input::read(&dir.join(f)).ok()?)));
+    let mut results = tally(program, args.seed, &generated, outcome, &sources.collect::<BTreeMap<_, _>>());
+    results.rerun = rerun(args, &out);
+    publish(&results, &campaign, folder)?;
+    summarise(&results, &campaign, &out, begun.elapsed())?;
+    let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
+    if let Some(differences) = differences {
+        input::print(&differences.text)?;
+    }
+    let clean = results.tests.iter().all(|t| t.error.is_none() && !t.has_failed());
+    Ok(if interrupted {
+        Exit::Interrupted
+    } else if !repeatable || !(clean || args.exit_zero) {
+        Exit::Findings
+    } else {
+        Exit::Ok
+    })
+}
+
+/// Installs what the code needs, and finds out how its tests can be kept apart.
+fn prepared<'p>(
+    args: &Args,
+    program: &'p Program,
+    system: &System,
+    out: &Path,
+    folder: &ResultsFolder,
+) -> Result<Campaign<'p>, Fault> {
+    let dir = input::folder(&args.file);
+    let env = prepare(&dir, &cache()?).map_err(|e| e.to_string())?;
+    let wanted = args.isolation.map(|how| match how {
+        IsolationArg::Namespaces => Isolation::Namespaces,
+        IsolationArg::Copies => Isolation::Copies,
+    });
+    let mut cells =
+        Cells::probe(Supervisor::this_program(SUPERVISE), &dir, wanted).map_err(|e| e.to_string())?;
+    cells.hidden = hidden(&dir, out, folder);
+    for gap in &cells.gaps {
+        eprintln!("note: {gap}");
+    }
+    Ok(Campaign {
+        program,
+        dir,
+        env,
+        cells,
+        limits: limits(args, system),
+        variables: Vec::new(),
+        keep: args.keep_files.then(|| folder.staging().join("files")).map(absolute).transpose()?,
+        jobs: args.jobs.map_or_else(cores, usize::from),
+        stop: stop_flag()?,
+    })
+}
+
+/// Folders that the programs must not see: what is in them depends on the tests that have already run.
+fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
+    let Ok(project) = project.canonicalize() else { return Vec::new() };
+    let Ok(out) = out.canonicalize() else { return Vec::new() };
+    let mut hidden = vec![project.join("hrdsl-out")];
+    if project.starts_with(&out) {
+        hidden.extend(NAMES.iter().map(|name| out.join(name)));
+        hidden.extend(folder.staging().canonicalize());
+    } else {
+        hidden.push(out);
+    }
+    hidden
+}
+
+fn limits(args: &Args, system: &System) -> ProgramLimits {
+    let default = ProgramLimits::default();
+    ProgramLimits {
+        budget: Duration::from_nanos(system.budget.max(0).unsigned_abs()),
+        cpu: args.cpu_limit.unwrap_or(default.cpu),
+        wall: args.wall_limit.unwrap_or(default.wall),
+        memory: args.memory_limit.map_or(default.memory, |size| size.as_u64()),
+        output: args.output_limit.map_or(default.output, |size| size.as_u64()),
+    }
+}
+
+/// Set by an interrupt or a request to terminate; at the second, the program ends at once.
+fn stop_flag() -> Result<StopFlag, Fault> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+    let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        let registered =
+            signal_hook::flag::register_conditional_shutdown(signal, Exit::Interrupted as i32, flag.clone())
+                .and_then(|_| signal_hook::flag::register(signal, flag.clone()));
+        registered.map_err(|e| format!("cannot listen for interrupts: {e}"))?;
+    }
+    Ok(StopFlag::from_shared(flag))
+}
+
+fn absolute(path: PathBuf) -> Result<PathBuf, Fault> {
+    std::path::absolute(&path).map_err(|e| format!("cannot find {}: {e}", path.display()))
+}
+
+/// Generates the suites, unless tests were given.
+fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<Generated>, Fault> {
+    if !args.tests.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut all = Vec::new();
+    for suite in chosen(program, &args.suite)? {
+        let is_of_suite = |name: &String| {
+            short(program, name).strip_prefix(&suite.name).is_some_and(|r| r.starts_with('.'))
+        };
+        if !args.test.is_empty() && !args.test.iter().any(is_of_suite) {
+            continue;
+        }
+        let generated = generate(program, suite, args.count, args.seed)?;
+        save(&to.join("tests"), program, &generated)?;
+        input::print(&describe(&generated))?;
+        all.push(generated);
+    }
+    Ok(all)
+}
+
+/// The tests to run, in order.
+fn selected(args: &Args, program: &Program, generated: &[Generated]) -> Result<Vec<Test>, Fault> {
+    let mut tests: Vec<Test> = if args.tests.is_empty() {
+        generated.iter().flat_map(|g| g.tests.clone()).collect()
+    } else {
+        let wanted = |t: &&Test| args.suite.is_empty() || args.suite.contains(&t.provenance.suite);
+        program
+            .tests
+            .iter()
+            .filter(wanted)
+            .take(args.count.map_or(usize::MAX, |n| n as usize))
+            .cloned()
+            .collect()
+    };
+    let is_called = |test: &Test, name: &String| short(program, &test.name) == short(program, name);
+    for name in &args.test {
+        if !tests.iter().any(|t| is_called(t, name)) {
+            let known: Vec<&str> = tests.iter().take(3).map(|t| short(program, &t.name)).collect();
+            let known = if known.is_empty() {
+                String::new()
+            } else {
+                format!("; there are {}, …", known.join(", "))
+            };
+            return Err(format!("no test is called `{name}`{known}"));
+        }
+    }
+    tests.retain(|t| args.test.is_empty() || args.test.iter().any(|name| is_called(t, name)));
+    if tests.is_empty() {
+        return Err("there is no test to run".to_owned());
+    }
+    Ok(tests)
+}
+
+/// The name of a test without that of its scenario.
+fn short<'n>(program: &Program, name: &'n str) -> &'n str {
+    name.strip_prefix(&program.name).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name)
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// Where Python packages are kept: `$HRDSL_CACHE`, else the user's cache folder.
+fn cache() -> Result<PathBuf, Fault> {
+    let var = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    var("HRDSL_CACHE")
+        .or_else(|| var("XDG_CACHE_HOME").map(|c| c.join("hrdsl")))
+        .or_else(|| var("HOME").map(|h| h.join(".cache/hrdsl")))
+        .ok_or_else(|| "no folder for the cache: set HRDSL_CACHE".to_owned())
+}
+
+/// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
+/// wherever both lie.
+fn rerun(args: &Args, out: &Path) -> String {
+    let mut words = vec!["hrdsl sim".to_owned(), quoted(&relative(&args.file, out))];
+    if args.tests.is_empty() {
+        words.push("tests".to_owned());
+    }
+    words.extend(args.tests.iter().map(|t| quoted(&relative(t, out))));
+    let times = [("--cpu-limit", args.cpu_limit), ("--wall-limit", args.wall_limit)];
+    let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
+    let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
+    let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?.as_u64())));
+    words.extend(times.chain(sizes));
+    words.push("--test".to_owned());
+    words.join(" ")
+}
+
+/// A path as it is seen from a folder.
+fn relative(path: &Path, from: &Path) -> PathBuf {
+    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
+    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
+    up.chain(path.components().skip(common)).collect()
+}
+
+/// A word for a shell.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:@%,".contains(c);
+    if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+/// On what a campaign ran: the one file of the results that differs between machines and versions.
+#[derive(Serialize)]
+struct RunInfo<'a> {
+    format: &'static str,
+    version: u32,
+    hrdsl: &'static str,
+    /// The version of the interpreter, and where it is.
+    python: &'a str,
+    isolation: Isolation,
+    /// What could not be kept apart.
+    gaps: &'a [String],
+    jobs: usize,
+    system: String,
+}
+
+/// Writes the reports, and puts all results in their places.
+fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) -> Result<(), Fault> {
+    let to = folder.staging();
+    let info = RunInfo {
+        format: "hrdsl-run",
+        version: 1,
+        hrdsl: env!("CARGO_PKG_VERSION"),
+        python: campaign.env.version(),
+        isolation: campaign.cells.isolation,
+        gaps: &campaign.cells.gaps,
+        jobs: campaign.jobs,
+        system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+    };
+    input::write(&to.join("run.json"), &json(&info)?)?;
+    input::write(&to.join("results.json"), &json(results)?)?;
+    input::write(&to.join("junit.xml"), &report::junit(results))?;
+    input::write(&to.join("report.html"), &report::html(results))?;
+    folder.publish(&REPORTS)
+}
+
+fn json(value: &impl Serialize) -> Result<String, Fault> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| format!("cannot write results: {e}"))?;
+    Ok(text + "\n")
+}
+
+/// Prints the summary. Wall time is said here and nowhere else, since it differs between equal runs.
+fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Duration) -> Result<(), Fault> {
+    let summary = report::summary(results, 100, color::stdout_has());
+    let how = match campaign.cells.isolation {
+        Isolation::Namespaces => "in namespaces",
+        Isolation::Copies => "in copies of the folder",
+    };
+    let ran = format!(
+        "ran {how} with Python {}, {} at once, in {:.1} s of wall time\n",
+        campaign.env.version(),
+        campaign.jobs,
+        wall.as_secs_f64()
+    );
+    let again = if results.tests.iter().any(|t| t.error.is_some() || t.has_failed()) {
+        format!("to run one test again: (cd {} && {} NAME)\n", quoted(out), results.rerun)
+    } else {
+        String::new()
+    };
+    let page = out.join("report.html");
+    input::print(&format!("{summary}{ran}{again}report: {}\n", page.display()))
+}

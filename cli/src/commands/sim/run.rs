@@ -1,0 +1,76 @@
+//! Runs tests under a progress bar; what belongs to a test is written before it is counted.
+
+use std::{
+    fmt::Write as _,
+    path::Path,
+    sync::{Mutex, PoisonError},
+};
+
+use hrdsl_ir::test::Test;
+use hrdsl_runtime::campaign::{Campaign, CampaignOutcome, Done, Output};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::input::{self, Fault};
+
+/// What has come in so far.
+#[derive(Default)]
+struct Progress {
+    violating: u32,
+    errors: u32,
+}
+
+/// A bar for so many tests.
+pub fn progress_bar(tests: usize) -> ProgressBar {
+    let bar = ProgressBar::new(tests as u64);
+    let template = "{bar:32} {pos}/{len} tests  {elapsed} (about {eta} left)  {msg}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Runs the tests, and writes their recordings and output below a folder.
+pub fn execute(campaign: &Campaign<'_>, tests: &[Test], to: &Path) -> Result<CampaignOutcome, Fault> {
+    let bar = progress_bar(tests.len());
+    let progress = Mutex::new(Progress::default());
+    let outcome = campaign.run(tests, |done| {
+        let written = write(&done, to);
+        let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.violating += u32::from(done.result.has_failed());
+        progress.errors += u32::from(done.result.error.is_some() || written.is_err());
+        bar.set_message(format!("{} with violations, {} errors", progress.violating, progress.errors));
+        bar.inc(1);
+        written
+    })?;
+    bar.finish_and_clear();
+    Ok(outcome)
+}
+
+/// Where a test's recording is.
+pub fn recording(to: &Path, stem: &str) -> std::path::PathBuf {
+    to.join("traces").join(format!("{stem}.jsonl"))
+}
+
+fn write(done: &Done<'_>, to: &Path) -> Result<(), Fault> {
+    let stem = done.result.file_stem();
+    input::write(&recording(to, &stem), done.recording)?;
+    let text = output_text(done.output);
+    if !text.is_empty() {
+        input::write(&to.join("output").join(format!("{stem}.txt")), &text)?;
+    }
+    match done.kept.map(|kept| kept.failures.as_slice()) {
+        Some([first, ..]) => Err(format!("a file of the program could not be kept: {first}")),
+        Some([]) | None => Ok(()),
+    }
+}
+
+/// What a program wrote, with headings between the streams.
+pub fn output_text(output: &Output) -> String {
+    let mut text = String::new();
+    for (name, stream) in [("stdout", &output.stdout), ("stderr", &output.stderr)] {
+        if stream.bytes > 0 {
+            let _ = writeln!(text, "── {name} ──\n{}", stream.text().trim_end_matches('\n'));
+        }
+    }
+    text
+}

@@ -1,0 +1,37 @@
+//! A cell: where the program of one test runs, apart from every other test, and which ends whole.
+//!
+//! # Steps
+//!
+//! 1. [`Cell::start`] starts a *supervisor* (this program, or another that calls [`supervise`]) and hands it a [`CellOrder`]
+//!    with the program's descriptors.
+//! 2. The supervisor makes the cell. With [`Isolation::Namespaces`] it enters namespaces of its own
+//!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`Isolation::Copies`] it copies the
+//!    project's folder (`copies.rs`).
+//! 3. It starts the program under its limits, and answers [`CellRequest`]s with [`CellReport`]s; processor time and
+//!    sleep of everything that runs in the cell are read from the kernel's process tree (`descendants.rs`).
+//! 4. When the program ends, when it is told to, or when the harness is gone, it kills every process of the cell, keeps the
+//!    changed files if they were asked for (`keep.rs`), and ends.
+//!
+//! The harness's death closes the supervisor's only connection, so nothing has to be cleaned up by who was killed.
+
+mod cells;
+mod copies;
+mod descendants;
+mod handle;
+mod keep;
+mod limits;
+mod message;
+mod namespaces;
+mod supervisor;
+mod view;
+
+pub use cells::Cells;
+pub(crate) use handle::Cell;
+pub use handle::Supervisor;
+pub use message::{CellEnding, CellUsage, Isolation, KeptFiles};
+pub use supervisor::supervise;
+
+pub(crate) use message::{CellOrder, CellReport, CellRequest};
+
+/// The folder of a cell's own home and temporary files: the same path in every cell.
+pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";

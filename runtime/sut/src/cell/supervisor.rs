@@ -1,0 +1,368 @@
+//! The supervisor's own process: makes the cell, starts the program, waits, and ends everything.
+//!
+//! With namespaces there are two of it: the one that the harness starts enters them and waits; its child is the first
+//! process in them, and does the rest.
+
+use std::{
+    ffi::OsString,
+    io::{self, Write},
+    mem::MaybeUninit,
+    os::{
+        fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd},
+        unix::process::CommandExt,
+    },
+    path::{Path, PathBuf},
+    process::{Child, Command, ExitCode, Stdio},
+};
+
+use nix::sys::{
+    signal::{SigSet, Signal},
+    signalfd::{SfdFlags, SignalFd},
+    wait::{Id, WaitPidFlag, WaitStatus, waitid},
+};
+use rustix::{
+    event::{PollFd, PollFlags, poll},
+    fs::{Mode, OFlags, open},
+    io::Errno,
+    net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg},
+    process::{set_child_subreaper, set_parent_process_death_signal},
+};
+
+use super::{
+    CELL_FOLDER, CellEnding, CellOrder, CellReport, Isolation, KeptFiles, copies::Copy, descendants,
+    keep::keep, limits, message::CellRequest, namespaces, view::View,
+};
+use crate::Exit;
+
+/// The word with which the supervisor starts itself again, inside the namespaces.
+const INSIDE: &str = "inside";
+
+/// Runs a cell; what [`Supervisor`](super::Supervisor) starts must call this, with its remaining arguments, before anything
+/// else. Standard input is the connection to the harness.
+#[must_use]
+pub fn supervise(args: &[OsString]) -> ExitCode {
+    let Some(control) = std::io::stdin().as_fd().try_clone_to_owned().ok() else { return ExitCode::FAILURE };
+    let mut control = Control { socket: control, inbox: Vec::new() };
+    let words: Vec<&str> = args.iter().filter_map(|a| a.to_str()).collect();
+    let result = match words[..] {
+        ["namespaces", "network"] => enter_and_wait(true, args),
+        ["namespaces", _] => enter_and_wait(false, args),
+        ["copies", _] => run(&mut control, false),
+        ["namespaces", _, INSIDE] => run(&mut control, true),
+        _ => Err(Refusal::of("the supervisor", io::ErrorKind::InvalidInput.into())),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(refusal) => {
+            let Refusal { absent, what, why } = refusal;
+            control.report(&CellReport::Refused { absent, what, why });
+            ExitCode::FAILURE
+        }
+    }
+}
+
+struct Refusal {
+    absent: bool,
+    what: String,
+    why: String,
+}
+
+impl Refusal {
+    fn of(what: impl Into<String>, why: io::Error) -> Self {
+        Self { absent: false, what: what.into(), why: why.to_string() }
+    }
+}
+
+fn enter_and_wait(network: bool, args: &[OsString]) -> Result<(), Refusal> {
+    namespaces::enter(network).map_err(|(what, why)| Refusal::of(what, why))?;
+    let own = std::env::current_exe().map_err(|e| Refusal::of("the supervisor's own file", e))?;
+    // The link of the process, since the file may have been replaced by a newer one meanwhile.
+    let own = if Path::new("/proc/self/exe").exists() { PathBuf::from("/proc/self/exe") } else { own };
+    let before: Vec<OsString> = std::env::args_os().skip(1).collect();
+    debug_assert!(before.ends_with(args));
+    let child = Command::new(own).args(before).arg(INSIDE).spawn();
+    let mut child = child.map_err(|e| Refusal::of("the first process of the namespaces", e))?;
+    // It reports; nothing is left to say here.
+    let _ = child.wait();
+    Ok(())
+}
+
+/// The supervisor's end of the connection.
+struct Control {
+    socket: OwnedFd,
+    inbox: Vec<u8>,
+}
+
+impl Control {
+    /// The harness may be gone; then the next look at the socket says so.
+    fn report(&mut self, report: &CellReport) {
+        if let Ok(mut line) = serde_json::to_vec(report) {
+            line.push(b'\n');
+            let _ = std::fs::File::from(match self.socket.try_clone() {
+                Ok(socket) => socket,
+                Err(_) => return,
+            })
+            .write_all(&line);
+        }
+    }
+
+    /// The order, and the program's descriptors; `None` if the harness is gone.
+    fn order(&mut self) -> io::Result<Option<(CellOrder, Vec<OwnedFd>)>> {
+        let mut descriptors = Vec::new();
+        loop {
+            if let Some(line) = self.take_line() {
+                return Ok(Some((serde_json::from_slice(&line)?, descriptors)));
+            }
+            let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(8))];
+            let mut ancillary = RecvAncillaryBuffer::new(&mut space);
+            let mut chunk = [0; 4096];
+            let mut parts = [io::IoSliceMut::new(&mut chunk)];
+            // Inherited by the program, since they are not closed at its start.
+            let got = recvmsg(&self.socket, &mut parts, &mut ancillary, RecvFlags::empty())?;
+            for message in ancillary.drain() {
+                if let RecvAncillaryMessage::ScmRights(rights) = message {
+                    descriptors.extend(rights);
+                }
+            }
+            if got.bytes == 0 {
+                return Ok(None);
+            }
+            self.inbox.extend_from_slice(&chunk[..got.bytes]);
+        }
+    }
+
+    fn take_line(&mut self) -> Option<Vec<u8>> {
+        let end = self.inbox.iter().position(|b| *b == b'\n')?;
+        let mut line: Vec<u8> = self.inbox.drain(..=end).collect();
+        line.pop();
+        Some(line)
+    }
+
+    /// Reads what there is; whether the harness is still there.
+    fn read(&mut self) -> bool {
+        let mut chunk = [0; 256];
+        match rustix::io::read(&self.socket, &mut chunk) {
+            Ok(0) => false,
+            Ok(n) => {
+                self.inbox.extend_from_slice(&chunk[..n]);
+                true
+            }
+            Err(Errno::INTR | Errno::AGAIN) => true,
+            Err(_) => false,
+        }
+    }
+}
+
+/// Where the program runs, and what is left of it.
+enum Place {
+    Namespaces(View),
+    Copy(Copy),
+}
+
+/// Makes the cell, runs the program in it, and ends it.
+fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
+    if alone {
+        // The outer supervisor is its only parent, and has one thread.
+        set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
+            .map_err(|e| Refusal::of("its end", e.into()))?;
+    } else {
+        set_child_subreaper(Some(rustix::process::getpid()))
+            .map_err(|e| Refusal::of("adoption of processes", e.into()))?;
+    }
+    let Some((order, descriptors)) = control.order().map_err(|e| Refusal::of("the order", e))? else {
+        return Ok(());
+    };
+    if !order.terminal {
+        // No terminal: what the program opens or is sent there is not for it.
+        let _ = rustix::process::setsid();
+    }
+    let chlds = SigSet::from(Signal::SIGCHLD);
+    chlds.thread_block().map_err(|e| Refusal::of("signals", e.into()))?;
+    let ended = SignalFd::with_flags(&chlds, SfdFlags::SFD_CLOEXEC | SfdFlags::SFD_NONBLOCK)
+        .map_err(|e| Refusal::of("signals", e.into()))?;
+    let keep_to =
+        order.keep.as_ref().map(|to| open(Path::new(to), OFlags::PATH | OFlags::CLOEXEC, Mode::empty()));
+    let keep_to = keep_to.transpose().map_err(|e| Refusal::of("the folder for files", e.into()))?;
+    let place = make(&order)?;
+    let fixed_addresses = limits::fix_addresses();
+    limits::limit_resources(order.memory);
+    let child = if order.command.is_empty() { None } else { Some(start(&order, &place, &descriptors)?) };
+    drop(descriptors);
+    control.report(&started(fixed_addresses, &place, &order));
+    let Some(child) = child else { return Ok(()) };
+    let mut watch = Watch { control, ended, others: false, main: None };
+    let there = watch.wait(&child);
+    let usage = descendants::usage();
+    watch.others |= descendants::end_all(alone);
+    if there {
+        let kept = keep_to.as_ref().map(|to| keep_files(&place, Path::new(&order.dir), to));
+        let ending = CellEnding {
+            exit: watch.main.unwrap_or(Exit::Killed),
+            others: watch.others,
+            cpu: usage.cpu.max(descendants::usage().cpu),
+            kept,
+        };
+        control.report(&CellReport::Ended(ending));
+    }
+    Ok(())
+}
+
+fn make(order: &CellOrder) -> Result<Place, Refusal> {
+    let dir = PathBuf::from(&order.dir);
+    let hidden: Vec<PathBuf> = order.hidden.iter().map(PathBuf::from).collect();
+    match order.isolation {
+        Isolation::Namespaces => {
+            if !order.network {
+                namespaces::bring_up_loopback().map_err(|e| Refusal::of("the loopback interface", e))?;
+            }
+            let own = [dir, "/tmp".into(), "/var/tmp".into()];
+            let refusal = |(what, why)| Refusal::of(format!("a private view of {what}"), why);
+            let view = View::assemble(order.memory, &own, &hidden).map_err(refusal)?;
+            view.enter().map_err(refusal)?;
+            for folder in ["home", "tmp"] {
+                let folder = Path::new(CELL_FOLDER).join(folder);
+                std::fs::create_dir_all(folder).map_err(|e| Refusal::of(CELL_FOLDER, e))?;
+            }
+            Ok(Place::Namespaces(view))
+        }
+        Isolation::Copies => {
+            let copy = Copy::make(&dir, &hidden)
+                .map_err(|e| Refusal::of(format!("a copy of {}", dir.display()), e))?;
+            Ok(Place::Copy(copy))
+        }
+    }
+}
+
+fn started(fixed_addresses: bool, place: &Place, order: &CellOrder) -> CellReport {
+    let (moved, read_only) = match place {
+        Place::Namespaces(view) => {
+            (Vec::new(), view.read_only.iter().map(|p| p.clone().into_os_string()).collect())
+        }
+        Place::Copy(copy) => {
+            let own = Path::new(CELL_FOLDER);
+            let moved = [
+                (copy.project(), PathBuf::from(&order.dir)),
+                (copy.home(), own.join("home")),
+                (copy.temporary(), own.join("tmp")),
+            ];
+            (moved.map(|(from, to)| (from.into_os_string(), to.into_os_string())).into(), Vec::new())
+        }
+    };
+    CellReport::Started { fixed_addresses, moved, read_only }
+}
+
+fn start(order: &CellOrder, place: &Place, descriptors: &[OwnedFd]) -> Result<Child, Refusal> {
+    let (dir, home, temporary) = match place {
+        Place::Namespaces(_) => {
+            let own = Path::new(CELL_FOLDER);
+            (PathBuf::from(&order.dir), own.join("home"), own.join("tmp"))
+        }
+        Place::Copy(copy) => (copy.project(), copy.home(), copy.temporary()),
+    };
+    let word = |w: &OsString| match place {
+        Place::Namespaces(_) => w.clone(),
+        Place::Copy(copy) => copy.moved(Path::new(w)).into_os_string(),
+    };
+    let words: Vec<OsString> = order.command.iter().map(word).collect();
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]).current_dir(dir).env_clear();
+    command.envs(order.env.iter().map(|(name, value)| (name, value)));
+    command.env("HOME", home).env("TMPDIR", temporary);
+    for (name, descriptor) in order.descriptors.iter().zip(descriptors) {
+        command.env(name, descriptor.as_raw_fd().to_string());
+    }
+    if order.terminal {
+        command.stdin(Stdio::null());
+    } else {
+        command.stdin(Stdio::null()).process_group(0);
+    }
+    command.spawn().map_err(|e| Refusal {
+        absent: e.kind() == io::ErrorKind::NotFound,
+        what: words[0].to_string_lossy().into_owned(),
+        why: e.to_string(),
+    })
+}
+
+/// Waits for the program's end and for what the harness asks.
+struct Watch<'c> {
+    control: &'c mut Control,
+    ended: SignalFd,
+    /// Whether there was ever another process.
+    others: bool,
+    /// How the program ended.
+    main: Option<Exit>,
+}
+
+impl Watch<'_> {
+    /// Returns when the program has ended or is to end; whether the harness is still there.
+    fn wait(&mut self, child: &Child) -> bool {
+        loop {
+            self.reap(child);
+            if self.main.is_some() {
+                return true;
+            }
+            let control: BorrowedFd<'_> = self.control.socket.as_fd();
+            let mut fds = [PollFd::new(&control, PollFlags::IN), PollFd::new(&self.ended, PollFlags::IN)];
+            match poll(&mut fds, None) {
+                Ok(_) | Err(Errno::INTR) => {}
+                Err(_) => return false,
+            }
+            let (asked, ended) = (!fds[0].revents().is_empty(), !fds[1].revents().is_empty());
+            if ended {
+                while let Ok(Some(_)) = self.ended.read_signal() {}
+            }
+            if asked && !self.control.read() {
+                return false;
+            }
+            while let Some(line) = self.control.take_line() {
+                match serde_json::from_slice(&line) {
+                    Ok(CellRequest::Usage) => self.control.report(&CellReport::Usage(descendants::usage())),
+                    Ok(CellRequest::Terminate) => descendants::signal_all(Signal::SIGTERM),
+                    Ok(CellRequest::Kill) => return true,
+                    Err(_) => return false,
+                }
+            }
+        }
+    }
+
+    /// Waits for whoever has ended: the program, or what it left behind.
+    fn reap(&mut self, child: &Child) {
+        let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
+        while let Ok(status) = waitid(Id::All, look) {
+            let (pid, exit) = match status {
+                WaitStatus::Exited(pid, code) => (pid, Exit::Code(code)),
+                WaitStatus::Signaled(pid, signal, _) => (pid, Exit::Signal(signal as i32)),
+                _ => return,
+            };
+            if pid.as_raw().unsigned_abs() == child.id() {
+                // While it is not yet waited for, the kernel still tells.
+                self.others |= descendants::had_children(pid.as_raw());
+                self.main = Some(exit);
+            } else {
+                self.others = true;
+            }
+            let _ = waitid(Id::Pid(pid), WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG);
+            if self.main.is_some() {
+                return;
+            }
+        }
+    }
+}
+
+/// Copies out what the program wrote. `to` was opened before the root changed: the harness's folder is not the one of the
+/// same path in here.
+fn keep_files(place: &Place, dir: &Path, to: &OwnedFd) -> KeptFiles {
+    let to = PathBuf::from(format!("/proc/self/fd/{}", to.as_raw_fd()));
+    let own = Path::new(CELL_FOLDER);
+    match place {
+        Place::Namespaces(view) => keep(&view.written(), dir, &to, &|_| true),
+        Place::Copy(copy) => {
+            let folders = [
+                (dir.to_owned(), copy.project()),
+                (own.join("home"), copy.home()),
+                (own.join("tmp"), copy.temporary()),
+            ];
+            keep(&folders, dir, &to, &|path| !copy.is_unchanged(path))
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! A private view of the file system: everything that the machine has can be read, and what is written stays in memory of
+//! the cell's own.
+//!
+//! A new root is put together from overlays, whose lower layers are the machine's folders and whose upper layers lie in
+//! one file system in memory. An overlay takes no other mounts along, and the kernel does not allow one over a folder that
+//! has mounts below it when these came from a more privileged namespace; such folders are made anew and their entries
+//! mounted one by one.
+
+use std::{
+    ffi::CString,
+    fs::{self, DirBuilder, Permissions},
+    io,
+    os::{
+        fd::{AsRawFd, OwnedFd},
+        unix::{
+            ffi::OsStringExt,
+            fs::{DirBuilderExt, MetadataExt, PermissionsExt, chown, symlink},
+        },
+    },
+    path::{Path, PathBuf},
+};
+
+use rustix::{
+    fs::{CWD, FileType, Mode, OFlags, mknodat, open},
+    io::Errno,
+    mount::{
+        MountFlags, MountPropagationFlags, UnmountFlags, mount, mount_bind, mount_bind_recursive,
+        mount_change, mount_remount, unmount,
+    },
+    process::pivot_root,
+};
+
+/// Where the layers lie until the new root is entered. The machine's own folder is kept open before it is covered.
+const SCRATCH: &str = "/tmp";
+
+/// File systems that are windows into the kernel: there is nothing to keep apart in them.
+const KERNEL: [&str; 16] = [
+    "autofs",
+    "binfmt_misc",
+    "bpf",
+    "cgroup",
+    "cgroup2",
+    "configfs",
+    "debugfs",
+    "devpts",
+    "devtmpfs",
+    "efivarfs",
+    "fusectl",
+    "mqueue",
+    "pstore",
+    "securityfs",
+    "sysfs",
+    "tracefs",
+];
+
+/// What went wrong, and where.
+pub(super) type ViewError = (String, io::Error);
+
+/// The view of one cell.
+pub(super) struct View {
+    /// Mount points of the machine with their kinds of file systems; a later one covers an earlier one.
+    mounts: Vec<(PathBuf, String)>,
+    /// The machine's folder that the layers cover.
+    covered: OwnedFd,
+    /// The file system in memory that has the layers.
+    layers: OwnedFd,
+    /// The overlays: the folder, and its upper layer.
+    overlays: Vec<(PathBuf, PathBuf)>,
+    /// Folders over which no overlay could be made.
+    pub read_only: Vec<PathBuf>,
+}
+
+impl View {
+    /// Puts the new root together, with layers of at most `size` bytes. Folders of `own` are layers of their own, so that
+    /// they can be written to whoever owns the folders above them; what is `hidden` is not there.
+    pub(super) fn assemble(size: u64, own: &[PathBuf], hidden: &[PathBuf]) -> Result<Self, ViewError> {
+        let at = |what: &str| {
+            let what = what.to_owned();
+            move |e: Errno| (what, io::Error::from(e))
+        };
+        mount_change("/", MountPropagationFlags::REC | MountPropagationFlags::PRIVATE).map_err(at("/"))?;
+        let mounts = mounts().map_err(|e| ("/proc/self/mountinfo".to_owned(), e))?;
+        let covered = open(SCRATCH, OFlags::PATH | OFlags::CLOEXEC, Mode::empty()).map_err(at(SCRATCH))?;
+        let memory = |options: String, target: &Path| {
+            let options = CString::new(options).unwrap_or_default();
+            mount("hrdsl", target, "tmpfs", MountFlags::empty(), &*options)
+                .map_err(at("a file system in memory"))
+        };
+        memory(format!("size={size},mode=700"), Path::new(SCRATCH))?;
+        let layers = open(SCRATCH, OFlags::PATH | OFlags::CLOEXEC, Mode::empty()).map_err(at(SCRATCH))?;
+        let mut view = Self { mounts, covered, layers, overlays: Vec::new(), read_only: Vec::new() };
+        let root = root();
+        fs::create_dir(&root).map_err(|e| (SCRATCH.to_owned(), e))?;
+        memory("size=16m,mode=755".to_owned(), &root)?;
+        view.folder(Path::new("/"))?;
+        for folder in own {
+            view.own_layer(folder)?;
+        }
+        for folder in hidden {
+            view.hide(folder).map_err(|e| (folder.display().to_string(), e))?;
+        }
+        Ok(view)
+    }
+
+    /// Makes the new root the root.
+    pub(super) fn enter(&self) -> Result<(), ViewError> {
+        let at = |what: &'static str| move |e: Errno| (what.to_owned(), io::Error::from(e));
+        std::env::set_current_dir(root()).map_err(|e| ("the new root".to_owned(), e))?;
+        pivot_root(".", ".").map_err(at("the new root"))?;
+        unmount(".", UnmountFlags::DETACH).map_err(at("the old root"))?;
+        std::env::set_current_dir("/").map_err(|e| ("the new root".to_owned(), e))
+    }
+
+    /// Each overlaid folder with what was written into it, as it is reached after [`enter`](Self::enter).
+    pub(super) fn written(&self) -> Vec<(PathBuf, PathBuf)> {
+        let layers = PathBuf::from(format!("/proc/self/fd/{}", self.layers.as_raw_fd()));
+        let layer = |upper: &Path| layers.join(upper.strip_prefix(SCRATCH).unwrap_or(upper));
+        self.overlays.iter().map(|(folder, upper)| (folder.clone(), layer(upper))).collect()
+    }
+
+    /// A folder of the machine and all below it.
+    fn folder(&mut self, path: &Path) -> Result<(), ViewError> {
+        let here = self.mounts.iter().rev().find(|(at, _)| at == path).map(|(_, kind)| kind.clone());
+        match here.as_deref() {
+            Some("proc") => return self.processes(path),
+            Some(kind) if KERNEL.contains(&kind) => return self.window(path),
+            Some(_) | None => {}
+        }
+        if self.has_mounts_below(path) { self.entries(path) } else { self.layer(path) }
+    }
+
+    fn has_mounts_below(&self, path: &Path) -> bool {
+        self.mounts.iter().any(|(at, _)| at != path && at.starts_with(path))
+    }
+
+    /// A folder made anew, each of whose entries is mounted or linked.
+    fn entries(&mut self, path: &Path) -> Result<(), ViewError> {
+        let host = self.host(path);
+        let fail = |e: io::Error| (path.display().to_string(), e);
+        let target = inside(path);
+        make_like(&host, &target).map_err(fail)?;
+        // What may not be listed may not be read either.
+        let Ok(entries) = fs::read_dir(&host) else { return Ok(()) };
+        for entry in entries.filter_map(Result::ok) {
+            let name = entry.file_name();
+            let (source, place) = (host.join(&name), target.join(&name));
+            let Ok(kind) = entry.file_type() else { continue };
+            if kind.is_symlink() {
+                fs::read_link(&source).and_then(|to| symlink(to, &place)).map_err(fail)?;
+            } else if kind.is_dir() {
+                self.folder(&path.join(&name))?;
+            } else {
+                fs::write(&place, "").map_err(fail)?;
+                // A file that cannot be bound (another user's) is there, and empty.
+                let _ = mount_bind(&source, &place);
+            }
+        }
+        Ok(())
+    }
+
+    /// A folder without mounts below: an overlay, or where that is not allowed, a bind that cannot be written to.
+    fn layer(&mut self, path: &Path) -> Result<(), ViewError> {
+        let fail = |e: io::Error| (path.display().to_string(), e);
+        let (host, target) = (self.host(path), inside(path));
+        make_like(&host, &target).map_err(fail)?;
+        match self.overlay(path, &host) {
+            Ok(()) => Ok(()),
+            Err(_) => {
+                self.read_only.push(path.to_owned());
+                mount_bind(&host, &target).map_err(|e| fail(e.into()))?;
+                mount_remount(&target, MountFlags::BIND | MountFlags::RDONLY | MountFlags::NOSUID, c"")
+                    .map_err(|e| fail(e.into()))
+            }
+        }
+    }
+
+    /// A folder that must be the cell's own.
+    fn own_layer(&mut self, path: &Path) -> Result<(), ViewError> {
+        if self.overlays.iter().any(|(at, _)| at == path) || !self.host(path).is_dir() {
+            return Ok(());
+        }
+        let host = self.host(path);
+        self.overlay(path, &host).map_err(|e| (path.display().to_string(), e))
+    }
+
+    fn overlay(&mut self, path: &Path, host: &Path) -> io::Result<()> {
+        let upper = Path::new(SCRATCH).join(format!("upper{}", self.overlays.len()));
+        let work = Path::new(SCRATCH).join(format!("work{}", self.overlays.len()));
+        if !upper.exists() {
+            make_like(host, &upper)?;
+            fs::create_dir(&work)?;
+        }
+        // Named by its descriptor: a path would have to be escaped, and might be covered.
+        let lower = open(host, OFlags::PATH | OFlags::CLOEXEC, Mode::empty())?;
+        let options = format!(
+            "lowerdir=/proc/self/fd/{},upperdir={},workdir={},userxattr",
+            lower.as_raw_fd(),
+            upper.display(),
+            work.display()
+        );
+        mount("hrdsl", inside(path), "overlay", MountFlags::empty(), &*CString::new(options)?)?;
+        self.overlays.push((path.to_owned(), upper));
+        Ok(())
+    }
+
+    /// A window into the kernel, with all that is mounted below it; but shared memory is the cell's own.
+    fn window(&mut self, path: &Path) -> Result<(), ViewError> {
+        let fail = |e: io::Error| (path.display().to_string(), e);
+        let target = inside(path);
+        fs::create_dir_all(&target).map_err(fail)?;
+        mount_bind_recursive(self.host(path), &target).map_err(|e| fail(e.into()))?;
+        let shared = target.join("shm");
+        if path == Path::new("/dev") && shared.is_dir() {
+            mount("hrdsl", &shared, "tmpfs", MountFlags::NOSUID | MountFlags::NODEV, c"size=1g,mode=1777")
+                .map_err(|e| fail(e.into()))?;
+        }
+        Ok(())
+    }
+
+    /// The processes of this namespace, or, where parts of the machine's are covered, those of the machine.
+    fn processes(&mut self, path: &Path) -> Result<(), ViewError> {
+        let target = inside(path);
+        fs::create_dir_all(&target).map_err(|e| (path.display().to_string(), e))?;
+        let flags = MountFlags::NOSUID | MountFlags::NODEV | MountFlags::NOEXEC;
+        match mount("hrdsl", &target, "proc", flags, None) {
+            Ok(()) => Ok(()),
+            Err(_) => self.window(path),
+        }
+    }
+
+    /// Lets a folder vanish: overlays know a device of number 0 as what was removed.
+    fn hide(&self, path: &Path) -> io::Result<()> {
+        let Some((folder, upper)) =
+            self.overlays.iter().rev().find(|(at, _)| path.starts_with(at) && at != path)
+        else {
+            return Ok(());
+        };
+        if !self.host(path).exists() {
+            return Ok(());
+        }
+        let rest = path.strip_prefix(folder).unwrap_or(path);
+        let place = upper.join(rest);
+        let mut above = folder.clone();
+        for part in rest.parent().into_iter().flat_map(Path::components) {
+            above.push(part);
+            let layer = upper.join(above.strip_prefix(folder).unwrap_or(&above));
+            if !layer.exists() {
+                make_like(&self.host(&above), &layer)?;
+            }
+        }
+        Ok(mknodat(CWD, &place, FileType::CharacterDevice, Mode::empty(), 0)?)
+    }
+
+    /// The path by which a file of the machine is reached while the layers are mounted.
+    fn host(&self, path: &Path) -> PathBuf {
+        match path.strip_prefix(SCRATCH) {
+            Ok(rest) => PathBuf::from(format!("/proc/self/fd/{}", self.covered.as_raw_fd())).join(rest),
+            Err(_) => path.to_owned(),
+        }
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(SCRATCH).join("root")
+}
+
+/// The place of a folder of the machine in the new root.
+fn inside(path: &Path) -> PathBuf {
+    root().join(path.strip_prefix("/").unwrap_or(path))
+}
+
+/// Makes a folder with the permissions and, where it is allowed, the owner of another.
+fn make_like(model: &Path, folder: &Path) -> io::Result<()> {
+    let is = fs::metadata(model)?;
+    if !folder.exists() {
+        DirBuilder::new().recursive(true).mode(0o755).create(folder)?;
+    }
+    let _ = chown(folder, Some(is.uid()), Some(is.gid()));
+    // Whoever may not give files away becomes their owner; the machine's own permissions still hold below.
+    fs::set_permissions(folder, Permissions::from_mode(is.mode() & 0o7777))
+}
+
+/// The mount points of this namespace.
+fn mounts() -> io::Result<Vec<(PathBuf, String)>> {
+    let text = fs::read("/proc/self/mountinfo")?;
+    Ok(text.split(|b| *b == b'\n').filter_map(mount_point).collect())
+}
+
+/// A line of `mountinfo`, as proc(5) has it: `… root mount-point options … - kind source …`.
+fn mount_point(line: &[u8]) -> Option<(PathBuf, String)> {
+    let mut fields = line.split(|b| *b == b' ');
+    let path = unescaped(fields.nth(4)?);
+    let kind = fields.skip_while(|f| *f != b"-").nth(1)?;
+    Some((PathBuf::from(std::ffi::OsString::from_vec(path)), String::from_utf8_lossy(kind).into_owned()))
+}
+
+/// Blanks and the like are written as three octal digits after a backslash.
+fn unescaped(text: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(text.len());
+    let mut at = 0;
+    while let Some(&byte) = text.get(at) {
+        let octal =
+            text.get(at + 1..at + 4).filter(|d| byte == b'\\' && d.iter().all(|b| (b'0'..b'8').contains(b)));
+        match octal {
+            Some(digits) => {
+                out.push(digits.iter().fold(0_u8, |n, d| n.wrapping_mul(8).wrapping_add(d - b'0')));
+                at += 4;
+            }
+            None => {
+                out.push(byte);
+                at += 1;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mount_points_are_read_with_blanks_in_them() {
+        let line =
+            br"36 35 98:0 /mnt1 /mnt\040two\134 rw,noatime master:1 - ext3 /dev/root rw,errors=continue";
+        assert_eq!(mount_point(line), Some((PathBuf::from("/mnt two\\"), "ext3".to_owned())));
+        assert_eq!(mount_point(b""), None);
+    }
+}
