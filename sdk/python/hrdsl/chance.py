@@ -1,0 +1,92 @@
+"""All chance of the program under test comes from the test's seed."""
+
+import os
+import sys
+
+from hrdsl.replace import put, when_imported
+
+#: What `uuid.getnode` says: a locally administered address, of no machine.
+NODE = 0x020000000001
+
+
+def install(seed):
+    """Replaces the sources of entropy, for this process."""
+    chance = _Chance(seed)
+    system = [module for module in map(sys.modules.get, ("posix", "nt")) if module]
+    put("urandom", chance.urandom, os, *system)
+    put("getrandom", lambda size, flags=0: chance.urandom(size), os, *system)
+    when_imported("_random", chance.generators)
+    when_imported("random", lambda module: module.seed(seed))
+    when_imported("_ssl", chance.openssl)
+    when_imported("uuid", chance.uuids)
+    if hasattr(os, "register_at_fork"):
+        os.register_at_fork(before=chance.before_fork, after_in_child=chance.after_fork)
+
+
+class _Chance:
+    """What stands for the system's entropy: one generator, from which all others that are given no seed get theirs."""
+
+    def __init__(self, seed):
+        self._seed = (1 << 64) + seed  # not that of the module `random`, whose numbers would be the same
+        self._kind = self._replacement = None  # the generator as it is, and in its place
+        self._source = None
+
+    def bits(self, count):
+        if self._source is None:
+            import _random  # noqa: F401  (calls `generators`)
+
+            self._source = self._kind(self._seed)
+        return self._source.getrandbits(count)
+
+    def urandom(self, size):
+        size = size.__index__()
+        if size < 0:
+            raise ValueError("negative argument not allowed")
+        return self.bits(8 * size).to_bytes(size, "little") if size else b""
+
+    def generators(self, module):
+        """`random.Random` and whatever else is derived from the generator written in C."""
+        if module.Random is self._replacement:
+            return
+        real = self._kind = module.Random
+        chance = self
+
+        class Random(real):
+            def __new__(cls, *args, **kwargs):
+                if not args or args[0] is None:  # which would read the system's entropy
+                    args = (0,) + args[1:]
+                return real.__new__(cls, *args, **kwargs)
+
+            def __init__(self, a=None, /):
+                self.seed(a)
+
+            def seed(self, a=None, /):
+                real.seed(self, chance.bits(256) if a is None else a)
+
+        Random.__module__, Random.__qualname__, Random.__doc__ = real.__module__, "Random", real.__doc__
+        self._replacement = module.Random = Random
+
+    def openssl(self, module):
+        put("RAND_bytes", self.urandom, module)
+        put("RAND_pseudo_bytes", lambda size: (self.urandom(size), True), module)
+
+    def uuids(self, module):
+        real = module.uuid1
+
+        def uuid1(node=None, clock_seq=None):
+            # With both given, the time is asked for in Python, not in the system's library.
+            if clock_seq is None:
+                clock_seq = self.bits(14)
+            return real(module.getnode() if node is None else node, clock_seq)
+
+        uuid1.__module__, uuid1.__qualname__, uuid1.__doc__ = "uuid", "uuid1", real.__doc__
+        module.uuid1 = uuid1
+        module._node = NODE
+
+    # Processes forked one after the other differ, as they do with real entropy.
+
+    def before_fork(self):
+        self._forked = self.bits(64)
+
+    def after_fork(self):
+        self._source.seed((2 << 64) + self._forked)
