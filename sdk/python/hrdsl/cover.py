@@ -1,5 +1,7 @@
 """Measures which statements and branches of the given files a run executes.
 
+`python -m hrdsl.cover --analyse FILE...` finds beforehand what follows from the files' text alone.
+
 The tracer is coverage.py's own, written in C. It is loaded without the rest of that package, whose import costs more
 than a whole short run; what follows from the source text alone (statements, possible branches) is found by coverage.py
 once and kept in a cache, since the same file is run in hundreds of tests.
@@ -57,15 +59,19 @@ class Recorder:
             tracer.stop()
 
     def write(self, out):
-        """Writes {file: statements, executed, branches, executed_branches} as JSON."""
+        """Writes {file: statements, executed, branches, executed_branches} as JSON, to a file or a descriptor."""
         result = {}
         arcs = self._arcs()
         for path, name in self._files.items():
             try:
-                static = self._static(path)
+                static, kept = _analysed(path, self._package, self._cache)
             except Exception as error:
-                sys.stderr.write("hrdsl: no coverage of %s: %s\n" % (name, error))
+                sys.stderr.write("hrdsl: no coverage of %s\n" % _why(name, error))
                 continue
+            try:
+                _keep(static, kept)
+            except OSError:
+                pass  # the next run makes it again
             result[name] = combine(static, arcs.get(path, ()))
         with open(out, "w", encoding="utf-8") as file:
             json.dump(result, file, separators=(",", ":"))
@@ -128,37 +134,66 @@ class Recorder:
             self._seen[name] = path
         return answer
 
-    # ── the static analysis ──
-
-    def _static(self, path):
-        with open(path, "rb") as file:
-            text = file.read()
-        digest = _imp.source_hash(FORMAT, text).hex()
-        package = os.path.basename(self._package or "")  # its name tells the versions of Python and coverage.py
-        kept = self._cache and os.path.join(self._cache, "%s-%s.json" % (digest, package))
-        if kept:
-            try:
-                with open(kept, encoding="utf-8") as file:
-                    return json.load(file)
-            except (OSError, ValueError):
-                pass
-        static = analyse(self._import(), path)
-        if kept:
-            temporary = "%s.%d" % (kept, os.getpid())
-            try:
-                with open(temporary, "w", encoding="utf-8") as file:
-                    json.dump(static, file, separators=(",", ":"))
-                os.replace(temporary, kept)
-            except OSError:
-                pass
-        return static
-
     def _import(self):
-        if self._package and self._package not in sys.path:
-            sys.path.append(self._package)
-        import coverage
+        return _coverage(self._package)
 
-        return coverage
+
+# ── the static analysis ──
+
+
+def warm(files, package, cache):
+    """Makes the static analyses of these files beforehand, so that no run has to. Says of each file that cannot be
+    analysed why, in one line on standard error; whether there is none."""
+    well = True
+    for name in files:
+        try:
+            _keep(*_analysed(name, package, cache))
+        except Exception as error:
+            well = False
+            sys.stderr.write("hrdsl: no coverage of %s\n" % _why(name, error))
+    return well
+
+
+def _why(name, error):
+    if isinstance(error, SyntaxError):
+        return "%s: line %s: %s" % (name, error.lineno or 1, error.msg)
+    if isinstance(error, OSError) and error.strerror:
+        other = error.filename not in (None, name)
+        return "%s: %s%s" % (name, error.strerror, ": %s" % error.filename if other else "")
+    return "%s: %s" % (name, " ".join(str(error).split()) or type(error).__name__)
+
+
+def _analysed(path, package, cache):
+    """The analysis of a file, and where it is to be kept; None if it is there already, or not to be kept."""
+    with open(path, "rb") as file:
+        text = file.read()
+    digest = _imp.source_hash(FORMAT, text).hex()
+    version = os.path.basename(package or "")  # the folder's name tells the versions of Python and coverage.py
+    kept = cache and os.path.join(cache, "%s-%s.json" % (digest, version))
+    if kept:
+        try:
+            with open(kept, encoding="utf-8") as file:
+                return json.load(file), None
+        except (OSError, ValueError):
+            pass
+    compile(text, path, "exec", dont_inherit=True)  # says more of bad syntax
+    return analyse(_coverage(package), path), kept
+
+
+def _keep(static, kept):
+    if kept:
+        temporary = "%s.%d" % (kept, os.getpid())
+        with open(temporary, "w", encoding="utf-8") as file:
+            json.dump(static, file, separators=(",", ":"))
+        os.replace(temporary, kept)
+
+
+def _coverage(package):
+    if package and package not in sys.path:
+        sys.path.append(package)
+    import coverage
+
+    return coverage
 
 
 def _tracer_module(package):
@@ -273,3 +308,25 @@ def _without_jumps(arcs, jumps):
 
 def _is_flat(jumps):
     return not any(to is not None and isinstance(to[0], tuple) for to in jumps.values())
+
+
+def main(argv):
+    """`python -m hrdsl.cover --analyse [--package DIR] [--cache DIR] FILE...`: see `warm`. The folders are by default
+    those that the environment gives to runs. Exits with 0 if all is well, with 1 if a file cannot be analysed."""
+    folders = {"--package": os.environ.get("HRDSL_COVERAGE_PACKAGE"), "--cache": os.environ.get("HRDSL_COVERAGE_CACHE")}
+    files = list(argv)
+    analyse_them = files[:1] == ["--analyse"]
+    del files[:1]
+    while len(files) > 1 and files[0] in folders:
+        folders[files[0]] = files[1]
+        del files[:2]
+    if not analyse_them or not files or files[0] in folders:
+        sys.stderr.write("usage: python -m hrdsl.cover --analyse [--package DIR] [--cache DIR] FILE...\n")
+        sys.exit(2)
+    sys.exit(0 if warm(files, folders["--package"], folders["--cache"]) else 1)
+
+
+if __name__ == "__main__":
+    if not __package__:  # started by its path: the modules beside it are none of coverage.py's
+        del sys.path[0]
+    main(sys.argv[1:])

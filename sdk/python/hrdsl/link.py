@@ -21,15 +21,21 @@ class Link:
         os.set_inheritable(reply_fd, False)
         self._out = request_fd
         self._in = open(reply_fd, "rb")
+        self._owner = os.getpid()
         self._lock = _thread.allocate_lock()
         self._greeted = False
         self._stopped = None
         self.time = 0  # simulated nanoseconds at the last reply
+        self.before_request = None  # called before each
 
     @property
     def stopped(self):
         """Whether the harness has ended the test."""
         return self._stopped is not None
+
+    def is_ours(self):
+        """Whether this is the program itself, and no process forked from it."""
+        return os.getpid() == self._owner
 
     def hello(self, name):
         """Names the program, and agrees on the protocol's version."""
@@ -38,6 +44,13 @@ class Link:
 
     def request(self, message):
         """Sends a request and waits for its reply; raises `Stopped` when the test is over."""
+        if os.getpid() != self._owner:
+            raise ProtocolError(
+                "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
+                "leave those to the program's first process",
+            )
+        if self.before_request is not None:
+            self.before_request()
         if not self._greeted:
             self.hello("program")
         line = _encode(message).encode("ascii") + b"\n"
@@ -87,8 +100,18 @@ def the_link():
         try:
             fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
         except (KeyError, ValueError):
-            raise ProtocolError(
-                "no harness: HRDSL_REQUEST_FD and HRDSL_REPLY_FD are not set", "start the program with `hrdsl sim`"
-            ) from None
+            raise _no_harness() from None
         _link = Link(*fds)
     return _link
+
+
+def _no_harness():
+    if "HRDSL_SEED" in os.environ:
+        return ProtocolError(
+            "a process started by the program has no connection to the harness",
+            "make the `hrdsl.Node` in the process that the scenario's `run` names",
+        )
+    return ProtocolError(
+        "this program is not run by hrdsl, which plays its world",
+        "start it with `hrdsl sim scenario.hri`, or with `hrdsl sim scenario.hri --test NAME` for one test",
+    )

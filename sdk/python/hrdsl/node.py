@@ -72,6 +72,7 @@ class Node:
     def __init__(self, name):
         self._link = _links.the_link()
         self._link.hello(name)
+        self._devices = {}
         self.name = name
         self.seed = int(os.environ.get("HRDSL_SEED", "0"))
         if "hrdsl.runner" not in sys.modules:
@@ -108,10 +109,18 @@ class Node:
         return self._link.request({"request": "read", "signal": signal})["value"]
 
     def arm(self, name):
-        return Arm(self._link, name)
+        """The arm of this name; always the same object."""
+        return self._device(Arm, name)
 
     def gripper(self, name):
-        return Gripper(self._link, name)
+        """The gripper of this name; always the same object."""
+        return self._device(Gripper, name)
+
+    def _device(self, kind, name):
+        key = (kind, name)
+        if key not in self._devices:
+            self._devices[key] = kind(self._link, name)
+        return self._devices[key]
 
 
 def _farewell(link):

@@ -1,6 +1,8 @@
 """Runs a script as `__main__` with simulated time, seeded chance and, if asked, coverage.
 
-    python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT] (script.py | -m module) args...
+    python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT | --coverage-fd N] (script.py | -m module) args...
+
+Coverage goes to the file OUT, or to the inherited descriptor N.
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
 for modules), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE.
@@ -15,7 +17,10 @@ from hrdsl import link as _links
 from hrdsl import virtual
 from hrdsl.errors import ProtocolError, Stopped
 
-USAGE = "usage: python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT] (script.py | -m module) args...\n"
+USAGE = (
+    "usage: python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT | --coverage-fd N] "
+    "(script.py | -m module) args...\n"
+)
 
 
 def main(argv):
@@ -32,7 +37,7 @@ def main(argv):
         sys.exit("hrdsl: %s" % error)
     _signal.signal(_signal.SIGTERM, _terminated)
     recorder = None
-    if files and out:
+    if files and out is not None:
         from hrdsl.cover import Recorder
 
         environment = os.environ.get
@@ -41,12 +46,13 @@ def main(argv):
     status = 1
     try:
         status = _run(words, module, recorder)
-        if status == 0 and not link.stopped:
+        if status == 0 and link.is_ours() and not link.stopped:
             link.done()
     finally:
-        _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
-        if recorder is not None:
-            _save(recorder, out)
+        if link.is_ours():  # not in a process that the program has forked
+            _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
+            if recorder is not None:
+                _save(recorder, out)
     sys.exit(status)
 
 
@@ -65,17 +71,30 @@ def _arguments(argv):
         if option == "-m":
             module = True
             break
-        if option not in ("--coverage", "--coverage-out") or not rest:
-            sys.stderr.write(USAGE)
-            sys.exit(2)
+        if option not in ("--coverage", "--coverage-out", "--coverage-fd") or not rest:
+            _refuse()
+        value = rest.pop(0)
         if option == "--coverage":
-            files.append(rest.pop(0))
+            files.append(value)
         else:
-            out = rest.pop(0)
+            out = value if option == "--coverage-out" else _descriptor(value)
     if not rest:
-        sys.stderr.write(USAGE)
-        sys.exit(2)
+        _refuse()
     return files, out, module, rest
+
+
+def _descriptor(value):
+    try:
+        # What the program starts must not hold it open.
+        os.set_inheritable(int(value), False)
+        return int(value)
+    except (ValueError, OSError):
+        _refuse("hrdsl: --coverage-fd %s is no open descriptor\n" % value)
+
+
+def _refuse(why=""):
+    sys.stderr.write(why + USAGE)
+    sys.exit(2)
 
 
 def _search_path():

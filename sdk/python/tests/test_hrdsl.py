@@ -56,6 +56,21 @@ class Messages(unittest.TestCase):
         )
         self.assertEqual(node.now(), 1.5)
 
+    def test_a_name_is_one_device(self):
+        _, node = self.node(lambda request: {"t": 1, "ok": False, "error": "joint 2 is at its limit"})
+        self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), False)
+        self.assertEqual(node.arm("robot.arm").last_error, "joint 2 is at its limit")
+        self.assertIsNone(node.arm("robot.other").last_error)
+        self.assertIs(node.gripper("robot.grip"), node.gripper("robot.grip"))
+
+    def test_outside_of_hrdsl_it_says_what_to_do(self):
+        self.addCleanup(os.environ.update, {k: v for k, v in os.environ.items() if k.startswith("HRDSL_")})
+        os.environ.pop("HRDSL_SEED", None)
+        with self.assertRaises(hrdsl.ProtocolError) as caught:
+            hrdsl.Node("test")
+        self.assertIn("`hrdsl sim scenario.hri`", str(caught.exception))
+        self.assertIn("`hrdsl sim scenario.hri --test NAME`", str(caught.exception))
+
     def test_an_event_has_its_arguments(self):
         event = {"name": "sensed", "args": {"gaze": True}, "time": 250000000}
         _, node = self.node(lambda request: {"t": 1, "event": event})

@@ -86,6 +86,40 @@ class Simulated(Case):
         self.assertEqual(self.program(text), self.program(text))
         self.assertEqual(len(set(self.program(text).split())), 6)
 
+    def test_a_forked_process_makes_no_requests(self):
+        out = self.program(
+            """
+            import hrdsl
+            node = hrdsl.Node("parent")
+            for ask in (node.now, lambda: time.sleep(1), lambda: hrdsl.Node("child"), lambda: sys.exit(0), lambda: None):
+                sys.stdout.flush()
+                child = os.fork()
+                if child == 0:
+                    try:
+                        ask()
+                    except hrdsl.ProtocolError as error:
+                        print(error)
+                    break
+                assert os.waitpid(child, 0)[1] == 0
+                assert node.now() == 0.0
+            """
+        )
+        self.assertEqual(out.count("a process forked from the program cannot make requests"), 3)
+
+    def test_a_process_that_it_starts_hashes_alike_and_is_told_why_it_has_no_node(self):
+        out = self.program(
+            """
+            import subprocess
+            import hrdsl
+            text = "import sys; print(hash('text')); sys.path.append(%r); import hrdsl; hrdsl.Node('x')"
+            text %= os.path.dirname(os.path.dirname(hrdsl.__file__))
+            done = subprocess.run([sys.executable, "-c", text], stdout=-1, stderr=-1, universal_newlines=True)
+            assert done.stdout == "%d\\n" % hash("text"), done
+            print(done.stderr.splitlines()[-1])
+            """
+        )
+        self.assertIn("ProtocolError: a process started by the program has no connection to the harness", out)
+
     def test_modules_are_themselves_after_the_patch(self):
         self.program(
             """
