@@ -1,15 +1,21 @@
 """All chance of the program under test comes from the test's seed."""
 
+from __future__ import annotations
+
 import os
 import sys
 
 from hrdsl.replace import put, when_imported
 
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any
+
 #: What `uuid.getnode` says: a locally administered address, of no machine.
 NODE = 0x020000000001
 
 
-def install(seed):
+def install(seed: int) -> None:
     """Replaces the sources of entropy, for this process."""
     chance = _Chance(seed)
     system = [module for module in map(sys.modules.get, ("posix", "nt")) if module]
@@ -26,54 +32,56 @@ def install(seed):
 class _Chance:
     """What stands for the system's entropy: one generator, from which all others that are given no seed get theirs."""
 
-    def __init__(self, seed):
+    def __init__(self, seed: int) -> None:
         self._seed = (1 << 64) + seed  # not that of the module `random`, whose numbers would be the same
-        self._kind = self._replacement = None  # the generator as it is, and in its place
-        self._source = None
+        self._kind: Any = None  # the generator as it is
+        self._replacement: Any = None  # and in its place
+        self._source: Any = None
 
-    def bits(self, count):
+    def bits(self, count: int) -> int:
         if self._source is None:
             import _random  # noqa: F401  (calls `generators`)
 
             self._source = self._kind(self._seed)
-        return self._source.getrandbits(count)
+        drawn: int = self._source.getrandbits(count)
+        return drawn
 
-    def urandom(self, size):
-        size = size.__index__()
-        if size < 0:
+    def urandom(self, size: Any) -> bytes:
+        count: int = size.__index__()
+        if count < 0:
             raise ValueError("negative argument not allowed")
-        return self.bits(8 * size).to_bytes(size, "little") if size else b""
+        return self.bits(8 * count).to_bytes(count, "little") if count else b""
 
-    def generators(self, module):
+    def generators(self, module: Any) -> None:
         """`random.Random` and whatever else is derived from the generator written in C."""
         if module.Random is self._replacement:
             return
         real = self._kind = module.Random
         chance = self
 
-        class Random(real):
-            def __new__(cls, *args, **kwargs):
+        class Random(real):  # type: ignore[misc, valid-type]
+            def __new__(cls, *args: Any, **kwargs: Any) -> Any:
                 if not args or args[0] is None:  # which would read the system's entropy
                     args = (0,) + args[1:]
                 return real.__new__(cls, *args, **kwargs)
 
-            def __init__(self, a=None, /):
+            def __init__(self, a: Any = None, /) -> None:
                 self.seed(a)
 
-            def seed(self, a=None, /):
+            def seed(self, a: Any = None, /) -> None:
                 real.seed(self, chance.bits(256) if a is None else a)
 
         Random.__module__, Random.__qualname__, Random.__doc__ = real.__module__, "Random", real.__doc__
         self._replacement = module.Random = Random
 
-    def openssl(self, module):
+    def openssl(self, module: Any) -> None:
         put("RAND_bytes", self.urandom, module)
         put("RAND_pseudo_bytes", lambda size: (self.urandom(size), True), module)
 
-    def uuids(self, module):
+    def uuids(self, module: Any) -> None:
         real = module.uuid1
 
-        def uuid1(node=None, clock_seq=None):
+        def uuid1(node: int | None = None, clock_seq: int | None = None) -> Any:
             # With both given, the time is asked for in Python, not in the system's library.
             if clock_seq is None:
                 clock_seq = self.bits(14)
@@ -85,8 +93,8 @@ class _Chance:
 
     # Processes forked one after the other differ, as they do with real entropy.
 
-    def before_fork(self):
+    def before_fork(self) -> None:
         self._forked = self.bits(64)
 
-    def after_fork(self):
+    def after_fork(self) -> None:
         self._source.seed((2 << 64) + self._forked)

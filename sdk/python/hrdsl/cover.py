@@ -7,11 +7,17 @@ than a whole short run; what follows from the source text alone (statements, pos
 once and kept in a cache, since the same file is run in hundreds of tests.
 """
 
+from __future__ import annotations
+
 import _imp
 import _thread
 import json
 import os
 import sys
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Iterable, NoReturn
 
 #: Of the kept analyses.
 FORMAT = 2
@@ -20,23 +26,23 @@ FORMAT = 2
 class Recorder:
     """Records the arcs (pairs of line numbers run one after the other) of the given files."""
 
-    def __init__(self, files, package, cache):
+    def __init__(self, files: list[str], package: str | None, cache: str | None) -> None:
         """`package` is the folder that has coverage.py, `cache` the folder of static analyses; both may be None."""
-        self._files = {os.path.realpath(name): name for name in files}
+        self._files: dict[str, str] = {os.path.realpath(name): name for name in files}
         self._package = package
         self._cache = cache
-        self._data = {}
-        self._seen = {}
-        self._tracers = []
-        self._threading = None
-        self._fallback = None
+        self._data: dict[str, set[int]] = {}
+        self._seen: dict[str, str] = {}
+        self._tracers: list[Any] = []
+        self._threading: Any = None
+        self._fallback: Any = None
         self._lock = _thread.allocate_lock()
-        self._dispositions = {}
+        self._dispositions: dict[str, Any] = {}
 
-    def start(self):
+    def start(self) -> None:
         """Starts to record, in this thread and those to come."""
         self._module = _tracer_module(self._package)
-        self._bits = self._module and self._packing()
+        self._bits: int = (self._module and self._packing()) or 0
         if not self._bits:
             coverage = self._import()
             self._fallback = coverage.Coverage(
@@ -50,7 +56,7 @@ class Recorder:
         threading.settrace(self._in_new_thread)
         self._trace(self._data)
 
-    def stop(self):
+    def stop(self) -> None:
         if self._fallback is not None:
             self._fallback.stop()
             return
@@ -58,7 +64,7 @@ class Recorder:
         for tracer in self._tracers:
             tracer.stop()
 
-    def write(self, out):
+    def write(self, out: str | int) -> None:
         """Writes {file: statements, executed, branches, executed_branches} as JSON, to a file or a descriptor."""
         result = {}
         arcs = self._arcs()
@@ -76,22 +82,22 @@ class Recorder:
         with open(out, "w", encoding="utf-8") as file:
             json.dump(result, file, separators=(",", ":"))
 
-    def _arcs(self):
+    def _arcs(self) -> dict[str, Any]:
         if self._fallback is not None:
             data = self._fallback.get_data()
             return {path: data.arcs(path) or () for path in self._files}
-        found = {}
+        found: dict[str, Any] = {}
         for name, packed in self._data.items():
             found.setdefault(self._seen[name], set()).update(_unpack(arc, self._bits) for arc in packed)
         return found
 
     # ── the tracer ──
 
-    def _packing(self):
+    def _packing(self) -> int | None:
         """In how many bits the tracer packs a line number, which has changed between its versions: seen from a piece of
         code whose lines are known; None if it does something else."""
-        self._files["<two lines>"] = None
-        data = {}
+        self._files["<two lines>"] = ""
+        data: dict[str, set[int]] = {}
         tracer = self._trace(data)
         exec(compile("\n\na = 1\nb = 2", "<two lines>", "exec"), {})
         tracer.stop()
@@ -100,7 +106,7 @@ class Recorder:
         self._seen.clear()
         return next((bits for bits in (20, 28) if 3 | 4 << bits in data.get("<two lines>", ())), None)
 
-    def _trace(self, data):
+    def _trace(self, data: dict[str, set[int]]) -> Any:
         tracer = self._module.CTracer()
         tracer.data = data
         tracer.trace_arcs = True
@@ -117,12 +123,13 @@ class Recorder:
         tracer.start()
         return tracer
 
-    def _in_new_thread(self, frame, event, arg):
+    def _in_new_thread(self, frame: Any, event: str, arg: Any) -> Any:
         sys.settrace(None)
         self._trace(self._data)
-        return sys.gettrace()(frame, event, arg)
+        tracer: Any = sys.gettrace()
+        return tracer(frame, event, arg)
 
-    def _should_trace(self, name, frame):
+    def _should_trace(self, name: str, frame: Any) -> Any:
         path = name if name in self._files else os.path.realpath(name)
         answer = self._module.CFileDisposition()
         answer.original_filename = answer.canonical_filename = answer.source_filename = name
@@ -134,14 +141,14 @@ class Recorder:
             self._seen[name] = path
         return answer
 
-    def _import(self):
+    def _import(self) -> Any:
         return _coverage(self._package)
 
 
 # ── the static analysis ──
 
 
-def warm(files, package, cache):
+def warm(files: Iterable[str], package: str | None, cache: str | None) -> bool:
     """Makes the static analyses of these files beforehand, so that no run has to. Says of each file that cannot be
     analysed why, in one line on standard error; whether there is none."""
     well = True
@@ -154,7 +161,7 @@ def warm(files, package, cache):
     return well
 
 
-def _why(name, error):
+def _why(name: str, error: Exception) -> str:
     if isinstance(error, SyntaxError):
         return "%s: line %s: %s" % (name, error.lineno or 1, error.msg)
     if isinstance(error, OSError) and error.strerror:
@@ -163,13 +170,13 @@ def _why(name, error):
     return "%s: %s" % (name, " ".join(str(error).split()) or type(error).__name__)
 
 
-def _analysed(path, package, cache):
+def _analysed(path: str, package: str | None, cache: str | None) -> tuple[dict[str, Any], str | None]:
     """The analysis of a file, and where it is to be kept; None if it is there already, or not to be kept."""
-    with open(path, "rb") as file:
-        text = file.read()
+    with open(path, "rb") as source:
+        text = source.read()
     digest = _imp.source_hash(FORMAT, text).hex()
     version = os.path.basename(package or "")  # the folder's name tells the versions of Python and coverage.py
-    kept = cache and os.path.join(cache, "%s-%s.json" % (digest, version))
+    kept = os.path.join(cache, "%s-%s.json" % (digest, version)) if cache else None
     if kept:
         try:
             with open(kept, encoding="utf-8") as file:
@@ -180,7 +187,7 @@ def _analysed(path, package, cache):
     return analyse(_coverage(package), path), kept
 
 
-def _keep(static, kept):
+def _keep(static: dict[str, Any], kept: str | None) -> None:
     if kept:
         temporary = "%s.%d" % (kept, os.getpid())
         with open(temporary, "w", encoding="utf-8") as file:
@@ -188,7 +195,7 @@ def _keep(static, kept):
         os.replace(temporary, kept)
 
 
-def _coverage(package):
+def _coverage(package: str | None) -> Any:
     if package and package not in sys.path:
         sys.path.append(package)
     import coverage
@@ -196,7 +203,7 @@ def _coverage(package):
     return coverage
 
 
-def _tracer_module(package):
+def _tracer_module(package: str | None) -> Any:
     """coverage.py's C tracer, without the package around it; None if it has none for this interpreter."""
     from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader, ModuleSpec
 
@@ -216,14 +223,14 @@ def _tracer_module(package):
     return None
 
 
-def _unpack(packed, bits):
+def _unpack(packed: int, bits: int) -> tuple[int, int]:
     # As the tracer packs them: so many bits each, and then a bit each for the sign.
     mask = (1 << bits) - 1
     here, there = packed & mask, packed >> bits & mask
     return -here if packed >> 2 * bits & 1 else here, -there if packed >> 2 * bits + 1 & 1 else there
 
 
-def analyse(coverage, path):
+def analyse(coverage: Any, path: str) -> dict[str, Any]:
     """What follows from the source text alone."""
     from coverage.python import PythonFileReporter
 
@@ -247,23 +254,23 @@ def analyse(coverage, path):
     }
 
 
-def combine(static, arcs):
+def combine(static: dict[str, Any], arcs: Iterable[tuple[int, int]]) -> dict[str, Any]:
     """The static analysis and the arcs of one run, as coverage.py's reports combine them."""
-    first_lines = dict(static["first_lines"])
+    first_lines: dict[int, int] = dict(static["first_lines"])
     jumps = {_tuples(arc): _tuples(to) for arc, to in static["jumps"]}
-    after = {}
+    after: dict[int, list[int]] = {}
     for here, there in static["possible"]:
         after.setdefault(here, []).append(there)
 
-    def first(line):
+    def first(line: int) -> int:
         return first_lines.get(line, line) if line >= 0 else -first_lines.get(-line, -line)
 
-    def translate(arcs):
+    def translate(arcs: Iterable[tuple[int, int]]) -> set[tuple[int, int]]:
         return {(first(here), first(there)) for here, there in _without_jumps(arcs, jumps)}
 
     lines = {first(line) for arc in arcs for line in arc if line > 0}
     moved = set()
-    for here, there in translate(map(tuple, arcs)):
+    for here, there in translate((here, there) for here, there in arcs):
         if here != there:
             moved.add((here, there))
         elif len(after.get(here, ())) == 1:
@@ -277,15 +284,16 @@ def combine(static, arcs):
     }
 
 
-def _tuples(value):
+def _tuples(value: Any) -> Any:
     return tuple(_tuples(part) for part in value) if isinstance(value, (list, tuple)) else value
 
 
-def _without_jumps(arcs, jumps):
+def _without_jumps(arcs: Iterable[tuple[int, int]], jumps: dict[Any, Any]) -> set[tuple[int, int]]:
     """Undoes the visits that the interpreter pays to the head of a `with` when it leaves it. coverage.py says which
     they are; up to 7.16 as arc: (next arc, last arc), in chains, then as arc: the arc in its place, or None."""
     arcs = set(arcs)
-    gone, new = set(), set()
+    gone: set[tuple[int, int]] = set()
+    new: set[tuple[int, int]] = set()
     for arc in arcs:
         if arc not in jumps:
             continue
@@ -306,11 +314,11 @@ def _without_jumps(arcs, jumps):
     return (arcs - gone) | new if _is_flat(jumps) else (arcs | new) - gone
 
 
-def _is_flat(jumps):
+def _is_flat(jumps: dict[Any, Any]) -> bool:
     return not any(to is not None and isinstance(to[0], tuple) for to in jumps.values())
 
 
-def main(argv):
+def main(argv: list[str]) -> NoReturn:
     """`python -m hrdsl.cover --analyse [--package DIR] [--cache DIR] FILE...`: see `warm`. The folders are by default
     those that the environment gives to runs. Exits with 0 if all is well, with 1 if a file cannot be analysed."""
     folders = {"--package": os.environ.get("HRDSL_COVERAGE_PACKAGE"), "--cache": os.environ.get("HRDSL_COVERAGE_CACHE")}

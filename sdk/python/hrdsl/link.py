@@ -1,10 +1,16 @@
 """The connection to the harness: one JSON line out, one JSON line back (spec/protocol.md)."""
 
+from __future__ import annotations
+
 import _thread
 import json
 import os
 
 from hrdsl.errors import ProtocolError, Stopped
+
+TYPE_CHECKING = False  # as type checkers read it; `typing` takes longer to import than all of this package
+if TYPE_CHECKING:
+    from typing import Any, Callable, NoReturn
 
 VERSION = 1
 
@@ -15,7 +21,7 @@ _decode = json.JSONDecoder().decode
 class Link:
     """Sends requests one at a time and keeps the simulated time of the last reply."""
 
-    def __init__(self, request_fd, reply_fd):
+    def __init__(self, request_fd: int, reply_fd: int) -> None:
         # Programs that the robot code starts must not hold the pipes open.
         os.set_inheritable(request_fd, False)
         os.set_inheritable(reply_fd, False)
@@ -24,25 +30,25 @@ class Link:
         self._owner = os.getpid()
         self._lock = _thread.allocate_lock()
         self._greeted = False
-        self._stopped = None
+        self._stopped: str | None = None
         self.time = 0  # simulated nanoseconds at the last reply
-        self.before_request = None  # called before each
+        self.before_request: Callable[[], object] | None = None  # called before each
 
     @property
-    def stopped(self):
+    def stopped(self) -> bool:
         """Whether the harness has ended the test."""
         return self._stopped is not None
 
-    def is_ours(self):
+    def is_ours(self) -> bool:
         """Whether this is the program itself, and no process forked from it."""
         return os.getpid() == self._owner
 
-    def hello(self, name):
+    def hello(self, name: str) -> None:
         """Names the program, and agrees on the protocol's version."""
         self._greeted = True
         self.request({"request": "hello", "version": VERSION, "name": name})
 
-    def request(self, message):
+    def request(self, message: dict[str, Any]) -> dict[str, Any]:
         """Sends a request and waits for its reply; raises `Stopped` when the test is over."""
         if os.getpid() != self._owner:
             raise ProtocolError(
@@ -62,27 +68,27 @@ class Link:
             raise ProtocolError(answer["error"], answer.get("help"))
         return answer
 
-    def _exchange(self, line):
+    def _exchange(self, line: bytes) -> dict[str, Any]:
         try:
             sent = os.write(self._out, line)
             while sent < len(line):
                 sent += os.write(self._out, line[sent:])
-            answer = self._in.readline()
+            said = self._in.readline()
         except OSError as error:
             self._stop("the harness has gone: %s" % error)
-        if not answer:
+        if not said:
             self._stop("the harness has gone")
-        answer = _decode(answer.decode("utf-8"))
+        answer: dict[str, Any] = _decode(said.decode("utf-8"))
         self.time = answer.get("t", self.time)
         if answer.get("stop"):
             self._stop("the test is over")
         return answer
 
-    def _stop(self, why):
+    def _stop(self, why: str) -> NoReturn:
         self._stopped = why
         raise Stopped(why)
 
-    def done(self):
+    def done(self) -> None:
         """Says that the program has ended by itself; never raises."""
         try:
             self.request({"request": "done"})
@@ -90,10 +96,10 @@ class Link:
             pass
 
 
-_link = None
+_link: Link | None = None
 
 
-def the_link():
+def the_link() -> Link:
     """The one connection of this process, made at the first use."""
     global _link
     if _link is None:
@@ -105,7 +111,7 @@ def the_link():
     return _link
 
 
-def _no_harness():
+def _no_harness() -> ProtocolError:
     if "HRDSL_SEED" in os.environ:
         return ProtocolError(
             "a process started by the program has no connection to the harness",

@@ -1,7 +1,14 @@
 """Puts functions in the place of the standard library's: at once, or when the module that has them is imported."""
 
+from __future__ import annotations
+
 import os
 import sys
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from types import ModuleType
+    from typing import Any, Callable
 
 #: Which of the functions of `os` take descriptors or no symbolic links: other modules look themselves up there.
 _ABILITIES = ("supports_dir_fd", "supports_effective_ids", "supports_fd", "supports_follow_symlinks")
@@ -11,23 +18,24 @@ class Builtin:
     """A function in the place of a built-in one. Like that, and unlike one written in Python, it does not become a
     method of a class that has it as an attribute; and it is pickled by its name."""
 
-    def __init__(self, function, real, module):
+    def __init__(self, function: Callable[..., Any], real: Any, module: str) -> None:
         self._function = function
-        self.__name__ = self.__qualname__ = real.__name__
+        self.__name__: str = real.__name__
+        self.__qualname__: str = real.__name__
         self.__module__ = module
         self.__doc__ = real.__doc__
 
-    def __call__(self, *args, **kwargs):
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
         return self._function(*args, **kwargs)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "<built-in function %s>" % self.__name__
 
-    def __reduce__(self):
+    def __reduce__(self) -> str:
         return self.__qualname__
 
 
-def put(name, function, *modules):
+def put(name: str, function: Callable[..., Any], *modules: ModuleType) -> Any:
     """Puts a function in the place of the modules' own of this name, where they have one, and returns that."""
     real = getattr(modules[0], name, None)
     if real is None or isinstance(real, Builtin):
@@ -42,7 +50,7 @@ def put(name, function, *modules):
     return real
 
 
-def when_imported(name, patch):
+def when_imported(name: str, patch: Callable[[ModuleType], object]) -> None:
     """Calls `patch` with the module of this name: now if it is there, otherwise as soon as it is imported. So modules
     that the program does not use cost it nothing."""
     if not _finder.patches:
@@ -55,10 +63,10 @@ def when_imported(name, patch):
 class _Finder:
     """Finds the modules that are to be patched, by asking the other finders."""
 
-    def __init__(self):
-        self.patches = {}
+    def __init__(self) -> None:
+        self.patches: dict[str, Callable[[ModuleType], object]] = {}
 
-    def find_spec(self, name, path=None, target=None):
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
         patch = self.patches.get(name)
         if patch is None:
             return None
@@ -75,17 +83,17 @@ class _Finder:
 class _Loader:
     """A module's own loader, and then the patch; the module never sees it."""
 
-    def __init__(self, loader, patch):
+    def __init__(self, loader: Any, patch: Callable[[ModuleType], object]) -> None:
         self._loader = loader
         self._patch = patch
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         return getattr(self._loader, name)
 
-    def create_module(self, spec):
+    def create_module(self, spec: Any) -> Any:
         return self._loader.create_module(spec)
 
-    def exec_module(self, module):
+    def exec_module(self, module: Any) -> None:
         module.__spec__.loader = module.__loader__ = self._loader
         self._loader.exec_module(module)
         self._patch(module)

@@ -8,7 +8,9 @@ The environment has HRDSL_SEED, the two descriptors of the protocol, and optiona
 for modules), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE.
 """
 
-import _signal
+from __future__ import annotations
+
+import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 import builtins
 import os
 import sys
@@ -17,13 +19,19 @@ from hrdsl import link as _links
 from hrdsl import virtual
 from hrdsl.errors import ProtocolError, Stopped
 
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, NoReturn
+
+    from hrdsl.cover import Recorder
+
 USAGE = (
     "usage: python -m hrdsl.run [--coverage FILE]... [--coverage-out OUT | --coverage-fd N] "
     "(script.py | -m module) args...\n"
 )
 
 
-def main(argv):
+def main(argv: list[str]) -> NoReturn:
     """Never returns: exits with 0 at a normal end or a stop, with 1 after an uncaught exception."""
     files, out, module, words = _arguments(argv)
     _search_path()
@@ -51,12 +59,12 @@ def main(argv):
     finally:
         if link.is_ours():  # not in a process that the program has forked
             _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
-            if recorder is not None:
+            if recorder is not None and out is not None:
                 _save(recorder, out)
     sys.exit(status)
 
 
-def _save(recorder, out):
+def _save(recorder: Recorder, out: str | int) -> None:
     try:
         recorder.stop()
         recorder.write(out)
@@ -64,8 +72,10 @@ def _save(recorder, out):
         sys.stderr.write("hrdsl: coverage was not written: %r\n" % error)
 
 
-def _arguments(argv):
-    files, out, module, rest = [], None, False, list(argv)
+def _arguments(argv: list[str]) -> tuple[list[str], str | int | None, bool, list[str]]:
+    files: list[str] = []
+    out: str | int | None = None
+    module, rest = False, list(argv)
     while rest and rest[0].startswith("-"):
         option = rest.pop(0)
         if option == "-m":
@@ -83,7 +93,7 @@ def _arguments(argv):
     return files, out, module, rest
 
 
-def _descriptor(value):
+def _descriptor(value: str) -> int:
     try:
         # What the program starts must not hold it open.
         os.set_inheritable(int(value), False)
@@ -92,12 +102,12 @@ def _descriptor(value):
         _refuse("hrdsl: --coverage-fd %s is no open descriptor\n" % value)
 
 
-def _refuse(why=""):
+def _refuse(why: str = "") -> NoReturn:
     sys.stderr.write(why + USAGE)
     sys.exit(2)
 
 
-def _search_path():
+def _search_path() -> None:
     given = os.environ.pop("HRDSL_SYS_PATH", "")
     sys.path.extend(folder for folder in given.split(os.pathsep) if folder and folder not in sys.path)
     if not hasattr(builtins, "exit"):  # the interpreter was started without `site`, which is slow
@@ -107,11 +117,11 @@ def _search_path():
         builtins.quit = _sitebuiltins.Quitter("quit", "Ctrl-D")
 
 
-def _terminated(number, frame):
+def _terminated(number: int, frame: Any) -> None:
     raise Stopped("terminated")
 
 
-def _run(words, module, recorder):
+def _run(words: list[str], module: bool, recorder: Recorder | None) -> int:
     """Runs the script, and says with which status it ended."""
     sys.argv = list(words)
     try:
@@ -141,7 +151,7 @@ def _run(words, module, recorder):
         return 1
 
 
-def _script(path, recorder):
+def _script(path: str, recorder: Recorder | None) -> None:
     path = os.path.abspath(path)
     with open(path, "rb") as file:
         text = file.read()
@@ -149,14 +159,14 @@ def _script(path, recorder):
     sys.path.insert(0, os.path.dirname(path))
     script = type(sys)("__main__")
     script.__file__ = path
-    script.__builtins__ = builtins
+    script.__dict__["__builtins__"] = builtins
     sys.modules["__main__"] = script
     if recorder is not None:
         recorder.start()
     exec(code, script.__dict__)
 
 
-def _join_threads():
+def _join_threads() -> None:
     threading = sys.modules.get("threading")
     if threading is None:
         return

@@ -1,5 +1,7 @@
 """Clocks, chance and the machine, as the program under test sees them: from simulated time and the test's seed."""
 
+from __future__ import annotations
+
 import sys
 import time
 import types
@@ -7,13 +9,19 @@ import types
 from hrdsl import chance, dates, files, machine
 from hrdsl.replace import put
 
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Callable
+
+    from hrdsl.link import Link
+
 SECOND = 10**9  # an integer, since dividing integers rounds once
 
 #: Simulated time 0 as a calendar date: 2025-01-01 00:00:00 UTC.
 EPOCH = 1735689600 * SECOND
 
 
-def install(link, seed):
+def install(link: Link, seed: int) -> None:
     """Replaces what the standard library tells of time, chance and the machine, for this process."""
     files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
     chance.install(seed)
@@ -22,20 +30,20 @@ def install(link, seed):
     dates.install(lambda: (EPOCH + link.time) / SECOND)
 
 
-def _clocks(link):
-    def elapsed():
+def _clocks(link: Link) -> None:
+    def elapsed() -> float:
         return link.time / SECOND
 
-    def elapsed_ns():
+    def elapsed_ns() -> int:
         return link.time
 
-    def wall():
+    def wall() -> float:
         return (EPOCH + link.time) / SECOND
 
-    def wall_ns():
+    def wall_ns() -> int:
         return EPOCH + link.time
 
-    def sleep(seconds):
+    def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
         link.request({"request": "sleep", "seconds": float(seconds)})
@@ -50,28 +58,30 @@ def _clocks(link):
     _calendar(wall)
 
 
-def _system_clocks(wall, wall_ns, elapsed, elapsed_ns):
+def _system_clocks(
+    wall: Callable[[], float], wall_ns: Callable[[], int], elapsed: Callable[[], float], elapsed_ns: Callable[[], int]
+) -> None:
     # The last two are Linux's coarse clock and its alarm clock of the time of day.
     of_the_day = {getattr(time, name, None) for name in ("CLOCK_REALTIME", "CLOCK_TAI")} | {5, 8}
     if sys.platform != "linux":
         of_the_day = {getattr(time, "CLOCK_REALTIME", None)}
 
-    def gettime(clock):
+    def gettime(clock: int) -> float:
         real(clock)  # refuses what is no clock
         return wall() if clock in of_the_day else elapsed()
 
-    def gettime_ns(clock):
+    def gettime_ns(clock: int) -> int:
         real(clock)
         return wall_ns() if clock in of_the_day else elapsed_ns()
 
-    def settime(clock, value):
+    def settime(clock: int, value: float) -> None:
         raise PermissionError(1, "Operation not permitted")
 
-    def getres(clock):
+    def getres(clock: int) -> float:
         real(clock)
         return 1 / SECOND
 
-    def info(name):
+    def info(name: Any) -> Any:
         found = real_info(name)
         simulated = {"implementation": "simulated time", "resolution": 1 / SECOND, "adjustable": False}
         return types.SimpleNamespace(**{**vars(found), **simulated})
@@ -84,7 +94,7 @@ def _system_clocks(wall, wall_ns, elapsed, elapsed_ns):
     real_info = put("get_clock_info", info, time)
 
 
-def _calendar(wall):
+def _calendar(wall: Callable[[], float]) -> None:
     gmtime, localtime, ctime, asctime, strftime = time.gmtime, time.localtime, time.ctime, time.asctime, time.strftime
     put("gmtime", lambda secs=None: gmtime(wall() if secs is None else secs), time)
     put("localtime", lambda secs=None: localtime(wall() if secs is None else secs), time)

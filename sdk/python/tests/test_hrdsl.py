@@ -44,7 +44,9 @@ class Messages(unittest.TestCase):
         self.addCleanup(harness.close)
         link._link = harness.link
         self.addCleanup(setattr, link, "_link", None)
-        sys.modules.setdefault("hrdsl.runner", None)  # no farewell at exit
+        if "hrdsl.runner" not in sys.modules:
+            sys.modules["hrdsl.runner"] = None  # no farewell at exit
+            self.addCleanup(sys.modules.pop, "hrdsl.runner")
         return harness, hrdsl.Node("test")
 
     def test_a_motion_is_one_message(self):
