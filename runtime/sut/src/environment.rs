@@ -37,6 +37,7 @@ const SDK: &[(&str, &str)] = sdk![
     "chance.py",
     "cover.py",
     "dates.py",
+    "debug.py",
     "errors.py",
     "files.py",
     "link.py",

@@ -30,20 +30,22 @@ def install(seed: int) -> None:
 
 
 class _Chance:
-    """What stands for the system's entropy: one generator, from which all others that are given no seed get theirs."""
+    """What stands for the system's entropy, in two streams: one for those who ask for entropy, one for generators that
+    are given no seed. The first of those is that of the module `random`, so who imports it changes nothing else."""
 
     def __init__(self, seed: int) -> None:
-        self._seed = (1 << 64) + seed  # not that of the module `random`, whose numbers would be the same
+        # Not the test's own seed, with which the numbers would be those of the module `random`.
+        self._seeds = [(stream << 64) + seed for stream in (1, 2)]
         self._kind: Any = None  # the generator as it is
         self._replacement: Any = None  # and in its place
-        self._source: Any = None
+        self._sources: list[Any] = []
 
-    def bits(self, count: int) -> int:
-        if self._source is None:
+    def bits(self, count: int, stream: int = 0) -> int:
+        if not self._sources:
             import _random  # noqa: F401  (calls `generators`)
 
-            self._source = self._kind(self._seed)
-        drawn: int = self._source.getrandbits(count)
+            self._sources = [self._kind(seed) for seed in self._seeds]
+        drawn: int = self._sources[stream].getrandbits(count)
         return drawn
 
     def urandom(self, size: Any) -> bytes:
@@ -69,7 +71,7 @@ class _Chance:
                 self.seed(a)
 
             def seed(self, a: Any = None, /) -> None:
-                real.seed(self, chance.bits(256) if a is None else a)
+                real.seed(self, chance.bits(256, 1) if a is None else a)
 
         Random.__module__, Random.__qualname__, Random.__doc__ = real.__module__, "Random", real.__doc__
         self._replacement = module.Random = Random
@@ -97,4 +99,5 @@ class _Chance:
         self._forked = self.bits(64)
 
     def after_fork(self) -> None:
-        self._source.seed((2 << 64) + self._forked)
+        for stream, source in enumerate(self._sources):
+            source.seed((stream << 64) + (3 << 66) + self._forked)

@@ -5,7 +5,8 @@
 Coverage goes to the file OUT, or to the inherited descriptor N.
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
-for modules), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE.
+for modules), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE. With HRDSL_DEBUG=1 the
+debugger gets the terminal, and there is no coverage.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import os
 import sys
 
 from hrdsl import link as _links
-from hrdsl import virtual
+from hrdsl import debug, virtual
 from hrdsl.errors import ProtocolError, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -45,12 +46,13 @@ def main(argv: list[str]) -> NoReturn:
         sys.exit("hrdsl: %s" % error)
     _signal.signal(_signal.SIGTERM, _terminated)
     recorder = None
-    if files and out is not None:
+    if files and out is not None and not debug.is_wanted():  # the debugger traces, too
         from hrdsl.cover import Recorder
 
         environment = os.environ.get
         recorder = Recorder(files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
     virtual.install(link, int(os.environ.get("HRDSL_SEED", "0")))
+    debug.install()
     status = 1
     try:
         status = _run(words, module, recorder)
@@ -144,6 +146,9 @@ def _run(words: list[str], module: bool, recorder: Recorder | None) -> int:
         sys.stderr.write("%s\n" % (end.code,))
         return 1
     except BaseException as error:
+        if debug.has_left(error):
+            sys.stderr.write("hrdsl: the debugger was left, which ends the program\n")
+            return 1
         trace = error.__traceback__
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only

@@ -42,6 +42,12 @@ class Simulated(Case):
         out = self.program("import random\nprint(random.getrandbits(32), int.from_bytes(os.urandom(4), 'little'))")
         self.assertEqual(len(set(out.split())), 2)
 
+    def test_who_imports_what_first_changes_no_chance(self):
+        text = "import random, uuid\nprint(os.urandom(4), random.random(), random.Random().random(), uuid.uuid4())"
+        self.assertEqual(self.program(text), self.program("import tempfile, pdb, ssl, uuid, random\n" + text))
+        text = text.replace("import random, uuid\nprint(", "x = os.urandom(4)\nimport random, uuid\nprint(x, ").replace("os.urandom(4), r", "r")
+        self.assertEqual(self.program(text), self.program("import random\n" + text))
+
     def test_generators_with_a_seed_are_python_s_own(self):
         text = "import random\nx = random.Random(5)\nprint(x.random(), x.gauss(0, 1), x.choice('abc'), x.sample(range(9), 4))"
         space = {}
