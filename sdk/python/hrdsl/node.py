@@ -29,6 +29,8 @@ class Event:
         self.time = time
 
     def __getattr__(self, name: str) -> Any:
+        if name in self.__slots__:  # of an event that is just being copied
+            raise AttributeError(name)
         try:
             return self.args[name]
         except KeyError:

@@ -74,10 +74,19 @@ class _Finder:
             find = None if finder is self else getattr(finder, "find_spec", None)
             spec = find and find(name, path, target)
             if spec is not None:
-                if spec.loader is not None:
+                if spec.loader is not None and _is_of_python(spec):
                     spec.loader = _Loader(spec.loader, patch)
                 return spec
         return None
+
+
+def _is_of_python(spec: Any) -> bool:
+    """A file of the program can have the name of a module of the library."""
+    place = getattr(os, "__file__", None)
+    origin: str = spec.origin or ""
+    if place is None or not origin.endswith(".py"):
+        return True
+    return os.path.dirname(origin) == os.path.dirname(place)
 
 
 class _Loader:

@@ -1,7 +1,9 @@
 """`python3 -m unittest discover sdk/python/tests`: the SDK against a harness in a thread, and the example's machine."""
 
+import copy
 import json
 import os
+import pickle
 import sys
 import threading
 import unittest
@@ -80,6 +82,8 @@ class Messages(unittest.TestCase):
         self.assertEqual((got.name, got.gaze, got.args, got.time), ("sensed", True, {"gaze": True}, 0.25))
         with self.assertRaises(AttributeError):
             got.pressure
+        for same in (copy.copy(got), copy.deepcopy(got), pickle.loads(pickle.dumps(got))):
+            self.assertEqual(repr(same), repr(got))
 
     def test_after_a_stop_every_request_stops(self):
         harness, node = self.node(lambda request: {"t": 1, "stop": request["request"] == "now"})

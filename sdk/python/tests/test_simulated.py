@@ -140,6 +140,18 @@ class Simulated(Case):
             """
         )
 
+    def test_files_of_the_program_may_have_names_of_the_library(self):
+        self.program(
+            """
+            names = ["random", "uuid", "resource", "pdb", "datetime"]
+            for name in names:
+                with open(name + ".py", "w") as file:
+                    file.write("seed = Random = date = None")
+            for name in names:
+                assert __import__(name).__file__ == os.path.realpath(name + ".py") and __import__(name).seed is None
+            """
+        )
+
     def test_functions_stay_built_in(self):
         self.program(
             """
