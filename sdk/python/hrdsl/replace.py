@@ -86,7 +86,7 @@ def _is_of_python(spec: Any) -> bool:
     origin: str = spec.origin or ""
     if place is None or not origin.endswith(".py"):
         return True
-    return os.path.dirname(origin) == os.path.dirname(place)
+    return os.path.dirname(origin) == os.path.dirname(str(place))
 
 
 class _Loader:
