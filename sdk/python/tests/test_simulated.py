@@ -1,11 +1,16 @@
 """What programs see of time, chance and the machine: as real as before, but for its values."""
 
 import os
+import sys
 import tempfile
 import textwrap
 import unittest
 
-from harness import run
+from harness import ROOT, run
+
+sys.path.insert(0, ROOT)
+
+from hrdsl import files  # noqa: E402
 
 
 class Case(unittest.TestCase):
@@ -266,6 +271,17 @@ class Files(Case):
             assert os.stat("f").st_mtime == 2e9
             """
         )
+
+    def test_on_older_kernels_no_request_passes_within_a_tick_of_the_file_clock(self):
+        times, slept = files._Times(lambda: 5 * 10**9), []
+        with tempfile.NamedTemporaryFile() as file:
+            tick = os.fstat(file.fileno()).st_mtime_ns
+            times._start, times._clock, times._sleep = tick, lambda: tick + (len(slept) > 2), slept.append
+            times.settle()
+            self.assertEqual(slept, [], "nothing was seen")
+            self.assertEqual(times.shown(os.stat(file.name)).st_mtime, 5)
+            times.settle()
+            self.assertEqual(len(slept), 3)
 
     def test_older_files_keep_their_times(self):
         here = os.path.abspath(__file__)
