@@ -32,8 +32,22 @@ macro_rules! sdk {
 }
 
 /// The SDK, file by file.
-const SDK: &[(&str, &str)] =
-    sdk!["__init__.py", "cover.py", "errors.py", "link.py", "node.py", "run.py", "runner.py", "virtual.py"];
+const SDK: &[(&str, &str)] = sdk![
+    "__init__.py",
+    "chance.py",
+    "cover.py",
+    "dates.py",
+    "debug.py",
+    "errors.py",
+    "files.py",
+    "link.py",
+    "machine.py",
+    "node.py",
+    "replace.py",
+    "run.py",
+    "runner.py",
+    "virtual.py",
+];
 
 /// An interpreter, and where the modules are that programs under test need.
 #[derive(Clone, Debug)]

@@ -222,6 +222,38 @@ fn chance_and_clocks_come_from_the_seed_and_simulated_time() {
     assert!(first[7].starts_with("91.25 Use exit()"), "{}", first[7]);
 }
 
+/// The rows of the table of sources that are repeatable: what is read, and what it depends on.
+fn repeatable_rows() -> BTreeMap<String, String> {
+    let page = include_str!("../../../spec/randomness.md");
+    let (_, section) = page.split_once("## What code under test sees").expect("the section");
+    let rows = section.lines().filter_map(|line| {
+        let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
+        let [name, _, gets] = cells[..] else { return None };
+        let by = ["seed", "simulated time", "fixed"].into_iter().find(|by| gets.starts_with(by))?;
+        Some((name.to_owned(), by.to_owned()))
+    });
+    rows.collect()
+}
+
+#[test]
+fn each_row_of_the_table_of_sources_is_repeatable() {
+    let mut launch = launch(&["python3", "-W", "ignore", "repeatable.py"]);
+    let mut read = |seed| {
+        launch.seed = seed;
+        let (_, finished) = run(&launch);
+        let text = finished.output.stdout.text();
+        let lines = text.lines().map(|line| line.split_once(": ").expect("a row and what it read"));
+        lines.map(|(name, read)| (name.to_owned(), read.to_owned())).collect::<BTreeMap<_, _>>()
+    };
+    let (first, again, other) = (read(17), read(17), read(18));
+    let rows = repeatable_rows();
+    assert_eq!(first.keys().collect::<Vec<_>>(), rows.keys().collect::<Vec<_>>(), "the page and the program");
+    for (name, by) in &rows {
+        assert_eq!(first[name], again[name], "{name}");
+        assert_eq!(first[name] != other[name], by == "seed", "{name}, with another seed");
+    }
+}
+
 #[test]
 fn coverage_has_the_statements_and_branches() {
     let mut launch = launch(&["python3", "covered.py"]);
@@ -324,7 +356,7 @@ fn other_programs_and_modules_speak_the_protocol_too() {
 
 #[test]
 fn the_sdks_own_tests_pass() {
-    let mut tests = launch(&["python3", "-m", "unittest", "test_hrdsl"]);
+    let mut tests = launch(&["python3", "-m", "unittest", "discover"]);
     tests.dir = tests.dir.join("../../../../sdk/python/tests");
     let (_, finished) = run(&tests);
     let text = finished.output.stderr.text();

@@ -1,5 +1,7 @@
 """The exceptions that robot code can meet."""
 
+from __future__ import annotations
+
 
 class Stopped(SystemExit):
     """The test is over: the program should end.
@@ -7,18 +9,18 @@ class Stopped(SystemExit):
     It is a `SystemExit`, so that `except Exception` does not swallow it and an uncaught one prints no traceback.
     """
 
-    def __init__(self, why="the test is over"):
+    def __init__(self, why: str = "the test is over") -> None:
         super().__init__(0)
         self.why = why
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.why
 
 
 class ProtocolError(RuntimeError):
     """The harness refused a request: an event, signal or device that the scenario does not declare, or bad arguments."""
 
-    def __init__(self, message, help=None):
+    def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message if not help else "%s (%s)" % (message, help))
         self.message = message
         self.help = help

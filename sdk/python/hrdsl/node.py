@@ -1,11 +1,20 @@
 """`Node`: the robot program's view of the world."""
 
+from __future__ import annotations
+
 import atexit
 import os
 import sys
 
 from hrdsl import link as _links
 from hrdsl.errors import ProtocolError
+
+TYPE_CHECKING = False  # as type checkers read it; `typing` takes longer to import than all of this package
+if TYPE_CHECKING:
+    from typing import Any, Iterable, TypeVar, Union
+
+    Value = Union[bool, int, float, str]
+    Device = TypeVar("Device", bound="_Device")
 
 
 class Event:
@@ -14,29 +23,31 @@ class Event:
 
     __slots__ = ("name", "args", "time")
 
-    def __init__(self, name, args, time):
+    def __init__(self, name: str, args: dict[str, Any], time: float) -> None:
         self.name = name
         self.args = args
         self.time = time
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
+        if name in self.__slots__:  # of an event that is just being copied
+            raise AttributeError(name)
         try:
             return self.args[name]
         except KeyError:
             raise AttributeError("event %s has no argument %r" % (self.name, name)) from None
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         args = ", ".join("%s=%r" % item for item in sorted(self.args.items()))
         return "Event(%s(%s) at %.3f s)" % (self.name, args, self.time)
 
 
 class _Device:
-    def __init__(self, link, name):
+    def __init__(self, link: _links.Link, name: str) -> None:
         self._link = link
         self.name = name
-        self.last_error = None  # why the last action failed
+        self.last_error: str | None = None  # why the last action failed
 
-    def _act(self, do, **args):
+    def _act(self, do: str, **args: Any) -> bool:
         given = {key: value for key, value in args.items() if value is not None}
         message = {"request": "act", "on": self.name, "do": do, "args": given, "wait": True}
         answer = self._link.request(message)
@@ -47,11 +58,11 @@ class _Device:
 class Arm(_Device):
     """A chain of joints under motor control. Motions return when they end: whether the target was reached."""
 
-    def move_to(self, place, speed=None):
+    def move_to(self, place: Iterable[float], speed: float | None = None) -> bool:
         """Brings the tool to a place (x, y, z; metres); `speed` limits the joints (rad/s)."""
         return self._act("move_to", to=_numbers(place, 3), speed=speed)
 
-    def move_joints(self, angles, speed=None):
+    def move_joints(self, angles: Iterable[float], speed: float | None = None) -> bool:
         """Brings the joints to these angles (radians, from the base to the tip)."""
         return self._act("move_joints", to=_numbers(angles, None), speed=speed)
 
@@ -59,75 +70,85 @@ class Arm(_Device):
 class Gripper(_Device):
     """A hand. Both calls return when the hand has done it; `close` says whether it now holds something."""
 
-    def close(self):
+    def close(self) -> bool:
         return self._act("close")
 
-    def open(self):
+    def open(self) -> bool:
         return self._act("open")
 
 
 class Node:
     """The program's end of the harness: events, signals, devices and simulated time. Times are in seconds."""
 
-    def __init__(self, name):
+    def __init__(self, name: str) -> None:
         self._link = _links.the_link()
         self._link.hello(name)
+        self._devices: dict[tuple[type[_Device], str], Any] = {}
         self.name = name
         self.seed = int(os.environ.get("HRDSL_SEED", "0"))
         if "hrdsl.runner" not in sys.modules:
             atexit.register(_farewell, self._link)
 
-    def now(self):
+    def now(self) -> float:
         """Simulated seconds since the start of the test."""
-        return self._link.request({"request": "now"})["t"] / 1e9
+        time: int = self._link.request({"request": "now"})["t"]
+        return time / 1e9
 
-    def sleep(self, seconds):
+    def sleep(self, seconds: float) -> None:
         """Lets simulated time pass."""
         self._link.request({"request": "sleep", "seconds": _seconds(seconds)})
 
-    def emit(self, event, **args):
+    def emit(self, event: str, **args: Value) -> None:
         """Makes an event of the scenario's vocabulary happen now; a value of an enumeration is its name, a str."""
         self._link.request({"request": "emit", "event": event, "args": args})
 
-    def wait_for(self, *events, timeout=None):
+    def wait_for(self, *events: str, timeout: float | None = None) -> Event | None:
         """Takes the first of these events out of the mailbox, or waits for one; `None` when `timeout` has passed."""
         if not events:
             raise ProtocolError("wait_for needs the name of an event")
-        message = {"request": "wait_for", "events": list(events)}
+        message: dict[str, Any] = {"request": "wait_for", "events": list(events)}
         if timeout is not None:
             message["timeout"] = _seconds(timeout)
         found = self._link.request(message).get("event")
         return None if found is None else Event(found["name"], found.get("args", {}), found["time"] / 1e9)
 
-    def drop(self, *events):
+    def drop(self, *events: str) -> None:
         """Forgets these events in the mailbox; without names, all."""
         self._link.request({"request": "drop", "events": list(events)})
 
-    def read(self, signal):
+    def read(self, signal: str) -> Any:
         """The present value of a signal: a bool, an int, a float in SI units, or the name of an enumeration's value."""
         return self._link.request({"request": "read", "signal": signal})["value"]
 
-    def arm(self, name):
-        return Arm(self._link, name)
+    def arm(self, name: str) -> Arm:
+        """The arm of this name; always the same object."""
+        return self._device(Arm, name)
 
-    def gripper(self, name):
-        return Gripper(self._link, name)
+    def gripper(self, name: str) -> Gripper:
+        """The gripper of this name; always the same object."""
+        return self._device(Gripper, name)
+
+    def _device(self, kind: type[Device], name: str) -> Device:
+        if (kind, name) not in self._devices:
+            self._devices[kind, name] = kind(self._link, name)
+        device: Device = self._devices[kind, name]
+        return device
 
 
-def _farewell(link):
+def _farewell(link: _links.Link) -> None:
     # Outside the runner: an uncaught exception leaves its type here, and is no normal end.
     if not hasattr(sys, "last_type"):
         link.done()
 
 
-def _seconds(value):
+def _seconds(value: float) -> float:
     value = float(value)
     if not value >= 0.0 or value == float("inf"):
         raise ValueError("a duration must be finite and not negative: %r" % value)
     return value
 
 
-def _numbers(values, count):
+def _numbers(values: Iterable[float], count: int | None) -> list[float]:
     numbers = [float(value) for value in values]
     if count is not None and len(numbers) != count:
         raise ValueError("a place has %d coordinates, not %d" % (count, len(numbers)))

@@ -1,4 +1,4 @@
-"""`python -m hrdsl.run [--coverage FILE]... script.py args...`: see `hrdsl.runner`."""
+"""`python -m hrdsl.run [options] script.py args...`: see `hrdsl.runner`."""
 
 import sys
 

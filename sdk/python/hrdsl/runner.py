@@ -3,23 +3,31 @@
     python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
-for modules), HRDSL_COVERAGE_FD (the descriptor to write coverage to), HRDSL_COVERAGE_PACKAGE (the folder that has
-coverage.py) and HRDSL_COVERAGE_CACHE.
+for modules), HRDSL_COVERAGE_FD (the descriptor that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has
+coverage.py) and HRDSL_COVERAGE_CACHE. With HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage.
 """
 
-import _signal
+from __future__ import annotations
+
+import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 import builtins
 import os
 import sys
 
 from hrdsl import link as _links
-from hrdsl import virtual
+from hrdsl import debug, virtual
 from hrdsl.errors import ProtocolError, Stopped
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, NoReturn
+
+    from hrdsl.cover import Recorder
 
 USAGE = "usage: python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...\n"
 
 
-def main(argv):
+def main(argv: list[str]) -> NoReturn:
     """Never returns: exits with 0 at a normal end or a stop, with 1 after an uncaught exception."""
     files, module, words = _arguments(argv)
     out = _coverage_descriptor()
@@ -34,25 +42,27 @@ def main(argv):
         sys.exit("hrdsl: %s" % error)
     _signal.signal(_signal.SIGTERM, _terminated)
     recorder = None
-    if files and out is not None:
+    if files and out is not None and not debug.is_wanted():  # the debugger traces, too
         from hrdsl.cover import Recorder
 
         environment = os.environ.get
         recorder = Recorder(files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
     virtual.install(link, int(os.environ.get("HRDSL_SEED", "0")))
+    debug.install()
     status = 1
     try:
         status = _run(words, module, recorder)
-        if status == 0 and not link.stopped:
+        if status == 0 and link.is_ours() and not link.stopped:
             link.done()
     finally:
-        _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
-        if recorder is not None:
-            _save(recorder, out)
+        if link.is_ours():  # not in a process that the program has forked
+            _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
+            if recorder is not None and out is not None:
+                _save(recorder, out)
     sys.exit(status)
 
 
-def _save(recorder, out):
+def _save(recorder: Recorder, out: int) -> None:
     try:
         recorder.stop()
         recorder.write(out)
@@ -60,34 +70,41 @@ def _save(recorder, out):
         sys.stderr.write("hrdsl: coverage was not written: %r\n" % error)
 
 
-def _arguments(argv):
-    files, module, rest = [], False, list(argv)
+def _arguments(argv: list[str]) -> tuple[list[str], bool, list[str]]:
+    files: list[str] = []
+    module, rest = False, list(argv)
     while rest and rest[0].startswith("-"):
         option = rest.pop(0)
         if option == "-m":
             module = True
             break
         if option != "--coverage" or not rest:
-            sys.stderr.write(USAGE)
-            sys.exit(2)
+            _refuse()
         files.append(rest.pop(0))
     if not rest:
-        sys.stderr.write(USAGE)
-        sys.exit(2)
+        _refuse()
     return files, module, rest
 
 
-def _coverage_descriptor():
-    """The descriptor for the coverage, which programs that the robot code starts do not inherit; None: not asked for."""
-    try:
-        descriptor = int(os.environ.pop("HRDSL_COVERAGE_FD"))
-    except (KeyError, ValueError):
+def _coverage_descriptor() -> int | None:
+    """The descriptor for the coverage; None if it is not asked for."""
+    value = os.environ.pop("HRDSL_COVERAGE_FD", None)
+    if value is None:
         return None
-    os.set_inheritable(descriptor, False)
-    return descriptor
+    try:
+        # What the program starts must not hold it open.
+        os.set_inheritable(int(value), False)
+        return int(value)
+    except (ValueError, OSError):
+        _refuse("hrdsl: HRDSL_COVERAGE_FD is %s, which is no open descriptor\n" % value)
 
 
-def _search_path():
+def _refuse(why: str = "") -> NoReturn:
+    sys.stderr.write(why + USAGE)
+    sys.exit(2)
+
+
+def _search_path() -> None:
     given = os.environ.pop("HRDSL_SYS_PATH", "")
     sys.path.extend(folder for folder in given.split(os.pathsep) if folder and folder not in sys.path)
     if not hasattr(builtins, "exit"):  # the interpreter was started without `site`, which is slow
@@ -97,11 +114,11 @@ def _search_path():
         builtins.quit = _sitebuiltins.Quitter("quit", "Ctrl-D")
 
 
-def _terminated(number, frame):
+def _terminated(number: int, frame: Any) -> None:
     raise Stopped("terminated")
 
 
-def _run(words, module, recorder):
+def _run(words: list[str], module: bool, recorder: Recorder | None) -> int:
     """Runs the script, and says with which status it ended."""
     sys.argv = list(words)
     try:
@@ -124,6 +141,9 @@ def _run(words, module, recorder):
         sys.stderr.write("%s\n" % (end.code,))
         return 1
     except BaseException as error:
+        if debug.has_left(error):
+            sys.stderr.write("hrdsl: the debugger was left, which ends the program\n")
+            return 1
         trace = error.__traceback__
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
@@ -131,7 +151,7 @@ def _run(words, module, recorder):
         return 1
 
 
-def _script(path, recorder):
+def _script(path: str, recorder: Recorder | None) -> None:
     path = os.path.abspath(path)
     with open(path, "rb") as file:
         text = file.read()
@@ -139,14 +159,14 @@ def _script(path, recorder):
     sys.path.insert(0, os.path.dirname(path))
     script = type(sys)("__main__")
     script.__file__ = path
-    script.__builtins__ = builtins
+    script.__dict__["__builtins__"] = builtins
     sys.modules["__main__"] = script
     if recorder is not None:
         recorder.start()
     exec(code, script.__dict__)
 
 
-def _join_threads():
+def _join_threads() -> None:
     threading = sys.modules.get("threading")
     if threading is None:
         return

@@ -1,7 +1,19 @@
-"""Clocks and chance of the program under test come from simulated time and the test's seed."""
+"""Clocks, chance and the machine, as the program under test sees them: from simulated time and the test's seed."""
 
-import os
+from __future__ import annotations
+
+import sys
 import time
+import types
+
+from hrdsl import chance, dates, files, machine
+from hrdsl.replace import put
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Callable
+
+    from hrdsl.link import Link
 
 SECOND = 10**9  # an integer, since dividing integers rounds once
 
@@ -9,109 +21,83 @@ SECOND = 10**9  # an integer, since dividing integers rounds once
 EPOCH = 1735689600 * SECOND
 
 
-def install(link, seed):
-    """Replaces the clocks, sleeps and sources of randomness of the standard library, for this process."""
-    _chance(seed)
+def install(link: Link, seed: int) -> None:
+    """Replaces what the standard library tells of time, chance and the machine, for this process."""
+    files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
+    chance.install(seed)
+    machine.install(lambda: link.time / SECOND)
     _clocks(link)
-    _dates(link)
+    dates.install(lambda: (EPOCH + link.time) / SECOND)
 
 
-def _chance(seed):
-    import _random
-
-    source = _random.Random(seed)
-
-    def urandom(size):
-        return source.getrandbits(8 * size).to_bytes(size, "little") if size else b""
-
-    os.urandom = urandom
-    if hasattr(os, "getrandom"):
-        os.getrandom = lambda size, flags=0: urandom(size)
-
-    import random
-
-    random._urandom = urandom  # SystemRandom, and by it `secrets`
-    random.seed(seed)
-
-
-def _clocks(link):
-    def elapsed():
+def _clocks(link: Link) -> None:
+    def elapsed() -> float:
         return link.time / SECOND
 
-    def elapsed_ns():
+    def elapsed_ns() -> int:
         return link.time
 
-    def wall():
+    def wall() -> float:
         return (EPOCH + link.time) / SECOND
 
-    def wall_ns():
+    def wall_ns() -> int:
         return EPOCH + link.time
 
-    def sleep(seconds):
+    def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
         link.request({"request": "sleep", "seconds": float(seconds)})
 
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
-        setattr(time, name, elapsed)
-        setattr(time, name + "_ns", elapsed_ns)
-    time.time, time.time_ns, time.sleep = wall, wall_ns, sleep
+        put(name, elapsed, time)
+        put(name + "_ns", elapsed_ns, time)
+    put("time", wall, time)
+    put("time_ns", wall_ns, time)
+    put("sleep", sleep, time)
+    _system_clocks(wall, wall_ns, elapsed, elapsed_ns)
+    _calendar(wall)
 
-    realtime = getattr(time, "CLOCK_REALTIME", None)
-    time.clock_gettime = lambda clock: wall() if clock == realtime else elapsed()
-    time.clock_gettime_ns = lambda clock: wall_ns() if clock == realtime else elapsed_ns()
 
+def _system_clocks(
+    wall: Callable[[], float], wall_ns: Callable[[], int], elapsed: Callable[[], float], elapsed_ns: Callable[[], int]
+) -> None:
+    # The last two are Linux's coarse clock and its alarm clock of the time of day.
+    of_the_day = {getattr(time, name, None) for name in ("CLOCK_REALTIME", "CLOCK_TAI")} | {5, 8}
+    if sys.platform != "linux":
+        of_the_day = {getattr(time, "CLOCK_REALTIME", None)}
+
+    def gettime(clock: int) -> float:
+        real(clock)  # refuses what is no clock
+        return wall() if clock in of_the_day else elapsed()
+
+    def gettime_ns(clock: int) -> int:
+        real(clock)
+        return wall_ns() if clock in of_the_day else elapsed_ns()
+
+    def settime(clock: int, value: float) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    def getres(clock: int) -> float:
+        real(clock)
+        return 1 / SECOND
+
+    def info(name: Any) -> Any:
+        found = real_info(name)
+        simulated = {"implementation": "simulated time", "resolution": 1 / SECOND, "adjustable": False}
+        return types.SimpleNamespace(**{**vars(found), **simulated})
+
+    real = put("clock_gettime", gettime, time)
+    put("clock_gettime_ns", gettime_ns, time)
+    put("clock_settime", settime, time)
+    put("clock_settime_ns", settime, time)
+    put("clock_getres", getres, time)
+    real_info = put("get_clock_info", info, time)
+
+
+def _calendar(wall: Callable[[], float]) -> None:
     gmtime, localtime, ctime, asctime, strftime = time.gmtime, time.localtime, time.ctime, time.asctime, time.strftime
-    time.gmtime = lambda secs=None: gmtime(wall() if secs is None else secs)
-    time.localtime = lambda secs=None: localtime(wall() if secs is None else secs)
-    time.ctime = lambda secs=None: ctime(wall() if secs is None else secs)
-    time.asctime = lambda t=None: asctime(localtime(wall()) if t is None else t)
-    time.strftime = lambda format, t=None: strftime(format, localtime(wall()) if t is None else t)
-
-
-def _dates(link):
-    # The C types cannot be patched, so subclasses take their place; in `_datetime`, from which `datetime` takes its
-    # names when it is imported, or in `datetime` itself if that has been imported already.
-    import sys
-
-    try:
-        import _datetime as module
-    except ImportError:
-        import datetime as module
-    modules = [module] + ([sys.modules["datetime"]] if "datetime" in sys.modules else [])
-    real_datetime, real_date = module.datetime, module.date
-
-    class LikeReal(type):
-        def __instancecheck__(cls, value):
-            # Subclasses made by the program keep the usual meaning.
-            return isinstance(value, cls._real) if "_real" in cls.__dict__ else super().__instancecheck__(value)
-
-        def __subclasscheck__(cls, other):
-            return issubclass(other, cls._real) if "_real" in cls.__dict__ else super().__subclasscheck__(other)
-
-    class datetime(real_datetime, metaclass=LikeReal):
-        _real = real_datetime
-
-        @classmethod
-        def now(cls, tz=None):
-            return cls.fromtimestamp((EPOCH + link.time) / SECOND, tz)
-
-        @classmethod
-        def utcnow(cls):
-            return cls.now(module.timezone.utc).replace(tzinfo=None)
-
-        @classmethod
-        def today(cls):
-            return cls.now()
-
-    class date(real_date, metaclass=LikeReal):
-        _real = real_date
-
-        @classmethod
-        def today(cls):
-            return cls.fromtimestamp((EPOCH + link.time) / SECOND)
-
-    for kind in (datetime, date):
-        kind.__module__, kind.__qualname__ = "datetime", kind.__name__
-        for module in modules:
-            setattr(module, kind.__name__, kind)
+    put("gmtime", lambda secs=None: gmtime(wall() if secs is None else secs), time)
+    put("localtime", lambda secs=None: localtime(wall() if secs is None else secs), time)
+    put("ctime", lambda secs=None: ctime(wall() if secs is None else secs), time)
+    put("asctime", lambda t=None: asctime(localtime(wall()) if t is None else t), time)
+    put("strftime", lambda format, t=None: strftime(format, localtime(wall()) if t is None else t), time)

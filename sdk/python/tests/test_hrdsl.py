@@ -1,7 +1,9 @@
 """`python3 -m unittest discover sdk/python/tests`: the SDK against a harness in a thread, and the example's machine."""
 
+import copy
 import json
 import os
+import pickle
 import sys
 import threading
 import unittest
@@ -44,7 +46,9 @@ class Messages(unittest.TestCase):
         self.addCleanup(harness.close)
         link._link = harness.link
         self.addCleanup(setattr, link, "_link", None)
-        sys.modules.setdefault("hrdsl.runner", None)  # no farewell at exit
+        if "hrdsl.runner" not in sys.modules:
+            sys.modules["hrdsl.runner"] = None  # no farewell at exit
+            self.addCleanup(sys.modules.pop, "hrdsl.runner")
         return harness, hrdsl.Node("test")
 
     def test_a_motion_is_one_message(self):
@@ -56,6 +60,21 @@ class Messages(unittest.TestCase):
         )
         self.assertEqual(node.now(), 1.5)
 
+    def test_a_name_is_one_device(self):
+        _, node = self.node(lambda request: {"t": 1, "ok": False, "error": "joint 2 is at its limit"})
+        self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), False)
+        self.assertEqual(node.arm("robot.arm").last_error, "joint 2 is at its limit")
+        self.assertIsNone(node.arm("robot.other").last_error)
+        self.assertIs(node.gripper("robot.grip"), node.gripper("robot.grip"))
+
+    def test_outside_of_hrdsl_it_says_what_to_do(self):
+        self.addCleanup(os.environ.update, {k: v for k, v in os.environ.items() if k.startswith("HRDSL_")})
+        os.environ.pop("HRDSL_SEED", None)
+        with self.assertRaises(hrdsl.ProtocolError) as caught:
+            hrdsl.Node("test")
+        self.assertIn("`hrdsl sim scenario.hri`", str(caught.exception))
+        self.assertIn("`hrdsl sim scenario.hri --test NAME`", str(caught.exception))
+
     def test_an_event_has_its_arguments(self):
         event = {"name": "sensed", "args": {"gaze": True}, "time": 250000000}
         _, node = self.node(lambda request: {"t": 1, "event": event})
@@ -63,6 +82,8 @@ class Messages(unittest.TestCase):
         self.assertEqual((got.name, got.gaze, got.args, got.time), ("sensed", True, {"gaze": True}, 0.25))
         with self.assertRaises(AttributeError):
             got.pressure
+        for same in (copy.copy(got), copy.deepcopy(got), pickle.loads(pickle.dumps(got))):
+            self.assertEqual(repr(same), repr(got))
 
     def test_after_a_stop_every_request_stops(self):
         harness, node = self.node(lambda request: {"t": 1, "stop": request["request"] == "now"})

@@ -1,0 +1,61 @@
+"""Runs programs as `hrdsl sim` does, with a harness whose sleeps pass time and who says yes to all else."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+RUNNER = os.path.join(ROOT, "hrdsl", "run.py")
+
+
+class Finished:
+    """What is left of a program that has ended."""
+
+    def __init__(self, code, out, err, requests):
+        self.code, self.out, self.err, self.requests = code, out, err, requests
+
+
+class Program:
+    """A program that runs, or has run."""
+
+    def __init__(self, words, seed=17, options=(), keep=(), env=None, **popen):
+        requests, its_requests = os.pipe()
+        its_replies, self.replies = os.pipe()
+        given = {key: value for key, value in os.environ.items() if not key.startswith("HRDSL_")}
+        given.update(HRDSL_SEED=str(seed), PYTHONHASHSEED=str(seed), TZ="UTC", HRDSL_SYS_PATH=os.pathsep.join(sys.path))
+        given.update(HRDSL_REQUEST_FD=str(its_requests), HRDSL_REPLY_FD=str(its_replies), **(env or {}))
+        pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen}
+        command = [sys.executable, "-S", RUNNER, *options, *words]
+        self.process = subprocess.Popen(
+            command, pass_fds=(its_requests, its_replies, *keep), env=given, universal_newlines=True, **pipes
+        )
+        os.close(its_requests)
+        os.close(its_replies)
+        self.requests, self._lines = [], os.fdopen(requests)
+        self._thread = threading.Thread(target=self._answer)
+        self._thread.start()
+
+    def _answer(self):
+        time = 0
+        for line in self._lines:
+            request = json.loads(line)
+            self.requests.append(request)
+            if request["request"] == "sleep":
+                time += round(request["seconds"] * 10**9)
+            try:
+                os.write(self.replies, b'{"t":%d,"ok":true}\n' % time)
+            except BrokenPipeError:
+                pass
+
+    def finish(self):
+        out, err = self.process.communicate()
+        self._thread.join()
+        self._lines.close()
+        os.close(self.replies)
+        return Finished(self.process.returncode, out, err, self.requests)
+
+
+def run(words, **how):
+    return Program(words, **how).finish()
