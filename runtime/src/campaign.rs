@@ -12,7 +12,8 @@ use std::{
 use hrdsl_coverage::Collector;
 use hrdsl_ir::{Program, system::System, test::Test};
 use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_sut::{Answer, Launch, Process, PythonEnv, Reply, SutError};
+use hrdsl_sut::{Answer, Launch, Needs, Process, Reply, SutError};
+pub use hrdsl_sut::{Hooked, Preparation, PythonEnv};
 use hrdsl_trace::{Trace, print, record};
 
 use crate::{
@@ -44,13 +45,21 @@ pub struct Done<'a> {
     pub recording: &'a str,
 }
 
-/// Installs what the program under test needs, into `cache` on first use.
+/// Installs what the program under test needs, into `cache` on first use; `listen` is told what happens. The program
+/// is the words of the `run` command; it runs in `dir`, where its `requirements.txt` lies.
 ///
 /// # Errors
 /// Why it could not be installed.
-pub fn prepare(dir: &Path, cache: &Path) -> Result<PythonEnv, SutError> {
-    let requirements = dir.join("requirements.txt");
-    PythonEnv::prepare(cache, requirements.exists().then_some(requirements.as_path()))
+pub fn prepare(
+    run: &[String],
+    dir: &Path,
+    cache: &Path,
+    listen: &dyn Fn(Preparation<'_>),
+) -> Result<PythonEnv, SutError> {
+    let list = dir.join("requirements.txt");
+    let requirements = list.exists().then_some(list.as_path());
+    let python = PythonEnv::interpreter_of(run);
+    PythonEnv::prepare(&Needs { python, dir, requirements, cache }, listen)
 }
 
 impl Campaign<'_> {

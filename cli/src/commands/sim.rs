@@ -22,6 +22,7 @@ use crate::{
     color,
     exit::Exit,
     input::{self, Fault},
+    installing::Installing,
 };
 
 /// Run tests against the code under test in simulation, and report.
@@ -69,7 +70,8 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let generated = generate_suites(args, program, &out)?;
     let tests = selected(args, program, &generated)?;
     let dir = input::folder(&args.file);
-    let env = prepare(&dir, &cache()?).map_err(|e| e.to_string())?;
+    let console = Installing::default();
+    let env = prepare(&system.run, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
     let jobs = args.jobs.map_or_else(cores, usize::from);
     let campaign = Campaign { program, dir: dir.clone(), env, jobs };
     let results = execute(&campaign, &tests, &out)?;

@@ -22,7 +22,7 @@ mod protocol;
 
 pub use affinity::pin_to_core;
 pub use coverage::FileCoverage;
-pub use environment::PythonEnv;
+pub use environment::{Hooked, Needs, Preparation, PythonEnv};
 pub use error::SutError;
 pub use launch::Launch;
 pub use output::{Captured, Output};

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use hrdsl_sut::{Answer, Finished, Launch, Process, PythonEnv, Reply, Request};
+use hrdsl_sut::{Answer, Finished, Launch, Needs, Process, PythonEnv, Reply, Request};
 
 pub const GRACE: Duration = Duration::from_secs(20);
 
@@ -14,7 +14,8 @@ pub const GRACE: Duration = Duration::from_secs(20);
 pub fn environment(requirements: Option<&Path>) -> PythonEnv {
     let python = std::env::var("HRDSL_TEST_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sut");
-    PythonEnv::prepare_with(&python, &cache, requirements).unwrap()
+    let dir = Path::new(".");
+    PythonEnv::prepare(&Needs { python: &python, dir, requirements, cache: &cache }, &|_| {}).unwrap()
 }
 
 fn plain_environment() -> PythonEnv {
