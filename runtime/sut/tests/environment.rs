@@ -12,7 +12,7 @@ use std::{
 };
 
 use common::{launch, run};
-use hrdsl_sut::{Hooked, Needs, Preparation, PythonEnv, Request, SutError};
+use hrdsl_sut::{Hooked, Needs, Preparation, Process, PythonEnv, Request, SutError};
 use tempfile::TempDir;
 
 /// A build backend inside the project, so that nothing is downloaded. As setuptools does, it builds in `build/lib`,
@@ -435,6 +435,42 @@ fn any_python_of_the_path_may_be_named() {
     assert_eq!(launch.env.version(), env.version());
     assert_eq!(PythonEnv::interpreter_of(&launch.command), word);
     assert_eq!(PythonEnv::interpreter_of(&["./robot".to_owned()]), "python3");
+}
+
+/// The last line of the output says what to do.
+#[test]
+fn a_module_that_is_not_found_is_followed_by_advice() {
+    let project = Project::new();
+    project.library("libs/mine", "x");
+    project.library("outer", "x");
+    project.write("tools/plain/helpers.py", "");
+    project.write("tools/known.py", "");
+    project.write("venv/pyvenv.cfg", "");
+    project.write("venv/lib/no_such_thing.py", "");
+    let outer = project.at("outer").display().to_string();
+    let outer = format!("hrdsl: {outer} is the folder of a project: put `./outer` into requirements.txt");
+    for (robot, last) in [
+        ("import no_such_thing", "hrdsl: put `no_such_thing` into requirements.txt beside the scenario (or "),
+        (
+            "import helpers",
+            "hrdsl: `helpers` is at tools/plain/helpers.py, where no module is looked for: add `sys.path",
+        ),
+        ("import mylib", "hrdsl: `mylib` is at libs/mine/mylib.py: put `./libs/mine` into requirements.txt"),
+        ("import outer.inner", &outer),
+        ("import sys\nsys.path.append('tools')\nimport known.inner", "hrdsl: `known` at "),
+        ("import sys\nsys.modules['csv'] = None\nimport csv", "hrdsl: `csv` belongs to Python"),
+        ("raise ModuleNotFoundError('mine')", "ModuleNotFoundError: mine"),
+        ("def f(:", "SyntaxError: invalid syntax"),
+    ] {
+        project.write("robot.py", robot);
+        let mut launch = launch(&["python3", "robot.py"]);
+        launch.dir = project.folder.path().to_owned();
+        let mut process = Process::spawn(&launch).unwrap();
+        let error = process.next().unwrap_err();
+        let stderr = error.output().unwrap().stderr.text();
+        assert!(stderr.lines().last().unwrap().starts_with(last), "{robot}: {stderr}");
+        assert!(stderr.contains("File \"") && !stderr.contains("runner.py"), "{stderr}");
+    }
 }
 
 // ── helpers ──

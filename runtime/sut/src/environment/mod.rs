@@ -46,8 +46,17 @@ macro_rules! sdk {
 }
 
 /// The SDK, file by file.
-const SDK: &[(&str, &str)] =
-    sdk!["__init__.py", "cover.py", "errors.py", "link.py", "node.py", "run.py", "runner.py", "virtual.py"];
+const SDK: &[(&str, &str)] = sdk![
+    "__init__.py",
+    "advice.py",
+    "cover.py",
+    "errors.py",
+    "link.py",
+    "node.py",
+    "run.py",
+    "runner.py",
+    "virtual.py"
+];
 
 /// An interpreter, and where the modules are that programs under test need.
 #[derive(Clone, Debug)]
