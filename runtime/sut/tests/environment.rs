@@ -346,6 +346,21 @@ fn faults_name_the_line_of_the_requirements() {
     }
 }
 
+#[test]
+fn a_list_that_does_not_exist_is_named() {
+    let project = Project::new();
+    let list = project.at("none/requirements.txt");
+    let dir = project.folder.path();
+    let needs = Needs { python: "python3", dir, requirements: Some(&list), cache: &project.cache };
+    let error = PythonEnv::prepare(&needs, &|_| {}).unwrap_err();
+    let is_named =
+        matches!(&error, SutError::Absent { looked_for, .. } if *looked_for == list.display().to_string());
+    assert!(is_named, "{error}");
+    // Comments alone need no folder.
+    project.write("requirements.txt", "# nothing yet\n");
+    assert_eq!(project.prepare().1.len(), 0);
+}
+
 /// Modules in the scenario's folder, or the one where the command was given, are the program's, not pip's.
 #[test]
 fn modules_of_the_project_are_not_taken_for_those_of_the_library() {

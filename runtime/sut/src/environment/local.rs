@@ -91,3 +91,69 @@ pub(super) fn copy(folder: &Path, to: &Path) -> Result<(), SutError> {
 fn git_folder(text: &str) -> Option<&str> {
     text.strip_prefix("gitdir:").map(str::trim)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for file in files {
+            let path = folder.path().join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, file).unwrap();
+        }
+        folder
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        contents(folder).unwrap().iter().map(|c| c.relative.display().to_string()).collect()
+    }
+
+    #[test]
+    fn contents_are_what_a_project_is_built_from() {
+        let folder = folder(&[
+            "a.py",
+            "src/build/kept.py",
+            "build/lib/a.py",
+            "x.egg-info/PKG-INFO",
+            "src/__pycache__/a.pyc",
+            ".git/HEAD",
+            "env/pyvenv.cfg",
+            "env/lib/b.py",
+            ".pytest_cache/CACHEDIR.TAG",
+            "hrdsl-out/s/report.html",
+        ]);
+        assert_eq!(names(folder.path()), ["a.py", "src/build/kept.py"]);
+        let package = self::folder(&["build/__init__.py"]);
+        assert_eq!(names(package.path()), ["build/__init__.py"]);
+    }
+
+    #[test]
+    fn links_are_followed_and_never_for_ever() {
+        let (project, other) = (folder(&["a.py"]), folder(&["deep/b.py"]));
+        let at = |name: &str| project.path().join(name);
+        symlink(other.path().join("deep"), at("linked")).unwrap();
+        symlink(project.path(), at("round")).unwrap();
+        symlink("nowhere", at("dangling")).unwrap();
+        assert_eq!(names(project.path()), ["a.py", "linked/b.py"]);
+    }
+
+    #[test]
+    fn a_copy_has_its_modes_and_leads_to_its_repository() {
+        let project = folder(&["bin/tool", ".git/HEAD", "build/old"]);
+        let tool = project.path().join("bin/tool");
+        fs::set_permissions(&tool, fs::Permissions::from_mode(0o755)).unwrap();
+        let to = tempfile::tempdir().unwrap();
+        copy(project.path(), &to.path().join("copy")).unwrap();
+        let copied = contents(&to.path().join("copy")).unwrap();
+        assert_eq!(copied.iter().map(|c| c.executable).collect::<Vec<_>>(), [true]);
+        assert_eq!(fs::read_to_string(to.path().join("copy/.git/HEAD")).unwrap(), ".git/HEAD");
+
+        let worktree = folder(&["a.py"]);
+        fs::write(worktree.path().join(".git"), "gitdir: ../main/.git/worktrees/w\n").unwrap();
+        copy(worktree.path(), &to.path().join("worktree")).unwrap();
+        let leads_to = format!("gitdir: {}/../main/.git/worktrees/w\n", worktree.path().display());
+        assert_eq!(fs::read_to_string(to.path().join("worktree/.git")).unwrap(), leads_to);
+    }
+}

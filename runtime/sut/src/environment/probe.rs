@@ -97,3 +97,58 @@ fn told(output: &Output) -> Option<Probe> {
     let last = output.stdout.trim_ascii_end().rsplit(|&b| b == b'\n').next()?;
     serde_json::from_slice(last).ok().filter(|_| output.status.success())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The search path that an interpreter tells, in an environment with these variables.
+    fn path_of(program: &Path, variables: &[(&str, &Path)]) -> Vec<PathBuf> {
+        let mut command = command(program);
+        command.args(["-I", "-c", PROBE]).envs(variables.iter().copied());
+        let told = told(&command.output().unwrap()).unwrap();
+        told.path.into_iter().map(PathBuf::from).collect()
+    }
+
+    /// `-I` alone would leave them out. What `PYTHONPATH` names, the program finds by itself.
+    #[test]
+    fn the_users_own_packages_are_searched_before_the_systems() {
+        let folder = tempfile::tempdir().unwrap();
+        let python = ask("python3", folder.path(), false).unwrap();
+        let (major, minor, _) = python.version;
+        let own = folder.path().join(format!("lib/python{major}.{minor}/site-packages"));
+        let beside = folder.path().join("beside");
+        std::fs::create_dir_all(&own).unwrap();
+        std::fs::create_dir(&beside).unwrap();
+        std::fs::write(own.join("beside.pth"), beside.display().to_string()).unwrap();
+        let base: &[(&str, &Path)] = &[("PYTHONUSERBASE", folder.path()), ("PYTHONPATH", &beside)];
+
+        let path = path_of(&python.executable, base);
+        let at = |wanted: &dyn Fn(&Path) -> bool| path.iter().position(|folder| wanted(folder));
+        let place = at(&|folder| folder == own).unwrap();
+        assert_eq!(at(&|folder| folder == beside), Some(place + 1), "{path:?}");
+        let shared = at(&|folder| folder != own && folder.ends_with("site-packages"));
+        assert!(shared.is_none_or(|shared| shared > place), "{path:?}");
+
+        let without = path_of(&python.executable, &[base[0], ("PYTHONNOUSERSITE", Path::new("1"))]);
+        assert!(!without.contains(&own));
+        let made = command(&python.executable)
+            .args(["-m", "venv", "--without-pip"])
+            .arg(folder.path().join("venv"))
+            .status();
+        assert!(made.unwrap().success());
+        let virtual_path = path_of(&folder.path().join("venv/bin/python"), base);
+        assert!(!virtual_path.contains(&own) && virtual_path.iter().any(|f| f.starts_with(folder.path())));
+    }
+
+    #[test]
+    fn what_is_no_python_is_said_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let said = |word: &str, dir: &Path| ask(word, dir, false).map(|_| ()).unwrap_err().to_string();
+        let there = folder.path();
+        assert!(said("python3-of-nowhere", there).contains("`python3-of-nowhere`"));
+        assert!(said("bin/python", there).contains(&there.join("bin/python").display().to_string()));
+        assert!(said("python3", &there.join("none")).contains("folder of the program"));
+        assert!(said("/bin/false", there).contains("is it Python 3.8 or newer?"));
+    }
+}
