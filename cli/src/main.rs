@@ -5,6 +5,7 @@ mod commands;
 mod exit;
 mod fix;
 mod input;
+mod installing;
 mod project;
 mod render;
 mod results_folder;

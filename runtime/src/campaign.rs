@@ -13,9 +13,9 @@ use std::{
 use hrdsl_coverage::Collector;
 use hrdsl_ir::{Program, system::System, test::Test};
 use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_sut::{Answer, Finished, Launch, Process, PythonEnv, Reply, SutError, cell::KeptFiles};
+use hrdsl_sut::{Answer, Finished, Launch, Needs, Process, Reply, SutError, cell::KeptFiles};
 pub use hrdsl_sut::{
-    Cells, Output, ProgramLimits, StopFlag,
+    Cells, Hooked, Output, Preparation, ProgramLimits, PythonEnv, StopFlag,
     cell::{Isolation, Supervisor, supervise},
 };
 use hrdsl_trace::{Trace, print, record};
@@ -81,13 +81,21 @@ struct Attempt {
     fault: Option<SutFaultKind>,
 }
 
-/// Installs what the program under test needs, into `cache` on first use.
+/// Installs what the program under test needs, into `cache` on first use; `listen` is told what happens. The program
+/// is the words of the `run` command; it runs in `dir`, where its `requirements.txt` lies.
 ///
 /// # Errors
 /// Why it could not be installed.
-pub fn prepare(dir: &Path, cache: &Path) -> Result<PythonEnv, SutError> {
-    let requirements = dir.join("requirements.txt");
-    PythonEnv::prepare(cache, requirements.exists().then_some(requirements.as_path()))
+pub fn prepare(
+    run: &[String],
+    dir: &Path,
+    cache: &Path,
+    listen: &dyn Fn(Preparation<'_>),
+) -> Result<PythonEnv, SutError> {
+    let list = dir.join("requirements.txt");
+    let requirements = list.exists().then_some(list.as_path());
+    let python = PythonEnv::interpreter_of(run);
+    PythonEnv::prepare(&Needs { python, dir, requirements, cache }, listen)
 }
 
 impl Campaign<'_> {

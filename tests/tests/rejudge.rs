@@ -16,7 +16,8 @@ fn a_recording_is_judged_as_the_run_was() {
     let dir = root.join("examples/handover");
     let text = fs::read_to_string(dir.join("scenario.hri")).unwrap();
     let program = compile(Input { name: "scenario.hri", text: &text }, &[]).program.unwrap();
-    let env = prepare(&dir, &root.join("target/hrdsl-cache")).unwrap();
+    let run = &program.system.as_ref().unwrap().run;
+    let env = prepare(run, &dir, &root.join("target/hrdsl-cache"), &|_| {}).unwrap();
     let campaign = Campaign { program: &program, dir, env, jobs: 2 };
     let tests: Vec<_> =
         program.suites.iter().flat_map(|s| generate(&program, s, Some(4), 11).unwrap().tests).collect();

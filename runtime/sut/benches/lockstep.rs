@@ -1,10 +1,13 @@
 //! What lock-step costs: a round trip of `node.now()`, and a whole process from start to finish.
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use hrdsl_sut::{
-    Answer, Cells, Launch, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag, cell::Supervisor,
-    pin_to_free_core,
+    Answer, Cells, Launch, Needs, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
+    cell::Supervisor, pin_to_free_core,
 };
 
 fn main() {
@@ -14,7 +17,8 @@ fn main() {
 fn launch(script: &str, coverage: bool) -> Launch {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let cache = root.join("../../target/hrdsl-sut-cache");
-    let env = PythonEnv::prepare(&cache, None).expect("Python 3 and a way to install coverage.py");
+    let needs = Needs { python: "python3", dir: Path::new("."), requirements: None, cache: &cache };
+    let env = PythonEnv::prepare(&needs, &|_| {}).expect("Python 3 and a way to install coverage.py");
     Launch {
         command: vec!["python3".into(), script.into()],
         dir: root.join("tests/programs"),

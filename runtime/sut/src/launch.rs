@@ -182,7 +182,7 @@ fn join(folders: impl Iterator<Item = OsString>) -> OsString {
     std::env::join_paths(folders.filter(|f| std::env::join_paths([f]).is_ok())).unwrap_or_default()
 }
 
-fn is_python(word: &str) -> bool {
+pub(crate) fn is_python(word: &str) -> bool {
     let name = word.rsplit('/').next().unwrap_or(word);
     name.strip_prefix("python")
         .is_some_and(|rest| rest.is_empty() || rest == "3" || rest.strip_prefix("3.").is_some_and(is_number))

@@ -26,7 +26,7 @@ mod protocol;
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::Cells;
 pub use coverage::FileCoverage;
-pub use environment::PythonEnv;
+pub use environment::{Hooked, Needs, Preparation, PythonEnv};
 pub use error::SutError;
 pub use launch::{DEFAULT_VARIABLES, Launch};
 pub use limits::{Overrun, ProgramLimits, StopFlag};

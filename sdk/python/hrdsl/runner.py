@@ -148,7 +148,20 @@ def _run(words: list[str], module: bool, recorder: Recorder | None) -> int:
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
         sys.excepthook(type(error), error.with_traceback(trace), trace)
+        if isinstance(error, ModuleNotFoundError):
+            _advise(error)
         return 1
+
+
+def _advise(error: ModuleNotFoundError) -> None:
+    try:
+        from hrdsl import advice
+
+        line = advice.about(error)
+    except Exception:  # the traceback above says what matters
+        return
+    if line:
+        sys.stderr.write("hrdsl: %s\n" % line)
 
 
 def _script(path: str, recorder: Recorder | None) -> None:

@@ -24,6 +24,7 @@ use crate::{
     color,
     exit::Exit,
     input::{self, Fault},
+    installing::Installing,
     results_folder::ResultsFolder,
 };
 
@@ -152,7 +153,8 @@ fn prepared<'p>(
     folder: &ResultsFolder,
 ) -> Result<Campaign<'p>, Fault> {
     let dir = input::folder(&args.file);
-    let env = prepare(&dir, &cache()?).map_err(|e| e.to_string())?;
+    let console = Installing::default();
+    let env = prepare(&system.run, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
     let wanted = args.isolation.map(|how| match how {
         IsolationArg::Namespaces => Isolation::Namespaces,
         IsolationArg::Copies => Isolation::Copies,
@@ -330,7 +332,7 @@ struct RunInfo<'a> {
     version: u32,
     hrdsl: &'static str,
     /// The version of the interpreter, and where it is.
-    python: &'a str,
+    python: String,
     isolation: Isolation,
     /// What could not be kept apart.
     gaps: &'a [String],

@@ -7,7 +7,7 @@ use std::{
 };
 
 use hrdsl_sut::{
-    Answer, Cells, Finished, Launch, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
+    Answer, Cells, Finished, Launch, Needs, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
     cell::{Isolation, Supervisor},
 };
 
@@ -17,7 +17,8 @@ pub const GRACE: Duration = Duration::from_secs(20);
 pub fn environment(requirements: Option<&Path>) -> PythonEnv {
     let python = std::env::var("HRDSL_TEST_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sut");
-    PythonEnv::prepare_with(&python, &cache, requirements).unwrap()
+    let dir = Path::new(".");
+    PythonEnv::prepare(&Needs { python: &python, dir, requirements, cache: &cache }, &|_| {}).unwrap()
 }
 
 fn plain_environment() -> PythonEnv {

@@ -1,0 +1,246 @@
+//! What robot code in Python needs, installed once into a cache folder: the SDK, coverage.py, its own requirements.
+//!
+//! Each part has a folder of its own, named by all that it is made from (`key`), so that nothing is ever changed in
+//! place; `cache` makes it, and makes it again when it is damaged; `install` lets pip fill it.
+
+mod cache;
+mod digest;
+mod install;
+mod key;
+mod local;
+mod named;
+mod options;
+mod preparation;
+mod probe;
+mod requirements;
+mod watch;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use cache::{Cache, Listener, Making, Part};
+use digest::Fingerprint;
+use install::{Order, command, install, normal, run};
+use key::Key;
+use probe::Probe;
+use requirements::Requirements;
+
+pub use preparation::{Hooked, Preparation};
+
+use crate::{SutError, launch::is_python};
+
+/// The newest coverage.py for each Python; pinned, since its tracer's packing of line numbers is read directly.
+const COVERAGE: &str = "\
+coverage==7.17.3; python_version >= '3.11'
+coverage==7.16.2; python_version == '3.10'
+coverage==7.10.7; python_version == '3.9'
+coverage==7.6.1; python_version == '3.8'
+";
+
+macro_rules! sdk {
+    ($($file:literal),* $(,)?) => {
+        &[$(($file, include_str!(concat!("../../../../sdk/python/hrdsl/", $file)))),*]
+    };
+}
+
+/// The SDK, file by file.
+const SDK: &[(&str, &str)] = sdk![
+    "__init__.py",
+    "advice.py",
+    "chance.py",
+    "cover.py",
+    "dates.py",
+    "debug.py",
+    "errors.py",
+    "files.py",
+    "link.py",
+    "machine.py",
+    "node.py",
+    "replace.py",
+    "run.py",
+    "runner.py",
+    "virtual.py",
+];
+
+/// An interpreter, and where the modules are that programs under test need.
+#[derive(Clone, Debug)]
+pub struct PythonEnv {
+    /// The word by which the interpreter was looked for.
+    pub(crate) word: String,
+    /// The interpreter itself, behind any wrapper on the path; of a virtual environment its own link.
+    pub(crate) python: PathBuf,
+    version: (u32, u32, u32),
+    /// The folder that has the package `hrdsl`.
+    pub(crate) sdk: PathBuf,
+    /// The folder that has coverage.py.
+    pub(crate) coverage: PathBuf,
+    /// The folder for static analyses of source files.
+    pub(crate) analyses: PathBuf,
+    /// Where modules are searched for, after the standard library.
+    pub(crate) path: Vec<String>,
+}
+
+/// What an environment is prepared for.
+#[derive(Clone, Copy, Debug)]
+pub struct Needs<'a> {
+    /// The interpreter: a name on the path, or a path relative to `dir`.
+    pub python: &'a str,
+    /// The folder in which the program runs.
+    pub dir: &'a Path,
+    /// The `requirements.txt` beside the robot code, if it has one.
+    pub requirements: Option<&'a Path>,
+    /// Where everything is kept.
+    pub cache: &'a Path,
+}
+
+impl PythonEnv {
+    /// Installs what is missing in the cache; quick when all is there. `listen` is told what happens.
+    ///
+    /// Packages come from where pip is configured to get them (an index, `PIP_FIND_LINKS`, `PIP_NO_INDEX`, …). They
+    /// are installed again when anything changes that can be known without asking there: the requirements and what
+    /// they include, the contents of the local folders and files that they name, pip's configuration, the interpreter.
+    ///
+    /// # Errors
+    /// [`SutError::Absent`] without Python or requirements file; [`SutError::Environment`] with pip's last lines if it
+    /// fails, or the line of the requirements that is at fault; [`SutError::Io`] if the cache cannot be written.
+    pub fn prepare(needs: &Needs<'_>, listen: &dyn Fn(Preparation<'_>)) -> Result<Self, SutError> {
+        let cache = Cache::open(needs.cache, listen)?;
+        let dir = std::path::absolute(needs.dir)
+            .map_err(SutError::io(format!("cannot find {}", needs.dir.display())))?;
+        let probe = probe::ask(needs.python, &dir, needs.requirements.is_some())?;
+        let sdk = sdk(&cache, &probe)?;
+        let coverage = coverage(&cache, &probe)?;
+        let analyses = cache.folder("analyses")?;
+        let list = needs.requirements.map(std::path::absolute).transpose();
+        let list = list.map_err(SutError::io("cannot find the requirements"))?;
+        let requirements = list.map(|list| Requirements::read(&list, &variable)).transpose()?;
+        say_hooked(&probe, requirements.as_ref(), listen);
+        let mut path = Vec::new();
+        if let Some(requirements) = requirements.filter(|found| found.named().next().is_some()) {
+            let dir = packages(&cache, &probe, &requirements, needs.requirements)?;
+            path.push(dir.to_string_lossy().into_owned());
+        }
+        path.extend(probe.path);
+        let word = needs.python.to_owned();
+        Ok(Self { word, python: probe.executable, version: probe.version, sdk, coverage, analyses, path })
+    }
+
+    /// The word of a command that names the interpreter; `python3` if the command does not run Python itself.
+    #[must_use]
+    pub fn interpreter_of(command: &[String]) -> &str {
+        command.first().map(String::as_str).filter(|word| is_python(word)).unwrap_or("python3")
+    }
+
+    /// The interpreter's full version, as `3.11.7`.
+    #[must_use]
+    pub fn version(&self) -> String {
+        let (major, minor, micro) = self.version;
+        format!("{major}.{minor}.{micro}")
+    }
+}
+
+fn variable(name: &str) -> Option<String> {
+    std::env::var(name).ok()
+}
+
+/// The packages that no program will find, apart from those that the requirements install.
+fn say_hooked(probe: &Probe, requirements: Option<&Requirements>, listen: Listener<'_>) {
+    let required: Vec<String> = requirements.into_iter().flat_map(Requirements::named).map(normal).collect();
+    let mut hooked = probe.hooked();
+    hooked.retain(|hook| {
+        let folder = hook.folder.as_ref().and_then(|folder| Path::new(folder).file_name());
+        let is_named = |name: Option<&str>| name.is_some_and(|name| required.contains(&normal(name)));
+        !is_named(Some(&hook.package)) && !is_named(folder.and_then(|name| name.to_str()))
+    });
+    if !hooked.is_empty() {
+        listen(Preparation::Hooked { packages: &hooked });
+    }
+}
+
+fn sdk(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
+    let made_from: Vec<&str> =
+        [probe.tag.as_str()].into_iter().chain(SDK.iter().flat_map(|&(name, text)| [name, text])).collect();
+    let part = Part { kind: "sdk", key: Fingerprint::of(&made_from).finish(), what: "the SDK" };
+    cache.silent().made(&part, |making| write_sdk(&probe.executable, &making.folder))
+}
+
+fn write_sdk(python: &Path, dir: &Path) -> Result<(), SutError> {
+    let package = dir.join("hrdsl");
+    let io = || SutError::io(format!("cannot write to {}", dir.display()));
+    fs::create_dir(&package).map_err(io())?;
+    for (name, text) in SDK {
+        fs::write(package.join(name), text).map_err(io())?;
+    }
+    // Byte code now, since the programs may be told not to write any. Without it they only start more slowly.
+    run(command(python).args(["-I", "-m", "compileall", "-q"]).arg(&package)).map(drop)
+}
+
+fn coverage(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
+    let part = Part {
+        kind: "coverage",
+        key: Fingerprint::of(&[&probe.tag, COVERAGE]).finish(),
+        what: "coverage.py",
+    };
+    cache.made(&part, |making| {
+        let requirements = Requirements::built_in(COVERAGE, &making.scratch);
+        let python = &probe.executable;
+        let listen = cache.listen;
+        let order = Order { python, requirements: &requirements, what: part.what, afresh: false, listen };
+        install(&order, making)
+    })
+}
+
+/// Installs the requirements of a list.
+fn packages(
+    cache: &Cache<'_>,
+    probe: &Probe,
+    requirements: &Requirements,
+    list: Option<&Path>,
+) -> Result<PathBuf, SutError> {
+    let key = || Key::new(probe, requirements, &variable);
+    let Key { name, has_sources } = key()?;
+    let what = summary(requirements);
+    let part = Part { kind: "packages", key: name.clone(), what: &what };
+    cache.made(&part, |making: &Making| {
+        let (python, listen) = (&probe.executable, cache.listen);
+        install(&Order { python, requirements, what: &what, afresh: has_sources, listen }, making)?;
+        if key()?.name == name {
+            return Ok(());
+        }
+        let list = list.map_or_else(String::new, |list| format!(" of {}", list.display()));
+        Err(SutError::Environment {
+            what: format!(
+                "the requirements{list}, or a folder that they name, changed while they were installed"
+            ),
+            detail: "start again when nothing writes there".to_owned(),
+        })
+    })
+}
+
+/// The first requirements, and how many more there are.
+fn summary(requirements: &Requirements) -> String {
+    let names: Vec<&str> = requirements.named().collect();
+    match names[..] {
+        [a, b, c, _, ..] => format!("{a}, {b}, {c} and {} more", names.len() - 3),
+        _ => names.join(", "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_sdk_is_embedded() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sdk/python/hrdsl");
+        let mut there: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.ends_with(".py"))
+            .collect();
+        there.sort();
+        assert_eq!(there, SDK.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>());
+    }
+}
