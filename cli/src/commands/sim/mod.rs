@@ -5,6 +5,7 @@ mod run;
 
 use std::{
     collections::BTreeMap,
+    ffi::OsString,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -76,6 +77,9 @@ pub struct Args {
     /// Keep the files that the program writes in each test, in `files/`.
     #[arg(long)]
     keep_files: bool,
+    /// Let `breakpoint()` in the program under test have the terminal; of one test, named by --test.
+    #[arg(long, requires = "test", conflicts_with_all = ["check_determinism", "jobs"])]
+    debug: bool,
     /// How tests are kept apart [default: namespaces where the system allows them, otherwise copies].
     #[arg(long, value_enum, value_name = "HOW")]
     isolation: Option<IsolationArg>,
@@ -115,9 +119,12 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
 
     let generated = generate_suites(args, program, &folder.staging())?;
     let tests = selected(args, program, &generated)?;
+    if args.debug && tests.len() != 1 {
+        return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
+    }
     let campaign = prepared(args, program, system, &out, &folder)?;
     let begun = Instant::now();
-    let outcome = run::execute(&campaign, &tests, &folder.staging())?;
+    let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let differences = if args.check_determinism && !outcome.interrupted {
         Some(determinism::compare(&campaign, &tests, &folder.staging())?)
     } else {
@@ -162,8 +169,12 @@ fn prepared<'p>(
     let mut cells =
         Cells::probe(Supervisor::this_program(SUPERVISE), &dir, wanted).map_err(|e| e.to_string())?;
     cells.hidden = hidden(&dir, out, folder);
+    cells.terminal = args.debug;
     for gap in &cells.gaps {
         eprintln!("note: {gap}");
+    }
+    for complaint in env.analyse(&dir, &system.coverage).map_err(|e| e.to_string())? {
+        eprintln!("warning: {}", complaint.trim_start_matches("hrdsl: "));
     }
     Ok(Campaign {
         program,
@@ -171,10 +182,10 @@ fn prepared<'p>(
         env,
         cells,
         limits: limits(args, system),
-        variables: Vec::new(),
+        variables: variables(args),
         keep: args.keep_files.then(|| folder.staging().join("files")).map(absolute).transpose()?,
-        jobs: args.jobs.map_or_else(cores, usize::from),
-        stop: stop_flag()?,
+        jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
+        stop: stop_flag(args.debug)?,
     })
 }
 
@@ -192,8 +203,22 @@ fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
     hidden
 }
 
+/// What the program finds in its environment besides what every program does.
+fn variables(args: &Args) -> Vec<(OsString, OsString)> {
+    if !args.debug {
+        return Vec::new();
+    }
+    let terminal = std::env::var_os("TERM").map(|term| ("TERM".into(), term));
+    [("HRDSL_DEBUG".into(), "1".into())].into_iter().chain(terminal).collect()
+}
+
 fn limits(args: &Args, system: &System) -> ProgramLimits {
     let default = ProgramLimits::default();
+    if args.debug {
+        // Whoever debugs takes the time that it takes.
+        let for_ever = Duration::from_secs(u64::from(u32::MAX));
+        return ProgramLimits { budget: for_ever, cpu: for_ever, wall: for_ever, ..default };
+    }
     ProgramLimits {
         budget: Duration::from_nanos(system.budget.max(0).unsigned_abs()),
         cpu: args.cpu_limit.unwrap_or(default.cpu),
@@ -203,12 +228,18 @@ fn limits(args: &Args, system: &System) -> ProgramLimits {
     }
 }
 
-/// Set by an interrupt or a request to terminate; at the second, the program ends at once.
-fn stop_flag() -> Result<StopFlag, Fault> {
+/// Set by an interrupt or a request to terminate; at the second, the program ends at once. While somebody debugs,
+/// interrupts are for the debugger.
+fn stop_flag(debug: bool) -> Result<StopFlag, Fault> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
+    if debug {
+        let unheard = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        signal_hook::flag::register(SIGINT, unheard)
+            .map_err(|e| format!("cannot listen for interrupts: {e}"))?;
+    }
+    for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|s| !debug || *s != SIGINT) {
         let registered =
             signal_hook::flag::register_conditional_shutdown(signal, Exit::Interrupted as i32, flag.clone())
                 .and_then(|_| signal_hook::flag::register(signal, flag.clone()));

@@ -29,9 +29,14 @@ pub fn progress_bar(tests: usize) -> ProgressBar {
     bar
 }
 
-/// Runs the tests, and writes their recordings and output below a folder.
-pub fn execute(campaign: &Campaign<'_>, tests: &[Test], to: &Path) -> Result<CampaignOutcome, Fault> {
-    let bar = progress_bar(tests.len());
+/// Runs the tests, and writes their recordings and output below a folder. `quiet`: the terminal is somebody else's.
+pub fn execute(
+    campaign: &Campaign<'_>,
+    tests: &[Test],
+    to: &Path,
+    quiet: bool,
+) -> Result<CampaignOutcome, Fault> {
+    let bar = if quiet { ProgressBar::hidden() } else { progress_bar(tests.len()) };
     let progress = Mutex::new(Progress::default());
     let outcome = campaign.run(tests, |done| {
         let written = write(&done, to);

@@ -44,6 +44,9 @@ pub fn supervise(args: &[OsString]) -> ExitCode {
     let Some(control) = std::io::stdin().as_fd().try_clone_to_owned().ok() else { return ExitCode::FAILURE };
     let mut control = Control { socket: control, inbox: Vec::new() };
     let words: Vec<&str> = args.iter().filter_map(|a| a.to_str()).collect();
+    // A debugger on the terminal is interrupted there; whoever supervises it goes on.
+    let interrupts = SigSet::from(Signal::SIGINT);
+    let _ = interrupts.thread_block();
     let result = match words[..] {
         ["namespaces", "network"] => enter_and_wait(true, args),
         ["namespaces", _] => enter_and_wait(false, args),

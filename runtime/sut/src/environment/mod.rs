@@ -133,6 +133,22 @@ impl PythonEnv {
         command.first().map(String::as_str).filter(|word| is_python(word)).unwrap_or("python3")
     }
 
+    /// Makes beforehand what follows from the texts of the measured files alone, so that the first test does not differ from
+    /// the others. Gives a line about each file that cannot be measured: it is missing, or has a syntax error.
+    ///
+    /// # Errors
+    /// [`SutError::Io`] if the interpreter cannot be started.
+    pub fn analyse(&self, dir: &Path, files: &[String]) -> Result<Vec<String>, SutError> {
+        if files.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut command = install::command(&self.python);
+        command.args(["-S", "-E"]).arg(self.sdk.join("hrdsl").join("cover.py")).arg("--analyse");
+        command.arg("--package").arg(&self.coverage).arg("--cache").arg(&self.analyses).args(files);
+        let output = command.current_dir(dir).output().map_err(SutError::io("cannot start Python"))?;
+        Ok(String::from_utf8_lossy(&output.stderr).lines().map(str::to_owned).collect())
+    }
+
     /// The interpreter's full version, as `3.11.7`.
     #[must_use]
     pub fn version(&self) -> String {
