@@ -192,7 +192,7 @@ fn nothing_is_overwritten() {
 #[test]
 fn names_that_are_no_names_are_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, reason) in [("agent", "keyword"), ("my-robot", "`my_robot` is one"), ("../x", "no name")] {
+    for (name, reason) in [("or", "keyword"), ("my-robot", "`my_robot` is one"), ("../x", "no name")] {
         let out = hrdsl_in(folder.path(), &format!("new {name}"));
         expect_code(&out, 2);
         assert!(stderr(&out).contains(reason), "{}", stderr(&out));

@@ -10,7 +10,7 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         |keep: &dyn Fn(&Keyword) -> bool| KEYWORDS.iter().filter(|k| keep(k)).map(|k| k.word).collect();
     match name {
         "heads" => Some(words(&|k| k.class == Class::Head)),
-        "hard" => Some(words(&|k| k.class == Class::Hard)),
+        "hard" => Some(words(&|k| matches!(k.class, Class::Hard | Class::Reserved))),
         "soft" => Some(words(&|k| k.class == Class::Soft)),
         "units" => Some(base_units()),
         // A shared clock is declared as a variable is.
@@ -42,7 +42,7 @@ pub(crate) fn registry() -> String {
     let row = |k: &Keyword| {
         let class = match k.class {
             Class::Head => "head",
-            Class::Hard => "hard",
+            Class::Hard | Class::Reserved => "hard",
             Class::Soft => "soft",
         };
         format!("  {{ \"word\": \"{}\", \"class\": \"{class}\", \"place\": \"{}\" }}", k.word, k.place)

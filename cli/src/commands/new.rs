@@ -68,13 +68,13 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
 fn check(name: &str) -> Result<(), Fault> {
     if let Some(keyword) = KEYWORDS.iter().find(|k| k.word == name) {
         match keyword.class {
-            Class::Head | Class::Hard => {
+            Class::Reserved => {
                 return Err(format!(
                     "`{name}` is a keyword of the language ({}) and cannot be a name; `{name}_` can",
                     keyword.place
                 ));
             }
-            Class::Soft => {}
+            Class::Head | Class::Hard | Class::Soft => {}
         }
     }
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_';

@@ -4,6 +4,7 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 use logos::Logos;
 
 use crate::token::{Class, Kind, Lexeme};
+use crate::words;
 
 /// The tokens of a file, and what was found on the way.
 pub(crate) struct Lexed {
@@ -26,9 +27,10 @@ pub(crate) fn lex(file: FileId, text: &str) -> Lexed {
     };
     scan.run();
     let Scan { raw, docs, mut diagnostics, .. } = scan;
-    let tokens =
+    let mut tokens =
         Join { file, text, raw: &raw, out: Vec::with_capacity(raw.len()), diagnostics: &mut diagnostics }
             .run();
+    words::names(&mut tokens);
     Lexed { tokens, docs, diagnostics }
 }
 
@@ -126,6 +128,9 @@ impl Scan<'_> {
     fn bad(&mut self, start: usize) -> usize {
         let rest = &self.text[start..];
         let Some(c) = rest.chars().next() else { return start };
+        if c == '#' {
+            return self.hash(start);
+        }
         if c.is_alphabetic() {
             return self.bad_word(start);
         }
@@ -157,6 +162,21 @@ impl Scan<'_> {
         }
         self.diagnostics.push(diagnostic);
         self.push(Kind::Error, start, end);
+        end
+    }
+
+    /// A comment as other languages have it: to the end of the line.
+    fn hash(&mut self, start: usize) -> usize {
+        let rest = &self.text[start..];
+        let end = start + rest.find('\n').unwrap_or(rest.len());
+        let marks = start + rest.len() - rest.trim_start_matches('#').len();
+        let span = Span::new(self.file, start, marks);
+        self.diagnostics.push(
+            Diagnostic::error(Code::BAD_CHARACTER, span, "comments begin with `//`, not with `#`")
+                .here("the rest of the line is read as a comment")
+                .help("write `//`")
+                .fix("replace `#` by `//`", span, "//", true),
+        );
         end
     }
 
@@ -193,7 +213,6 @@ fn instead_of(c: char) -> Option<&'static str> {
     Some(match c {
         '&' => "`and` is written `&&` or `and`",
         '\'' | '`' | '‘' | '’' | '“' | '”' | '«' | '»' => "texts are written between `\"` and `\"`",
-        '#' => "comments begin with `//`",
         '\\' => "`not equal` is written `!=`",
         '≤' => "write `<=`",
         '≥' => "write `>=`",
@@ -220,7 +239,6 @@ fn replacement(c: char) -> Option<(&'static str, bool)> {
         '−' => ("-", true),
         '\u{a0}' => (" ", true),
         '&' => ("&&", false),
-        '#' => ("//", false),
         '[' => ("(", false),
         ']' => (")", false),
         '…' => ("..", false),
@@ -270,15 +288,16 @@ impl Join<'_> {
     }
 
     /// A dot right before a name, and after nothing that has parts: `.count`. After a name or index a dot is always that
-    /// of a part, also on a new line; only `while .count(…)`, `for .member(…)` and
-    /// `where .count(…)` have a blank before their action.
+    /// of a part, also on a new line; after a keyword, as in `while .count(…)` or
+    /// `when .member(…)`, it is one right after it.
     fn starts_internal(&self, i: usize) -> bool {
         let dot = self.raw[i];
         let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
         let part = self.out.last().is_some_and(|before| match before.kind {
             Kind::RBrace => false,
+            // Words that an expression may follow.
             Kind::While | Kind::For | Kind::Where => before.end == dot.start,
-            kind => kind.ends_operand(),
+            kind => kind.ends_operand() || (kind.can_be_name() && before.end == dot.start),
         });
         named && !part
     }
@@ -286,10 +305,10 @@ impl Join<'_> {
     /// The kind of a word: a name before `->` is an origin, and after a dot every word is a name.
     fn word(&self, i: usize) -> Kind {
         let kind = self.raw[i].kind;
-        if kind.is_name() && self.kind(i + 1) == Some(Kind::Arrow) {
+        if kind.can_be_name() && self.kind(i + 1) == Some(Kind::Arrow) {
             return Kind::From;
         }
-        let hard = matches!(kind.class(), Some(Class::Head | Class::Hard));
+        let hard = matches!(kind.class(), Some(Class::Head | Class::Hard | Class::Reserved));
         if hard
             && !self.raw[i].first
             && self.out.last().is_some_and(|t| matches!(t.kind, Kind::Dot | Kind::Internal))

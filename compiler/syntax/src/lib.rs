@@ -3,8 +3,10 @@
 //! # Steps
 //!
 //! 1. [`token`]: the vocabulary, one table of all keywords.
-//! 2. `lex`: text to tokens; comments go, doc comments are kept aside, numbers take their units.
-//! 3. `outline`: tokens to one run for each declaration; missing closing braces are put in.
+//! 2. `lex`: text to tokens; comments go, doc comments are kept aside, numbers take their units; `words` finds the keywords
+//!    that can only be names.
+//! 3. `outline`: tokens to one run for each declaration; missing closing braces are put in; `heads`
+//!    says whether a keyword starts one.
 //! 4. `grammar`: one run to one AST node (LALRPOP).
 //! 5. [`parse()`]: drives the above; a run that does not fit is read again member by member (`recover`), and what does
 //!    not fit then costs that member alone (`report` says why).
@@ -13,6 +15,7 @@
 
 pub mod ast;
 mod context;
+mod heads;
 mod lex;
 mod outline;
 mod parse;
@@ -20,6 +23,7 @@ mod print;
 mod recover;
 mod report;
 pub mod token;
+mod words;
 
 #[allow(clippy::all, clippy::pedantic, unused, missing_docs)]
 mod grammar {

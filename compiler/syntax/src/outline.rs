@@ -5,6 +5,7 @@
 
 use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
+use crate::heads::{has_its_rest, wants_a_name};
 use crate::report::{found, nearest};
 use crate::token::{Class, KEYWORDS, Kind, Lexeme};
 
@@ -171,17 +172,15 @@ impl Splitter<'_> {
         if matches!(before, Kind::Colon | Kind::Dot) {
             return false;
         }
+        let rest = has_its_rest(self.input, i);
         if self.braces == 0 {
-            if self.brackets.len() > 1 && before.continues() {
-                return false;
-            }
-            return token.first || before.ends_operand() || matches!(before, Kind::Semi | Kind::System);
+            return self.current.is_none() || self.ends_before(i, before, rest);
         }
-        let names_follow = match self.kind(i + 1) {
-            Some(Kind::LBrace) => token.kind == Kind::World,
-            Some(next) => next.is_word(),
-            None => false,
-        };
+        // A declaration with a fault: its name is on its line. `with` follows the name of a stimulus.
+        let named = self
+            .input
+            .get(i + 1)
+            .is_some_and(|next| next.kind.is_word() && next.kind != Kind::With && !next.first);
         let belongs = match token.kind {
             Kind::Var => self
                 .current
@@ -191,7 +190,28 @@ impl Splitter<'_> {
             Kind::Allow => true,
             _ => false,
         };
-        token.first && names_follow && !before.continues() && !belongs
+        token.first && (rest || named) && !before.continues() && !belongs
+    }
+
+    /// Whether the current declaration, of which no brace is open, ends before the head keyword at `i`.
+    fn ends_before(&self, i: usize, before: Kind, rest: bool) -> bool {
+        let token = self.input[i];
+        if self.brackets.len() > 1 && before.continues() {
+            return false;
+        }
+        // In `at most 4 test` the word after the number is an event.
+        let counted = i.checked_sub(2).is_some_and(|i| self.input[i].kind == Kind::Most);
+        let named = self.current.is_some_and(|c| c.start + 1 == self.out.len());
+        if named || counted {
+            return rest && token.first;
+        }
+        if wants_a_name(before) {
+            // On the same line it is one after the name that ends the declaration before.
+            let after_name = before.starts_call() && before != token.kind && token.kind != Kind::World;
+            return rest && (token.first || after_name);
+        }
+        let head = before.is_head() && before != token.kind;
+        token.first || before == Kind::Semi || (before.ends_operand() || head) && rest
     }
 
     /// A member that cannot be inside another one: the brace of the one before is missing.
@@ -205,12 +225,12 @@ impl Splitter<'_> {
             (Some(Kind::Agent), Kind::Plan) => {
                 matches!(next, Some(Kind::Plus | Kind::Minus | Kind::On | Kind::At_))
             }
-            (Some(Kind::Agent), Kind::Goal) => next.is_some_and(|k| k == Kind::Bang || k.is_name()),
-            (Some(Kind::Agent), Kind::Belief) => next.is_some_and(Kind::is_name),
-            (Some(Kind::Agent), Kind::Rule) => next.is_some_and(|k| k == Kind::Tilde || k.is_name()),
+            (Some(Kind::Agent), Kind::Goal) => next.is_some_and(|k| k == Kind::Bang || k.can_be_name()),
+            (Some(Kind::Agent), Kind::Belief) => next.is_some_and(Kind::can_be_name),
+            (Some(Kind::Agent), Kind::Rule) => next.is_some_and(|k| k == Kind::Tilde || k.can_be_name()),
             (Some(Kind::Automaton), Kind::From) => true,
             (Some(Kind::Automaton), Kind::Location | Kind::Init | Kind::Committed | Kind::Urgent) => {
-                next.is_some_and(Kind::is_name)
+                next.is_some_and(Kind::can_be_name)
             }
             (_, _) => false,
         }
@@ -363,11 +383,11 @@ impl Splitter<'_> {
         let Some(top) = self.brackets.last_mut() else { return };
         top.element = match token.kind {
             Kind::Dot => top.element,
-            kind => top.element && kind.is_name(),
+            kind => top.element && kind.can_be_name(),
         };
         // `a[0][0].x` is as high as it has indices and names after them.
         let part = match token.kind {
-            Kind::LBracket => after_operand,
+            Kind::LBracket => after_operand || self.before(i).is_some_and(Kind::can_be_name),
             Kind::Dot => top.element,
             _ => false,
         };
@@ -389,9 +409,10 @@ impl Splitter<'_> {
         let boundary = match token.kind {
             Kind::Comma | Kind::Semi | Kind::Colon | Kind::Pipe | Kind::Assign | Kind::From => true,
             Kind::True | Kind::False | Kind::Else | Kind::LParen | Kind::LBracket => false,
+            // Where an operand is missing, a word is one.
             kind => {
-                matches!(kind.class(), Some(Class::Head | Class::Hard))
-                    || (after_operand && kind.starts_operand())
+                let word = matches!(kind.class(), Some(Class::Head | Class::Hard));
+                after_operand && (word || kind.starts_operand())
             }
         };
         if boundary {

@@ -75,11 +75,12 @@ fn item(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk) -> ItemKind {
 /// `scenario name`: the first line, once.
 fn scenario(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut File) {
     let run = &tokens[chunk.start..chunk.end];
-    let name = run.get(1).filter(|t| t.kind.is_name());
+    let name = run.get(1).filter(|t| t.kind.can_be_name());
     if name.is_none() || run.len() > 2 {
         let expected = if name.is_some() { "END" } else { "IDENT" };
         let fault = Fault {
             of: "declaration",
+            within: None,
             at: if name.is_some() { 2 } else { 1 },
             expected: vec![expected.to_owned()],
         };
@@ -100,6 +101,31 @@ fn scenario(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut 
 /// Reads one run of tokens as what `start` says: `None` a declaration. Of a run that does not fit, no diagnostics stay.
 pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Result<Unit, Fault> {
     let said = cx.diagnostics.len();
+    let fault = match attempt(cx, start, tokens) {
+        Ok(unit) => return Ok(unit),
+        Err(fault) => fault,
+    };
+    let fault = forgotten(cx, start, tokens, &fault).unwrap_or(fault);
+    cx.diagnostics.truncate(said);
+    Err(fault)
+}
+
+/// In `stimulus by cook` the keyword was taken for the name that is missing before it: it is still expected after itself.
+fn forgotten(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme], fault: &Fault) -> Option<Fault> {
+    let at = fault.at.checked_sub(1)?;
+    let word = tokens.get(at).filter(|t| t.kind.class().is_some())?;
+    if !fault.has(cx.text_of(*word)) {
+        return None;
+    }
+    let mut named = tokens[..=fault.at.min(tokens.len() - 1)].to_vec();
+    named[at].kind = Kind::Ident;
+    let same = attempt(cx, start, &named).err()?;
+    let before = attempt(cx, start, &tokens[..at]).err()?;
+    let name = same.at == fault.at && same.expected == fault.expected;
+    (name && before.at == at && before.has("IDENT")).then_some(before)
+}
+
+fn attempt(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Result<Unit, Fault> {
     let (from, to) = (tokens.first().map_or(0, |t| t.start), tokens.last().map_or(0, |t| t.end));
     let taken = Cell::new(0_usize);
     let stream = start
@@ -115,7 +141,6 @@ pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) 
         Ok(unit) => return Ok(*unit),
         Err(error) => error,
     };
-    cx.diagnostics.truncate(said);
     // The token that does not fit is the last that was taken.
     let at = taken.get().saturating_sub(1 + usize::from(start.is_some()));
     let expected = match error {
@@ -131,5 +156,5 @@ pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) 
         Some(Kind::StartStatement) => "statement",
         Some(_) => "member",
     };
-    Err(Fault { of, at, expected })
+    Err(Fault { of, within: start.or_else(|| tokens.first().map(|t| t.kind)), at, expected })
 }

@@ -145,14 +145,14 @@ impl Recovery<'_, '_> {
         let text = &self.tokens[range.clone()];
         match text {
             [head, name, assign, ..]
-                if head.kind == Kind::Const && name.kind.is_name() && assign.kind == Kind::Assign =>
+                if head.kind == Kind::Const && name.kind.can_be_name() && assign.kind == Kind::Assign =>
             {
                 let span = self.span(&(range.start + 3..range.end));
                 let value = Expr { kind: ExprKind::Error, span };
                 ItemKind::Const { name: self.cx.name(*name), value }
             }
             [head, name, kind, rest @ ..]
-                if head.kind == Kind::Require && name.kind.is_name() && kind.kind.is_name() =>
+                if head.kind == Kind::Require && name.kind.can_be_name() && kind.kind.can_be_name() =>
             {
                 let header = 3 + usize::from(rest.first().is_some_and(|t| t.kind == Kind::Str));
                 if fault.at < header {
@@ -278,7 +278,7 @@ impl Recovery<'_, '_> {
         let helpless = self.cx.diagnostics.get(said).is_some_and(|d| d.help.is_none());
         let at = (range.start + fault.at).min(range.end);
         let acts = self.tokens[range.start..at].iter().any(|t| t.kind == Kind::Do);
-        let name = self.tokens.get(at).is_some_and(|t| t.kind.is_name());
+        let name = self.tokens.get(at).is_some_and(|t| t.kind.can_be_name());
         if M::START == Kind::StartAutomatonMember && acts && name && helpless {
             self.cx.diagnostics[said].help = Some("put `;` between two actions of an edge".to_owned());
         }
@@ -385,7 +385,7 @@ macro_rules! members {
 }
 
 members! {
-    StimulusStep StimulusStepKind StartStimulusStep [] is_name: Emit | If;
+    StimulusStep StimulusStepKind StartStimulusStep [] starts_call: Emit | If;
     AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Rule | Goal | Plan | Allow;
     AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
         Clock | Var | Fn | Init | Committed | Urgent | Location | From | Allow;
@@ -393,7 +393,7 @@ members! {
     SuiteMember SuiteMemberKind StartSuiteMember []:
         Choose | Explore | Stop | Minimise | Witness | Delays | Tests | Horizon | Patience | Reach | Stimuli | Await
             | Length | Pause;
-    TestMember TestMemberKind StartTestMember [] is_name: Await;
+    TestMember TestMemberKind StartTestMember [] starts_call: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
         Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;
     SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget;

@@ -3,13 +3,15 @@
 use hrdsl_source::{Code, Diagnostic};
 
 use crate::context::Context;
-use crate::token::{Class, KEYWORDS, Kind, Lexeme};
+use crate::token::{Class, KEYWORDS, Keyword, Kind, Lexeme};
 
 /// Where a run stopped fitting the grammar.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
     /// What was being read.
     pub of: &'static str,
+    /// Its first token: the keyword of a declaration, or the synthetic token before a member.
+    pub within: Option<Kind>,
     /// The index of the token; that of the end, if it was the end that did not fit.
     pub at: usize,
     /// The terminals that would have fitted, as the grammar calls them.
@@ -22,7 +24,7 @@ impl Fault {
         self.has("END")
     }
 
-    fn has(&self, terminal: &str) -> bool {
+    pub(crate) fn has(&self, terminal: &str) -> bool {
         self.expected.iter().any(|e| e.trim_matches('"') == terminal)
     }
 }
@@ -82,8 +84,11 @@ fn any_of(words: &[String]) -> String {
 const OPERATORS: &[&str] =
     &["+", "-", "*", "/", "%", "=", "==", "!=", "<", "<=", ">", ">=", "&&", "and", "||", "or", "imply"];
 
-/// Terminals that together mean one thing to a person. The first that fits is taken.
+/// Terminals that together mean one thing to a person. The first that fits is taken. Where a name fits, nearly all keywords
+/// do; a step that starts with a name is told by what it cannot start with.
 struct Group {
+    /// In one of these.
+    within: &'static [Kind],
     /// All of these are expected,
     if_all: &'static [&'static str],
     /// and none of these.
@@ -102,6 +107,7 @@ const EXPRESSION: &[&str] = &[
 
 const GROUPS: &[Group] = &[
     Group {
+        within: &[],
         if_all: &["-+", "await"],
         if_none: &[],
         names: true,
@@ -109,20 +115,23 @@ const GROUPS: &[Group] = &[
         says: &["a step such as `!goal` or `await`"],
     },
     Group {
+        within: &[Kind::Stimulus, Kind::StartStimulusStep],
         if_all: &["emit", "hold", "sample"],
-        if_none: &[],
+        if_none: &["INT"],
         names: true,
         covers: &["emit", "hold", "sample", "if"],
         says: &["a step such as `emit` or `hold`"],
     },
     Group {
+        within: &[Kind::Test, Kind::StartTestMember],
         if_all: &["seed", "because", "await"],
-        if_none: &[],
+        if_none: &["INT"],
         names: true,
         covers: &["seed", "method", "because", "predicts", "await", "wait"],
         says: &["a step such as `await` or `wait`"],
     },
     Group {
+        within: &[],
         if_all: &["gravity", "joint"],
         if_none: &["IDENT"],
         names: false,
@@ -133,6 +142,7 @@ const GROUPS: &[Group] = &[
         says: &["a member of the world such as `body` or `signal`"],
     },
     Group {
+        within: &[],
         if_all: &["explore", "horizon"],
         if_none: &["IDENT"],
         names: false,
@@ -143,13 +153,15 @@ const GROUPS: &[Group] = &[
         says: &["a line such as `choose` or `tests`"],
     },
     Group {
+        within: &[],
         if_all: &["each", "query", "IDENT"],
-        if_none: &[],
+        if_none: &["imply"],
         names: true,
         covers: &["each", "query"],
         says: &["`each`", "`query`", "a name"],
     },
     Group {
+        within: &[],
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
@@ -157,6 +169,7 @@ const GROUPS: &[Group] = &[
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
     Group {
+        within: &[],
         if_all: &["after", "never", "ERROR", "("],
         if_none: &["-"],
         names: true,
@@ -164,6 +177,7 @@ const GROUPS: &[Group] = &[
         says: &["a pattern such as `after` or `globally`"],
     },
     Group {
+        within: &[],
         if_all: &["+", "-", "on"],
         if_none: &["*"],
         names: false,
@@ -171,22 +185,74 @@ const GROUPS: &[Group] = &[
         says: &["a trigger such as `+!goal` or `on event`"],
     },
     Group {
+        within: &[],
         if_all: &["INT", "-", "not"],
         if_none: &[],
         names: true,
         covers: EXPRESSION,
         says: &["an expression"],
     },
-    Group { if_all: &["INT", "-", "("], if_none: &[], names: true, covers: EXPRESSION, says: &["a value"] },
-    Group { if_all: &["+", "*", "."], if_none: &[], names: false, covers: &[".", "(", "["], says: &[] },
-    Group { if_all: &["+", "*", "["], if_none: &[], names: false, covers: &["["], says: &[] },
-    Group { if_all: &["=", "+=", "["], if_none: &[], names: false, covers: &[".", "["], says: &[] },
-    Group { if_all: &["when", "["], if_none: &[], names: false, covers: &["(", "["], says: &[] },
+    Group {
+        within: &[],
+        if_all: &["INT", "-", "("],
+        if_none: &[],
+        names: true,
+        covers: EXPRESSION,
+        says: &["a value"],
+    },
+    Group {
+        within: &[],
+        if_all: &["+", "*", "."],
+        if_none: &[],
+        names: false,
+        covers: &[".", "(", "["],
+        says: &[],
+    },
+    Group { within: &[], if_all: &["+", "*", "["], if_none: &[], names: false, covers: &["["], says: &[] },
+    Group {
+        within: &[],
+        if_all: &["=", "+=", "["],
+        if_none: &[],
+        names: false,
+        covers: &[".", "["],
+        says: &[],
+    },
+    Group { within: &[], if_all: &["when", "["], if_none: &[], names: false, covers: &["(", "["], says: &[] },
+    // A path may go on where a step may start.
+    Group { within: &[], if_all: &["IDENT", "."], if_none: &[], names: false, covers: &["."], says: &[] },
     // Fits before every member, and is never what was meant.
-    Group { if_all: &["allow", "plan"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
-    Group { if_all: &["allow", "clock"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
-    Group { if_all: &["allow", "ORIGIN"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
-    Group { if_all: &["allow", "bin"], if_none: &["IDENT"], names: false, covers: &["allow"], says: &[] },
+    Group {
+        within: &[],
+        if_all: &["allow", "plan"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &["allow"],
+        says: &[],
+    },
+    Group {
+        within: &[],
+        if_all: &["allow", "clock"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &["allow"],
+        says: &[],
+    },
+    Group {
+        within: &[],
+        if_all: &["allow", "ORIGIN"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &["allow"],
+        says: &[],
+    },
+    Group {
+        within: &[],
+        if_all: &["allow", "bin"],
+        if_none: &["IDENT"],
+        names: false,
+        covers: &["allow"],
+        says: &[],
+    },
 ];
 
 /// The words for what would have fitted, where the token that did not is the first of its line or not.
@@ -194,8 +260,13 @@ fn describe(fault: &Fault, first: bool) -> Vec<String> {
     let mut left: Vec<&str> = fault.expected.iter().map(|e| e.trim_matches('"')).collect();
     let mut said = Vec::new();
     for group in GROUPS {
-        let fits =
-            group.if_all.iter().all(|t| left.contains(t)) && !group.if_none.iter().any(|t| left.contains(t));
+        // After an operand there are operators.
+        let any_name = left.contains(&"imply") && left.contains(&"else") && !left.contains(&"*");
+        let within = group.within.is_empty()
+            || !any_name && fault.within.is_some_and(|within| group.within.contains(&within));
+        let fits = within
+            && group.if_all.iter().all(|t| left.contains(t))
+            && !group.if_none.iter().any(|t| left.contains(t));
         if fits {
             said.extend(group.says.iter().map(|s| (*s).to_owned()));
             left.retain(|t| !(group.covers.contains(t) || group.names && is_name(t)));
@@ -221,7 +292,7 @@ fn describe(fault: &Fault, first: bool) -> Vec<String> {
 }
 
 fn is_name(terminal: &str) -> bool {
-    terminal == "IDENT" || keyword(terminal) == Some(Class::Soft)
+    terminal == "IDENT" || keyword(terminal).is_some_and(|class| class != Class::Reserved)
 }
 
 fn keyword(word: &str) -> Option<Class> {
@@ -262,8 +333,14 @@ fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
 /// The expected keyword that a word was meant to be.
 fn keyword_near<'f>(cx: &Context<'_>, fault: &'f Fault, token: Lexeme) -> Option<&'f str> {
     let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
-    let meant = token.kind.is_word() && token.kind.class() != Some(Class::Hard);
-    meant.then(|| nearest(cx.text_of(token), keywords))?
+    let meant = token.kind.is_word() && !matches!(token.kind.class(), Some(Class::Hard | Class::Reserved));
+    // Where a name fits, every keyword is one.
+    (meant && !fault.has("IDENT")).then(|| nearest(cx.text_of(token), keywords))?
+}
+
+/// The keyword, if no name can be like it.
+fn reserved(word: &str) -> Option<&'static Keyword> {
+    KEYWORDS.iter().find(|k| k.word == word && k.class == Class::Reserved)
 }
 
 fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lexeme) -> Option<String> {
@@ -284,12 +361,15 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
                 | Kind::By
         )
     );
-    if matches!(token.kind.class(), Some(Class::Head | Class::Hard))
+    // Where an expression is expected, the word may have been meant as the operator that it is.
+    if let Some(keyword) = reserved(word)
         && fault.has("IDENT")
-        && !token.first
-        && named
+        && (named || !fault.has("INT"))
     {
-        return Some(format!("`{word}` is a keyword and cannot be a name; `{word}_` can"));
+        let place = keyword.place;
+        return Some(format!(
+            "`{word}` is a keyword ({place}) and cannot be a name; write another one, such as `{word}_`"
+        ));
     }
     let text = match token.kind {
         Kind::Eq if fault.has("=") => "to set a value, write `=`",

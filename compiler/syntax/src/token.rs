@@ -5,12 +5,14 @@ use logos::Logos;
 /// What a keyword reserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Starts a declaration; never a name.
+    /// Starts a declaration; a name where none can start.
     Head,
-    /// Holds the text together; never a name.
+    /// Holds the text together, and a name where it cannot be meant. Where a declaration is broken it is taken for the keyword.
     Hard,
     /// A keyword in its own place, a name everywhere else.
     Soft,
+    /// Never a name.
+    Reserved,
 }
 
 /// One row of the registry.
@@ -152,11 +154,11 @@ tokens! {
     Record "record" Head "declaration",
     Allow "allow" Head "before what is allowed",
 
-    True "true" Hard "expression",
-    False "false" Hard "expression",
-    Not "not" Hard "expression",
-    And "and" Hard "expression, plan",
-    Or "or" Hard "expression, list of events, plan",
+    True "true" Reserved "expression",
+    False "false" Reserved "expression",
+    Not "not" Reserved "expression",
+    And "and" Reserved "expression, plan",
+    Or "or" Reserved "expression, list of events, plan",
     Imply "imply" Hard "expression",
     If "if" Hard "expression, stimulus, plan, function",
     Else "else" Hard "expression, stimulus, plan, function",
@@ -284,9 +286,19 @@ impl Kind {
         )
     }
 
-    /// May be a name somewhere: an identifier or a soft keyword.
+    /// Looks like a name: an identifier or a soft keyword.
     pub(crate) fn is_name(self) -> bool {
         self == Self::Ident || self.class() == Some(Class::Soft)
+    }
+
+    /// Can be a name somewhere: every word that is not reserved.
+    pub(crate) fn can_be_name(self) -> bool {
+        self.is_word() && self.class() != Some(Class::Reserved)
+    }
+
+    /// May be the first token of a step that names what is done. Words that hold the text together are hardly meant so.
+    pub(crate) fn starts_call(self) -> bool {
+        self.is_name() || self.is_head()
     }
 
     /// An identifier or any keyword.

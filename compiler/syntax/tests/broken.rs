@@ -57,6 +57,7 @@ broken! {
         "system r { run \"a\\"
         "const a = 1 \\== 2"
         "const a = 2 ^ 3"
+        "const a = 1 # one\n# two # three\nconst b = 2 ## four"
         "const a = .5"
         "const a = 5."
     ]
@@ -72,9 +73,9 @@ broken! {
         "event"
         "event a"
         "event a from\nevent b from c"
-        "event event from a"
+        "event or from a"
         "event a, from c"
-        "event a(on: bool) from b"
+        "event a(or: bool) from b"
         "event a(x bool) from b"
         "event a(x: bool from b"
         "event a from b c"
@@ -116,7 +117,7 @@ broken! {
         "const a = b."
         "const a = 3 s s"
         "const a = not"
-        "const a = when"
+        "const a = or"
     ]
     stimuli [
         "stimulus s by p { emit }"
@@ -212,7 +213,7 @@ broken! {
         "automaton P plays p { location a { x < 3 } }"
         "automaton P plays p { clck x }"
         "automaton P plays p { committed init location a }"
-        "automaton P plays p { when -> b }"
+        "automaton P plays p { true -> b }"
         "automaton P plays p { location a { invariant x < 3\n a -> b\n}"
     ]
     requirements [
@@ -247,7 +248,7 @@ broken! {
         "test a { await b }"
         "test a { look(true with offset = 3 cm }"
         "test a { look with offset 3 cm; wait 3 s }"
-        "test a { seed; wait 3 s }"
+        "test a { seed ?; wait 3 s }"
     ]
     worlds [
         "world { body b: box(1 m) at (0 m, 0 m, 0 m) }"

@@ -36,7 +36,7 @@ fn keywords_json() -> String {
         .map(|k| {
             let class = match k.class {
                 Class::Head => "head",
-                Class::Hard => "hard",
+                Class::Hard | Class::Reserved => "hard",
                 Class::Soft => "soft",
             };
             format!("  {{ \"word\": \"{}\", \"class\": \"{class}\", \"place\": \"{}\" }}", k.word, k.place)
@@ -52,7 +52,7 @@ fn keywords_h() -> String {
     for keyword in KEYWORDS {
         let class = match keyword.class {
             Class::Head => "HEAD",
-            Class::Hard => "HARD",
+            Class::Hard | Class::Reserved => "HARD",
             Class::Soft => "SOFT",
         };
         let _ = writeln!(text, "{class}({0}, \"{0}\")", keyword.word);

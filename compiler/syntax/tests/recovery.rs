@@ -160,7 +160,7 @@ fn new_members_are_found_after_broken_ones() {
       goal g(x: int) plan +!h { a
       rule i when j
       goal k }
-    suite s by random { tests within
+    suite s by random { tests ?
       stop after 3
       explore 5
       minimise
@@ -266,7 +266,7 @@ stimulus s by p { emit a; hold; emit b; if x { emit; emit c } else { hold 1 s } 
 cross c = a * b { bin "a" when; bin "b" when x ignore y ignore when z }
 suite u by random { tests; length 1..2; paus 3 s horizon 4 s }
 test t { seed 1 look(; wait 3 s
-  await; ask }
+  await x; ask }
 world { step 1 ms
   body a fixed
   body b: fixed box(1 m) at x mass
@@ -372,4 +372,12 @@ automaton A {
     let lines: Vec<usize> =
         diagnostics.iter().map(|d| text[..d.span().start as usize].matches('\n').count() + 1).collect();
     assert_eq!(lines, [2, 4, 4, 4, 5, 6, 8, 8, 13, 15], "{diagnostics:#?}");
+}
+
+/// The rest of the line is a comment, and nothing else is lost.
+#[test]
+fn a_hash_is_a_comment() {
+    let (file, n) = with("const LEGS     = 4", "const LEGS = 4 # { the legs, (");
+    assert_eq!((n, errors(&file)), (1, 0));
+    assert_eq!(file.items.len(), whole().items.len());
 }

@@ -71,8 +71,8 @@ fn the_keywords() {
     let mut table = String::from("| keyword | reserved | where |\n|---|---|---|\n");
     for keyword in KEYWORDS {
         let reserved = match keyword.class {
-            Class::Head | Class::Hard => "always",
-            Class::Soft => "in its place",
+            Class::Reserved => "always",
+            Class::Head | Class::Hard | Class::Soft => "in its place",
         };
         let _ = writeln!(table, "| `{}` | {reserved} | {} |", keyword.word, keyword.place);
     }

@@ -36,11 +36,11 @@ pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
         _ => {}
     }
     match n.kind {
-        Kind::Question => !p.kind.is_name(),
+        Kind::Question => !p.kind.can_be_name(),
         Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor || of_channel(toks, at),
         Kind::LParen => !n.mark.call,
         // An index and annotations belong to what is before; a list stands alone.
-        Kind::LBracket => n.mark.apart || !p.kind.ends_operand(),
+        Kind::LBracket => n.mark.apart || !(p.kind.ends_operand() || p.kind.can_be_name()),
         Kind::DotDot => !n.mark.tight,
         _ => true,
     }

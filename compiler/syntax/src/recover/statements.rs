@@ -202,7 +202,7 @@ fn filled(kind: StatementKind, bodies: &mut Vec<Vec<Statement>>) -> StatementKin
 }
 
 fn starts_statement(kind: Kind) -> bool {
-    kind.is_name() || matches!(kind, Kind::Var | Kind::If | Kind::Return)
+    kind.starts_call() || matches!(kind, Kind::Var | Kind::If | Kind::Return)
 }
 
 /// A token that starts a statement and, at the start of a line, is nothing else.

@@ -293,7 +293,7 @@ fn filled(kind: StepKind, bodies: &mut Vec<Vec<Step>>) -> StepKind {
 
 /// A token that starts a step of a plan.
 fn starts_step(kind: Kind) -> bool {
-    kind.is_name()
+    kind.starts_call()
         || matches!(
             kind,
             Kind::Await
