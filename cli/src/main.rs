@@ -1,5 +1,11 @@
 //! `hrdsl`, the command line: one file for each command; the only place with clap, stdout and files.
 
+#![warn(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "terminal.rs prints, and lets nothing through that steers"
+)]
+
 mod color;
 mod commands;
 mod exit;
@@ -7,6 +13,7 @@ mod fix;
 mod input;
 mod project;
 mod render;
+mod terminal;
 
 use std::process::ExitCode;
 
@@ -67,7 +74,7 @@ fn main() -> ExitCode {
     };
     result
         .unwrap_or_else(|fault| {
-            eprintln!("error: {fault}");
+            terminal::say_line(format_args!("error: {fault}"));
             Exit::Usage
         })
         .into()
