@@ -19,6 +19,7 @@ mod never_triggered;
 mod no_failure_plan;
 mod overflow;
 mod plan_terms;
+mod query_reads;
 mod recursion_without_time;
 mod removes_nothing;
 mod shadowed_plan;
