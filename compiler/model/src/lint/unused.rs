@@ -13,7 +13,7 @@ use crate::{
     Performative, Player, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
 };
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     let mut found = Vec::new();
     vocabulary(scenario, facts, &mut found);
     let queries = QueryReads::of(scenario);
