@@ -7,6 +7,7 @@ use std::{
 };
 
 use clap::ValueEnum;
+use hrdsl_source::printable;
 
 /// What `--color` takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -89,7 +90,7 @@ pub enum Style {
     Removed,
 }
 
-/// A piece of text in a style, if colours are on.
+/// A piece of text in a style, if colours are on. It cannot leave its style.
 #[must_use]
 pub fn paint(on: bool, style: Style, text: &str) -> String {
     let sgr = match style {
@@ -98,7 +99,8 @@ pub fn paint(on: bool, style: Style, text: &str) -> String {
         Style::Added => "32",
         Style::Removed => "31",
     };
-    if on && !text.is_empty() { format!("\u{1b}[{sgr}m{text}\u{1b}[0m") } else { text.to_owned() }
+    let text = printable(text);
+    if on && !text.is_empty() { format!("\u{1b}[{sgr}m{text}\u{1b}[0m") } else { text.into_owned() }
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ use std::{
 use hrdsl_compiler::{Compilation, Input, Loader, Source, ast, compile_with};
 use hrdsl_ir::Program;
 
-use crate::render;
+pub use crate::terminal::{print, print_data};
+use crate::{render, terminal};
 
 /// A failure that is no diagnostic: a file, an argument.
 pub type Fault = String;
@@ -47,15 +48,15 @@ pub fn kind_of(file: &ast::File) -> Kind {
 /// The file's name and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, Fault> {
     let fault = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => format!("no such file: {}", path.display()),
-        _ => format!("cannot read {}: {e}", path.display()),
+        std::io::ErrorKind::NotFound => format!("no such file: {}", terminal::shown(path)),
+        _ => format!("cannot read {}: {e}", terminal::shown(path)),
     };
     let mut bytes = Vec::new();
     // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.
     fs::File::open(path)
         .and_then(|file| file.take(hrdsl_compiler::MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
         .map_err(fault)?;
-    text(bytes, &path.display().to_string())
+    text(bytes, &terminal::shown(path))
 }
 
 /// The files that `use "…"` names, relative to the file that uses them.
@@ -66,7 +67,7 @@ impl Loader for Disk {
         let file = tidy(&folder(Path::new(from)).join(path));
         let text = match read(&file) {
             Ok(text) => text,
-            Err(_) if !file.exists() => return Err(format!("there is no file {}", file.display())),
+            Err(_) if !file.exists() => return Err(format!("there is no file {}", terminal::shown(&file))),
             Err(fault) => return Err(fault),
         };
         Ok(Source { name: file.display().to_string(), text })
@@ -113,7 +114,7 @@ fn text(bytes: Vec<u8>, name: &str) -> Result<String, Fault> {
 /// # Errors
 /// The file's name and what is wrong.
 pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
-    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(fault)?;
     }
@@ -125,7 +126,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
 /// # Errors
 /// The file's name and what is wrong.
 pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
-    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     // Of a link, what it leads to is replaced.
     let target = path.canonicalize().map_err(fault)?;
     let name = target.file_name().unwrap_or_default().to_string_lossy();
@@ -142,18 +143,6 @@ pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
         let _ = fs::remove_file(&beside);
         fault(e)
     })
-}
-
-/// Prints to stdout. That nobody reads on is the reader's choice, and no fault.
-///
-/// # Errors
-/// What is wrong with stdout.
-pub fn print(text: &str) -> Result<(), Fault> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
-        Ok(()) | Err(_) => Ok(()),
-    }
 }
 
 /// Compiles a scenario and files of tests; a folder stands for the `.hri` files in it.
@@ -177,7 +166,7 @@ fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let entries = fs::read_dir(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let entries = fs::read_dir(path).map_err(|e| format!("cannot read {}: {e}", terminal::shown(path)))?;
     let mut files: Vec<PathBuf> = entries
         .filter_map(Result::ok)
         .map(|e| e.path())
@@ -185,7 +174,7 @@ fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {
         .collect();
     files.sort();
     if files.is_empty() {
-        return Err(format!("no .hri file in {}", path.display()));
+        return Err(format!("no .hri file in {}", terminal::shown(path)));
     }
     Ok(files)
 }
@@ -203,12 +192,12 @@ pub fn folder(scenario: &Path) -> PathBuf {
 /// Shows all diagnostics on stderr; gives the program, which there is if none of them is an error.
 pub fn report(compilation: &Compilation) -> Option<&Program> {
     for diagnostic in &compilation.diagnostics {
-        eprint!("{}", render::diagnostic(&compilation.files, diagnostic));
+        terminal::say(render::diagnostic(&compilation.files, diagnostic));
     }
     let errors = compilation.diagnostics.iter().filter(|d| d.is_error()).count();
     let warnings = compilation.diagnostics.len() - errors;
     if errors + warnings > 0 {
-        eprintln!("{}", render::totals(errors, warnings));
+        terminal::say_line(render::totals(errors, warnings));
     }
     compilation.program.as_ref()
 }
@@ -217,15 +206,18 @@ pub fn report(compilation: &Compilation) -> Option<&Program> {
 pub fn report_errors<'c>(scenario: &Path, compilation: &'c Compilation) -> Option<&'c Program> {
     let (errors, warnings): (Vec<_>, Vec<_>) = compilation.diagnostics.iter().partition(|d| d.is_error());
     for error in &errors {
-        eprint!("{}", render::diagnostic(&compilation.files, error));
+        terminal::say(render::diagnostic(&compilation.files, error));
     }
     if !errors.is_empty() {
-        eprintln!("{}", render::totals(errors.len(), 0));
+        terminal::say_line(render::totals(errors.len(), 0));
     }
     if !warnings.is_empty() {
         let (count, them) =
             (render::totals(0, warnings.len()), if warnings.len() == 1 { "it" } else { "them" });
-        eprintln!("{count} (`hrdsl check {}` shows {them})", scenario.display());
+        terminal::say_line(format_args!(
+            "{count} (`hrdsl check {}` shows {them})",
+            terminal::shown(scenario)
+        ));
     }
     compilation.program.as_ref()
 }

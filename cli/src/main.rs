@@ -1,5 +1,11 @@
 //! `hrdsl`, the command line: one file for each command; the only place with clap, stdout and files.
 
+#![warn(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "terminal.rs prints, and lets nothing through that steers"
+)]
+
 mod color;
 mod commands;
 mod exit;
@@ -9,6 +15,7 @@ mod installing;
 mod project;
 mod render;
 mod results_folder;
+mod terminal;
 
 use std::process::ExitCode;
 
@@ -73,7 +80,7 @@ fn main() -> ExitCode {
     };
     result
         .unwrap_or_else(|fault| {
-            eprintln!("error: {fault}");
+            terminal::say_line(format_args!("error: {fault}"));
             Exit::Usage
         })
         .into()

@@ -8,7 +8,10 @@ use std::{
 use hrdsl_compiler::{Compilation, Input, compile_with, parse};
 use hrdsl_source::FileId;
 
-use crate::input::{self, Fault, Kind};
+use crate::{
+    input::{self, Fault, Kind},
+    terminal,
+};
 
 /// Folders that hold no scenarios of one's own.
 const SKIPPED: [&str; 3] = ["target", "node_modules", "hrdsl-out"];
@@ -58,7 +61,7 @@ impl Project {
             let folder = path.is_dir();
             let files = if folder { walk(path)? } else { vec![path.clone()] };
             if files.is_empty() {
-                return Err(format!("no .hri file in {} or the folders in it", path.display()));
+                return Err(format!("no .hri file in {} or the folders in it", terminal::shown(path)));
             }
             for file in files {
                 let text = input::read(&file)?;
@@ -120,7 +123,7 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
-        let fault = |e: std::io::Error| format!("cannot read {}: {e}", folder.display());
+        let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(&folder));
         for entry in fs::read_dir(&folder).map_err(fault)? {
             let entry = entry.map_err(fault)?;
             let (name, path) = (entry.file_name(), entry.path());

@@ -25,31 +25,72 @@ pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
     }
     let broken = diagnostics.iter().any(Diagnostic::is_error);
     let mut used = vec![false; allowances.len()];
-    let mut by_code: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    for (i, a) in allowances.iter().enumerate() {
-        by_code.entry(&a.allow.code.text).or_default().push(i);
-    }
-    let fits = |a: &Allowance<'_>, d: &Diagnostic| {
-        let inside = |t: Span| t.file == d.span().file && t.start <= d.span().start && d.span().end <= t.end;
-        a.target.is_some_and(inside)
-    };
+    let mut on_error = used.clone();
+    let targets = Targets::of(&allowances);
     diagnostics.retain(|d| {
         let mut allowed = false;
-        if d.is_error() {
-            return true;
-        }
-        let of_code = by_code.get(d.code.to_string().as_str()).map(Vec::as_slice).unwrap_or_default();
-        for i in of_code.iter().copied().filter(|i| fits(&allowances[*i], d)) {
-            used[i] = true;
+        targets.each(&d.code.to_string(), d.span(), &mut |i| {
+            (if d.is_error() { &mut on_error } else { &mut used })[i] = true;
             allowed |= !allowances[i].allow.reason.text.trim().is_empty();
-        }
-        !allowed
+        });
+        d.is_error() || !allowed
     });
-    for (allowance, used) in allowances.iter().zip(used) {
-        let is = |d: &Diagnostic| d.is_error() && d.code.to_string() == allowance.allow.code.text;
-        let errors = || broken && diagnostics.iter().any(|d| is(d) && fits(allowance, d));
-        diagnostics.extend(judge(allowance, used, broken, errors()));
+    for (i, allowance) in allowances.iter().enumerate() {
+        diagnostics.extend(judge(allowance, used[i], broken, on_error[i]));
     }
+}
+
+/// The allowances of each code by what they stand before.
+struct Targets<'a> {
+    by_code: BTreeMap<&'a str, Vec<Target>>,
+}
+
+/// What some allowances stand before, and the one around it, which has a smaller number.
+struct Target {
+    span: Span,
+    allowances: Vec<usize>,
+    around: Option<usize>,
+}
+
+impl<'a> Targets<'a> {
+    fn of(all: &[Allowance<'a>]) -> Self {
+        let mut order: Vec<(Span, usize)> =
+            all.iter().enumerate().filter_map(|(i, a)| Some((a.target?, i))).collect();
+        // What is around others comes before them.
+        order.sort_by_key(|(span, i)| (span.file, span.start, std::cmp::Reverse(span.end), *i));
+        let mut by_code: BTreeMap<&str, Vec<Target>> = BTreeMap::new();
+        for (span, i) in order {
+            let targets = by_code.entry(&all[i].allow.code.text).or_default();
+            match targets.last_mut().filter(|last| last.span == span) {
+                Some(same) => same.allowances.push(i),
+                None => {
+                    let around = around(targets, targets.len().checked_sub(1), span);
+                    targets.push(Target { span, allowances: vec![i], around });
+                }
+            }
+        }
+        Self { by_code }
+    }
+
+    /// The allowances of a code that stand before something in which a span is.
+    fn each(&self, code: &str, span: Span, f: &mut dyn FnMut(usize)) {
+        let Some(targets) = self.by_code.get(code) else { return };
+        let before = targets.partition_point(|t| (t.span.file, t.span.start) <= (span.file, span.start));
+        let mut at = around(targets, before.checked_sub(1), span);
+        while let Some(target) = at.map(|at| &targets[at]) {
+            target.allowances.iter().for_each(|i| f(*i));
+            at = target.around;
+        }
+    }
+}
+
+/// The innermost target around a span, from this one outwards.
+fn around(targets: &[Target], mut at: Option<usize>, span: Span) -> Option<usize> {
+    let is_around = |t: Span| t.file == span.file && t.start <= span.start && span.end <= t.end;
+    while let Some(target) = at.map(|at| &targets[at]).filter(|t| !is_around(t.span)) {
+        at = target.around;
+    }
+    at
 }
 
 /// What is wrong with an allowance itself.

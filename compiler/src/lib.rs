@@ -13,6 +13,7 @@ mod allow;
 pub mod lower;
 pub mod modules;
 pub mod pages;
+mod spoken;
 
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
@@ -96,6 +97,7 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     diagnostics.extend(issues);
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));
+        spoken::doubt(&files, &ast, &mut diagnostics);
     }
     allow::apply(&ast, &mut diagnostics);
     diagnostics.sort_by_key(|d| (d.span(), d.code));

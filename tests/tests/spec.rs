@@ -13,6 +13,8 @@ mod draws;
 mod ebnf;
 #[path = "spec/hri.rs"]
 mod hri;
+#[path = "../../compiler/tests/mending/mod.rs"]
+mod mending;
 #[path = "spec/monitors.rs"]
 mod monitors;
 #[path = "spec/network.rs"]

@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, path::PathBuf};
 use clap::ValueEnum;
 use hrdsl_compiler::Compilation;
 use hrdsl_ir::Program;
-use hrdsl_source::{Code, Diagnostic, REGISTRY, Severity};
+use hrdsl_source::{Code, Diagnostic, REGISTRY, Severity, printable_line};
 
 use crate::{
     color,
@@ -13,7 +13,7 @@ use crate::{
     fix,
     input::{self, Fault},
     project::{Project, Unit},
-    render,
+    render, terminal,
 };
 
 /// Check scenarios and their tests: every name, type, unit and role.
@@ -99,8 +99,8 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             let text = if args.diff { difference(&project) } else { summary(&project, &checked) };
             input::print(&text)?;
         }
-        Format::Json => input::print(&render::json(&project, &checked)?)?,
-        Format::Sarif => input::print(&render::sarif(&project, &checked)?)?,
+        Format::Json => input::print_data(&render::json(&project, &checked)?)?,
+        Format::Sarif => input::print_data(&render::sarif(&project, &checked)?)?,
     }
     let failed = checked.iter().any(|c| c.program().is_none());
     Ok(if failed { Exit::Errors } else { Exit::Ok })
@@ -151,14 +151,18 @@ fn mend(project: &mut Project) -> Result<(), Fault> {
         }
     }
     for fix in &applied {
-        eprintln!("fixed {}: {}", fix.place, fix.title);
+        terminal::say_line(format_args!("fixed {}: {}", fix.place, fix.title));
     }
     let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
     if applied.is_empty() {
-        eprintln!("nothing to fix");
+        terminal::say_line("nothing to fix");
         return Ok(());
     }
-    eprintln!("{} in {}", plural(applied.len(), "fix", "fixes"), plural(files, "file", "files"));
+    terminal::say_line(format_args!(
+        "{} in {}",
+        plural(applied.len(), "fix", "fixes"),
+        plural(files, "file", "files")
+    ));
     Ok(())
 }
 
@@ -174,12 +178,12 @@ fn show(checked: &[Checked]) {
     let (mut errors, mut warnings) = (0, 0);
     for Checked { compilation, .. } in checked {
         for diagnostic in &compilation.diagnostics {
-            eprint!("{}", render::diagnostic(&compilation.files, diagnostic));
+            terminal::say(render::diagnostic(&compilation.files, diagnostic));
             *(if diagnostic.is_error() { &mut errors } else { &mut warnings }) += 1;
         }
     }
     if errors + warnings > 0 {
-        eprintln!("{}", render::totals(errors, warnings));
+        terminal::say_line(render::totals(errors, warnings));
     }
 }
 
@@ -187,7 +191,7 @@ fn show(checked: &[Checked]) {
 fn summary(project: &Project, checked: &[Checked]) -> String {
     let line = |c: &Checked| {
         let program = c.program()?;
-        let name = &project.sources[c.unit.head].name;
+        let name = printable_line(&project.sources[c.unit.head].name);
         if c.compilation.is_module() {
             let shared = c.compilation.declarations();
             let plural = if shared == 1 { "" } else { "s" };

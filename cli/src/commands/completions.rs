@@ -24,6 +24,6 @@ pub struct Args {
 pub fn run(args: &Args, mut command: clap::Command) -> Result<Exit, Fault> {
     let mut script = Vec::new();
     generate(args.shell, &mut command, "hrdsl", &mut script);
-    input::print(&String::from_utf8_lossy(&script))?;
+    input::print_data(&String::from_utf8_lossy(&script))?;
     Ok(Exit::Ok)
 }

@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let has_errors = input::report(&compilation).is_none();
     let Some(text) = emit(args.stage, &compilation) else { return Ok(Exit::Errors) };
-    input::print(&(text? + "\n"))?;
+    input::print_data(&(text? + "\n"))?;
     Ok(if has_errors { Exit::Errors } else { Exit::Ok })
 }
 

@@ -10,6 +10,7 @@ use hrdsl_ir::{Program, ta::Network};
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Write a network of automata as a file of another tool.
@@ -112,7 +113,10 @@ fn plain(
 
 fn refused(file: &Path, compilation: &Compilation, obstacles: &[Obstacle]) -> Exit {
     said(compilation, obstacles, "error");
-    eprintln!("{} cannot be exported: change the scenario, or export another network", file.display());
+    terminal::say_line(format_args!(
+        "{} cannot be exported: change the scenario, or export another network",
+        terminal::shown(file)
+    ));
     Exit::Errors
 }
 
@@ -135,7 +139,7 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
 
 fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
     for Obstacle { origin, message } in all {
-        eprintln!("{}: {word}: {message}", compilation.files.place(*origin));
+        terminal::say_line(format_args!("{}: {word}: {message}", compilation.files.place(*origin)));
     }
 }
 
@@ -143,7 +147,7 @@ fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
 fn write(out: Option<&Path>, text: &str) -> Result<(), Fault> {
     match out {
         Some(path) => input::write(path, text),
-        None => input::print(text),
+        None => input::print_data(text),
     }
 }
 

@@ -6,13 +6,13 @@ use std::{
 };
 
 use hrdsl_compiler::format;
-use hrdsl_source::{Diagnostic, Files};
+use hrdsl_source::{Diagnostic, Files, printable_line};
 
 use crate::{
     color,
     exit::Exit,
     input::{self, Fault},
-    project, render,
+    project, render, terminal,
 };
 
 /// The text on stdin, among the paths.
@@ -64,12 +64,12 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     paths.dedup();
     for path in &paths {
         if let Err(fault) = file(args, path, &mut tally) {
-            eprintln!("error: {fault}");
+            terminal::say_line(format_args!("error: {fault}"));
             tally.failed += 1;
         }
     }
     if !paths.is_empty() {
-        eprintln!("{}", summary(&tally, args.check || args.diff));
+        terminal::say_line(summary(&tally, args.check || args.diff));
     }
     Ok(exit(args, &tally))
 }
@@ -103,7 +103,11 @@ fn summary(tally: &Tally, dry: bool) -> String {
 fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
     let text = input::read_stdin()?;
     let Some(formatted) = formatted("<stdin>", &text, tally) else { return Ok(()) };
-    if args.check || args.diff { show(args, "<stdin>", &text, &formatted) } else { input::print(&formatted) }
+    if args.check || args.diff {
+        show(args, "<stdin>", &text, &formatted)
+    } else {
+        input::print_data(&formatted)
+    }
 }
 
 fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
@@ -119,7 +123,7 @@ fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
     // Put in its place beside it, even a read-only file could be replaced.
     let readonly = fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
     let written = if readonly {
-        Err(format!("cannot write {}: it is read-only", path.display()))
+        Err(format!("cannot write {}: it is read-only", terminal::shown(path)))
     } else {
         input::replace(path, &formatted)
     };
@@ -149,7 +153,7 @@ fn report(name: &str, text: &str, diagnostics: &[Diagnostic]) {
     let mut files = Files::default();
     files.add(name, text);
     for diagnostic in diagnostics {
-        eprint!("{}", render::diagnostic(&files, diagnostic));
+        terminal::say(render::diagnostic(&files, diagnostic));
     }
 }
 
@@ -161,7 +165,7 @@ fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Faul
     if args.diff {
         return input::print(&render::unified(name, text, formatted, color::stdout_has()));
     }
-    input::print(&format!("{name}\n"))
+    input::print(&format!("{}\n", printable_line(name)))
 }
 
 // ── Files ──

@@ -14,6 +14,7 @@ use hrdsl_runtime::{
     report::{End, Picked, ending, explain_text, reasoning},
     testgen::{Explanation, Generated, GoalReport, GoalStatus, ModelCoverage, Options, generate_with, write},
 };
+use hrdsl_source::printable;
 use serde::Serialize;
 
 use super::how::{Way, When, Witness};
@@ -21,6 +22,7 @@ use super::inspect::{Chosen, json_lines};
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
@@ -96,19 +98,19 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             suites.push(Made::of(&generated, &path, &traces));
             continue;
         }
-        let mut text = format!("{}  written to {}\n", describe(&generated), path.display());
+        let mut text = format!("{}  written to {}\n", describe(&generated), terminal::shown(&path));
         if !traces.is_empty() {
-            text += &format!("  traces in {}\n", traces_of(&args.out, &suite.name).display());
+            text += &format!("  traces in {}\n", terminal::shown(&traces_of(&args.out, &suite.name)));
         }
         if let Some(explanation) = generated.explanation.as_ref().filter(|_| args.explain) {
             text += &format!("\n{}\n", explain_text(&suite.name, explanation, generated.coverage.as_ref()));
         }
-        input::print(&text)?;
+        input::print(&printable(&text))?;
     }
     if args.json {
         let document = Document { format: "hrdsl-gen", version: 1, suites };
         let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
-        input::print(&(text + "\n"))?;
+        input::print_data(&(text + "\n"))?;
     }
     Ok(Exit::Ok)
 }
@@ -220,7 +222,7 @@ fn clear(folder: &Path) -> Result<(), Fault> {
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         if path.extension().is_some_and(|e| e == "log" || e == "jsonl") {
-            fs::remove_file(&path).map_err(|e| format!("cannot remove {}: {e}", path.display()))?;
+            fs::remove_file(&path).map_err(|e| format!("cannot remove {}: {e}", terminal::shown(&path)))?;
         }
     }
     Ok(())

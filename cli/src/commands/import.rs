@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Make a scenario from the programs of another tool.
@@ -139,7 +140,10 @@ fn from_agentspeak(args: &AgentSpeak) -> Result<Exit, Fault> {
     let mut files = Vec::new();
     for path in &args.files {
         if !path.extension().is_some_and(|e| e == "asl" || e == "mas2j") {
-            return Err(format!("{} is neither a program (.asl) nor a project (.mas2j)", path.display()));
+            return Err(format!(
+                "{} is neither a program (.asl) nor a project (.mas2j)",
+                terminal::shown(path)
+            ));
         }
         files.push(source(path)?);
     }
@@ -151,7 +155,7 @@ fn from_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
     if args.model.extension().is_some_and(|e| e == "q") {
         return Err(format!(
             "{} is a file of queries: name the model (.xml) before it",
-            args.model.display()
+            terminal::shown(&args.model)
         ));
     }
     let model = source(&args.model)?;
@@ -174,7 +178,7 @@ fn finished(to: &To, imported: Result<Imported, Vec<SyntaxError>>) -> Result<Exi
                     ..Document::default()
                 })?;
             }
-            errors.iter().for_each(|e| eprintln!("error: {e}"));
+            errors.iter().for_each(|e| terminal::say_line(format_args!("error: {e}")));
             Ok(Exit::Errors)
         }
     }
@@ -190,20 +194,20 @@ fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
         print(&Document { text, notes, ..Document::default() })?;
     } else {
         if args.out.is_none() {
-            input::print(&imported.text)?;
+            input::print_data(&imported.text)?;
         }
-        imported.notes.iter().for_each(|note| eprintln!("{note}"));
+        imported.notes.iter().for_each(terminal::say_line);
     }
     let left_out = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).count();
     if left_out > 0 {
-        eprintln!("{left_out} left out");
+        terminal::say_line(format_args!("{left_out} left out"));
     }
     Ok(if args.strict && left_out > 0 { Exit::Errors } else { Exit::Ok })
 }
 
 fn print(document: &Document<'_>) -> Result<(), Fault> {
     let text = serde_json::to_string_pretty(document).map_err(|e| format!("cannot print: {e}"))?;
-    input::print(&(text + "\n"))
+    input::print_data(&(text + "\n"))
 }
 
 #[derive(Serialize)]

@@ -7,6 +7,7 @@ use clap_mangen::Man;
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Print hrdsl's manual page, or write one for each command.
@@ -27,7 +28,7 @@ pub fn run(args: &Args, command: clap::Command) -> Result<Exit, Fault> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let Some(dir) = &args.dir else {
-        input::print(&page(&man(command))?)?;
+        input::print_data(&page(&man(command))?)?;
         return Ok(Exit::Ok);
     };
     let commands = command.get_subcommands().cloned().collect::<Vec<_>>();
@@ -35,7 +36,7 @@ pub fn run(args: &Args, command: clap::Command) -> Result<Exit, Fault> {
         let man = man(command);
         let path = dir.join(man.get_filename());
         input::write(&path, &page(&man)?)?;
-        input::print(&format!("{}\n", path.display()))?;
+        input::print(&format!("{}\n", terminal::shown(&path)))?;
     }
     Ok(Exit::Ok)
 }

@@ -11,6 +11,7 @@ use hrdsl_compiler::token::{Class, KEYWORDS};
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Begin a project: a scenario, a robot program, a README.
@@ -51,13 +52,13 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     if let Some(path) = there {
         return Err(format!(
             "{} is there already, and nothing is overwritten: choose another name",
-            path.display()
+            terminal::shown(&path)
         ));
     }
     for (file, template) in TEMPLATES {
         create(&folder.join(file), &template.replace(PLACEHOLDER, name))?;
     }
-    let shown = folder.display();
+    let shown = terminal::shown(&folder);
     input::print(&format!(
         "made {shown}: scenario.hri, robot.py, README.md, .gitignore\n\nGo on with\n  hrdsl check {shown}\n  hrdsl gen {shown}/scenario.hri -o {shown}/tests\n  hrdsl sim {shown}/scenario.hri\n"
     ))?;
@@ -94,7 +95,7 @@ fn check(name: &str) -> Result<(), Fault> {
 
 /// Writes a file that must not be there.
 fn create(path: &Path, text: &str) -> Result<(), Fault> {
-    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(fault)?;
     }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use hrdsl_source::printable_line;
 use similar::TextDiff;
 
 use crate::color::{Style, paint};
@@ -9,11 +10,13 @@ use crate::color::{Style, paint};
 /// The difference of two texts of one file; empty if there is none.
 #[must_use]
 pub fn unified(name: &str, before: &str, after: &str, colour: bool) -> String {
+    let name = printable_line(name);
     let diff = TextDiff::from_lines(before, after);
-    let text = diff.unified_diff().context_radius(3).header(name, name).to_string();
+    let text = diff.unified_diff().context_radius(3).header(&name, &name).to_string();
     let mut out = String::new();
     for line in text.split_inclusive('\n') {
         let (text, end) = line.strip_suffix('\n').map_or((line, ""), |text| (text, "\n"));
+        let text = &*printable_line(text.strip_suffix('\r').unwrap_or(text));
         let style = match text.as_bytes().first() {
             Some(b'+') => Some(Style::Added),
             Some(b'-') => Some(Style::Removed),

@@ -2,43 +2,15 @@
 
 use std::fmt;
 
-use hrdsl_source::{Diagnostic, Files, Severity};
-use miette::{
-    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
-    SourceSpan, SpanContents,
-};
+use hrdsl_source::{Diagnostic, Files, Label, Severity, printable};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+
+use super::excerpt::Excerpt;
 
 /// One diagnostic as miette wants it.
 struct Shown<'a> {
     diagnostic: &'a Diagnostic,
-    source: Text<'a>,
-}
-
-/// A file's name and text. Of a place miette counts the column in bytes; here it is counted in characters, from 0.
-struct Text<'a> {
-    name: &'a str,
-    text: &'a str,
-}
-
-impl SourceCode for Text<'_> {
-    fn read_span<'s>(
-        &'s self,
-        span: &SourceSpan,
-        before: usize,
-        after: usize,
-    ) -> Result<Box<dyn SpanContents<'s> + 's>, MietteError> {
-        let found = self.text.read_span(span, before, after)?;
-        let start = self.text.get(..found.span().offset()).unwrap_or("");
-        let column = start.rsplit('\n').next().unwrap_or("").chars().count();
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.name.to_owned(),
-            found.data(),
-            *found.span(),
-            found.line(),
-            column,
-            found.line_count(),
-        )))
-    }
+    source: Excerpt,
 }
 
 impl fmt::Debug for Shown<'_> {
@@ -49,7 +21,7 @@ impl fmt::Debug for Shown<'_> {
 
 impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.diagnostic.message)
+        f.write_str(&clean(&self.diagnostic.message))
     }
 }
 
@@ -68,7 +40,7 @@ impl miette::Diagnostic for Shown<'_> {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.diagnostic.help.as_ref().map(|h| Box::new(h) as Box<dyn fmt::Display>)
+        self.diagnostic.help.as_ref().map(|h| Box::new(clean(h)) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -76,18 +48,37 @@ impl miette::Diagnostic for Shown<'_> {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let file = self.diagnostic.span().file;
-        let own = self.diagnostic.labels.iter().filter(move |l| l.span.file == file);
         let first = self.diagnostic.span();
-        Some(Box::new(own.map(move |l| {
-            let text = (!l.text.is_empty()).then(|| l.text.clone());
-            let (start, length) = (l.span.start as usize, (l.span.end - l.span.start) as usize);
-            if l.span == first {
-                LabeledSpan::new_primary_with_span(text, (start, length))
+        let own = own_labels(self.diagnostic).zip(self.source.labels());
+        Some(Box::new(own.map(move |(label, place)| {
+            let text = (!label.text.is_empty()).then(|| clean(&label.text));
+            let place = (place.start, place.len());
+            if label.span == first {
+                LabeledSpan::new_primary_with_span(text, place)
             } else {
-                LabeledSpan::new_with_span(text, (start, length))
+                LabeledSpan::new_with_span(text, place)
             }
         })))
+    }
+}
+
+/// The labels in the file of the first one: only one file is shown.
+fn own_labels(diagnostic: &Diagnostic) -> impl Iterator<Item = &Label> {
+    let file = diagnostic.span().file;
+    diagnostic.labels.iter().filter(move |l| l.span.file == file)
+}
+
+/// Text that may quote the file: printable, without the middle of what nobody reads to the end.
+fn clean(text: &str) -> String {
+    const START: usize = 1500;
+    const END: usize = 300;
+    let text = printable(text);
+    let (start, end) = (text.char_indices().nth(START), text.char_indices().rev().nth(END));
+    match (start, end) {
+        (Some((start, _)), Some((end, _))) if start < end => {
+            format!("{} … {}", &text[..start], &text[end..])
+        }
+        _ => text.into_owned(),
     }
 }
 
@@ -99,13 +90,13 @@ pub fn diagnostic(files: &Files, diagnostic: &Diagnostic) -> String {
     } else {
         GraphicalTheme::unicode_nocolor()
     };
-    let (name, text) =
-        files.get(diagnostic.span().file).map_or(("?", ""), |f| (f.name.as_str(), f.text.as_str()));
-    let shown = Shown { diagnostic, source: Text { name, text } };
+    let file = files.get(diagnostic.span().file);
+    let source = file.map(|file| Excerpt::new(file, own_labels(diagnostic))).unwrap_or_default();
+    let shown = Shown { diagnostic, source };
     let mut out = String::new();
     let handler = GraphicalReportHandler::new_themed(theme).with_width(100).with_links(false);
     if handler.render_report(&mut out, &shown).is_err() {
-        out = format!("{}: {}\n", files.place(diagnostic.span()), diagnostic.message);
+        out = format!("{}: {}\n", files.place(diagnostic.span()), clean(&diagnostic.message));
     }
     out
 }

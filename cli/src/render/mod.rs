@@ -1,6 +1,7 @@
 //! Diagnostics and pages as output: for people, as JSON, as SARIF.
 
 mod diff;
+mod excerpt;
 mod human;
 mod json;
 mod page;

@@ -1,6 +1,8 @@
 //! The files of a compilation, and places in them as people count.
 
-use crate::{FileId, Span};
+use std::ops::Range;
+
+use crate::{FileId, Span, printable_line};
 
 /// One file's name and text.
 #[derive(Clone, Debug)]
@@ -10,7 +12,11 @@ pub struct SourceFile {
     pub text: String,
     /// The byte at which each line starts.
     line_starts: Vec<u32>,
+    /// How many characters begin before each block of [`BLOCK`] bytes: a column of a long line is not counted from its start.
+    chars_before: Vec<u32>,
 }
+
+const BLOCK: usize = 256;
 
 /// A place as people count: from 1, columns in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,10 +35,7 @@ impl Files {
     /// Adds a file and gives its id.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let text = text.into();
-        let line_starts = std::iter::once(0)
-            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1))
-            .collect();
-        self.files.push(SourceFile { name: name.into(), text, line_starts });
+        self.files.push(SourceFile::new(name.into(), text));
         FileId(u16::try_from(self.files.len() - 1).unwrap_or(u16::MAX))
     }
 
@@ -58,22 +61,91 @@ impl Files {
         self.get(span.file).map_or(Position { line: 1, column: 1 }, |f| f.position(span.start))
     }
 
-    /// `file:line:column`
+    /// `file:line:column`, on one line whatever the file is called.
     #[must_use]
     pub fn place(&self, span: Span) -> String {
         let Position { line, column } = self.position(span);
         let name = self.get(span.file).map_or("?", |f| &f.name);
-        format!("{name}:{line}:{column}")
+        format!("{}:{line}:{column}", printable_line(name))
     }
 }
 
 impl SourceFile {
+    fn new(name: String, text: String) -> Self {
+        let line_starts = std::iter::once(0)
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1))
+            .collect();
+        let mut before = 0;
+        let block = |bytes: &[u8]| {
+            let here = before;
+            before += starts(bytes);
+            here
+        };
+        let chars_before = text.as_bytes().chunks(BLOCK).map(block).collect();
+        Self { name, text, line_starts, chars_before }
+    }
+
     /// The line and column of a byte.
     #[must_use]
     pub fn position(&self, byte: u32) -> Position {
-        let line = self.line_starts.partition_point(|start| *start <= byte).max(1) - 1;
-        let start = self.line_starts[line] as usize;
-        let before = self.text.get(start..byte as usize).unwrap_or("");
-        Position { line: line as u32 + 1, column: before.chars().count() as u32 + 1 }
+        let line = self.line_at(byte);
+        let before = self.chars_until(byte as usize).saturating_sub(self.chars_until(self.start_of(line)));
+        Position { line: line as u32 + 1, column: before + 1 }
+    }
+
+    /// The line of a byte, from 0.
+    #[must_use]
+    pub fn line_at(&self, byte: u32) -> usize {
+        self.line_starts.partition_point(|start| *start <= byte).max(1) - 1
+    }
+
+    /// The bytes of a line, from 0, without its end; none if there are fewer lines.
+    #[must_use]
+    pub fn line(&self, line: usize) -> Option<Range<usize>> {
+        let start = *self.line_starts.get(line)? as usize;
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |next| *next as usize - 1);
+        let text = &self.text[start..end];
+        Some(start..start + text.strip_suffix('\r').unwrap_or(text).len())
+    }
+
+    fn start_of(&self, line: usize) -> usize {
+        self.line_starts[line] as usize
+    }
+
+    /// How many characters begin before this byte.
+    fn chars_until(&self, byte: usize) -> u32 {
+        let byte = byte.min(self.text.len());
+        let block = (byte / BLOCK).min(self.chars_before.len().saturating_sub(1));
+        let before = self.chars_before.get(block).copied().unwrap_or(0);
+        before + starts(&self.text.as_bytes()[(block * BLOCK).min(byte)..byte])
+    }
+}
+
+/// How many characters begin in these bytes.
+fn starts(bytes: &[u8]) -> u32 {
+    bytes.iter().filter(|b| **b & 0xc0 != 0x80).count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_counted_in_characters_from_the_start_of_their_line() {
+        let text = format!("ä{}\r\n{}x\n", "é€".repeat(300), "b".repeat(255));
+        let mut files = Files::default();
+        let file = files.add("a\nb", text.as_str());
+        let source = files.get(file).unwrap();
+        let (mut line, mut column) = (1, 1);
+        for (at, c) in text.char_indices() {
+            assert_eq!(source.position(at as u32), Position { line, column }, "{at}");
+            (line, column) = if c == '\n' { (line + 1, 1) } else { (line, column + 1) };
+        }
+        assert_eq!(source.position(text.len() as u32), Position { line: 3, column: 1 });
+        assert_eq!(source.line(0).map(|l| l.end), text.find('\r'));
+        assert_eq!((source.line(2).map(|l| l.len()), source.line(3)), (Some(0), None));
+        assert_eq!(files.place(Span::new(file, 2, 3)), "a␊b:1:2");
+        files.add("", "");
+        assert_eq!(files.get(FileId(1)).unwrap().position(0), Position { line: 1, column: 1 });
     }
 }

@@ -3,11 +3,13 @@
 mod codes;
 mod diagnostic;
 mod files;
+mod printable;
 mod span;
 mod symbol;
 
 pub use codes::{Code, CodeInfo, GROUPS, REGISTRY};
 pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
+pub use printable::{is_steering, printable, printable_char, printable_line};
 pub use span::{FileId, Span};
 pub use symbol::{Enumeration, Symbol};

@@ -5,7 +5,7 @@
 
 use std::{
     cmp::Ordering,
-    collections::BTreeMap,
+    collections::{BTreeMap, btree_map::Entry},
     fmt,
     hash::{Hash, Hasher},
     sync::{Mutex, PoisonError},
@@ -14,7 +14,7 @@ use std::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A name kept for as long as the process lives.
-struct Entry {
+struct Name {
     name: Box<str>,
     hash: u64,
 }
@@ -22,6 +22,8 @@ struct Entry {
 struct EnumEntry {
     name: Box<str>,
     values: Box<[Symbol]>,
+    /// Of each value, its place among them.
+    places: BTreeMap<Symbol, usize>,
 }
 
 static SYMBOLS: Mutex<BTreeMap<&'static str, Symbol>> = Mutex::new(BTreeMap::new());
@@ -30,7 +32,7 @@ static ENUMERATIONS: Mutex<BTreeMap<(String, Vec<Symbol>), Enumeration>> = Mutex
 /// A value of an enumeration: a name. Symbols of the same name are equal, whatever enumeration they come from, and are
 /// ordered by name.
 #[derive(Clone, Copy)]
-pub struct Symbol(&'static Entry);
+pub struct Symbol(&'static Name);
 
 impl Symbol {
     /// The symbol of this name.
@@ -40,7 +42,7 @@ impl Symbol {
         if let Some(known) = table.get(name) {
             return *known;
         }
-        let entry: &'static Entry = Box::leak(Box::new(Entry { name: name.into(), hash: hash(name) }));
+        let entry: &'static Name = Box::leak(Box::new(Name { name: name.into(), hash: hash(name) }));
         table.insert(&entry.name, Symbol(entry));
         Symbol(entry)
     }
@@ -127,16 +129,18 @@ impl Enumeration {
     }
 
     fn of(name: &str, values: impl Iterator<Item = Symbol>) -> Self {
+        let mut places: BTreeMap<Symbol, usize> = BTreeMap::new();
         let mut distinct: Vec<Symbol> = Vec::new();
         for value in values {
-            if !distinct.contains(&value) {
+            if let Entry::Vacant(new) = places.entry(value) {
+                new.insert(distinct.len());
                 distinct.push(value);
             }
         }
         let mut table = ENUMERATIONS.lock().unwrap_or_else(PoisonError::into_inner);
-        let make = |(name, values): &(String, Vec<Symbol>)| {
+        let make = move |(name, values): &(String, Vec<Symbol>)| {
             let (name, values) = (name.as_str().into(), values.as_slice().into());
-            Enumeration(Box::leak(Box::new(EnumEntry { name, values })))
+            Enumeration(Box::leak(Box::new(EnumEntry { name, values, places })))
         };
         *table.entry((name.to_owned(), distinct)).or_insert_with_key(make)
     }
@@ -155,13 +159,14 @@ impl Enumeration {
     /// The place of a symbol among the values.
     #[must_use]
     pub fn index_of(self, symbol: Symbol) -> Option<usize> {
-        self.values().iter().position(|v| *v == symbol)
+        self.0.places.get(&symbol).copied()
     }
 
     /// The value of this name.
     #[must_use]
     pub fn symbol(self, name: &str) -> Option<Symbol> {
-        self.values().iter().copied().find(|v| v.name() == name)
+        let known = SYMBOLS.lock().unwrap_or_else(PoisonError::into_inner).get(name).copied();
+        known.filter(|symbol| self.0.places.contains_key(symbol))
     }
 
     /// The values as a message lists them: `` `slow`, `fast` ``.
@@ -220,10 +225,10 @@ mod tests {
 
     #[test]
     fn entries_of_the_same_name_are_equal() {
-        let entry: &'static Entry = Box::leak(Box::new(Entry { name: "same".into(), hash: hash("same") }));
+        let entry: &'static Name = Box::leak(Box::new(Name { name: "same".into(), hash: hash("same") }));
         assert_eq!(Symbol(entry), Symbol::intern("same"));
-        let values = vec![Symbol(entry)].into();
-        let made = Enumeration(Box::leak(Box::new(EnumEntry { name: "Same".into(), values })));
+        let (values, places) = (vec![Symbol(entry)].into(), BTreeMap::from([(Symbol(entry), 0)]));
+        let made = Enumeration(Box::leak(Box::new(EnumEntry { name: "Same".into(), values, places })));
         assert_eq!(made, Enumeration::intern("Same", &["same"]));
     }
 }

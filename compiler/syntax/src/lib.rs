@@ -35,6 +35,14 @@ pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
 pub use print::format;
 
+/// Where the words of a text are that are no units: names and keywords, in order.
+pub fn words(text: &str) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let tokens = lex::lex(hrdsl_source::FileId(0), text).tokens.into_iter();
+    let is_word =
+        |t: &std::ops::Range<usize>| text[t.clone()].starts_with(|c: char| c == '_' || c.is_alphabetic());
+    tokens.map(|t| t.start as usize..t.end as usize).filter(is_word)
+}
+
 /// The spans of the tokens of a text, in order: for fuzzing the lexer by itself.
 #[doc(hidden)]
 #[must_use]

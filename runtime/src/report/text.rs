@@ -1,5 +1,7 @@
 //! Untrusted text made harmless, and numbers for people.
 
+use hrdsl_ir::is_steering;
+
 /// The text without terminal escapes, control characters and marks that change the direction of writing.
 ///
 /// Line breaks stay; a lone carriage return becomes one, since progress bars use it so. Tabs become spaces.
@@ -18,7 +20,7 @@ pub fn clean(text: &str) -> String {
             }
             '\t' => out.push_str("    "),
             _ if c.is_control() => {}
-            _ if misleads(c) => out.push('\u{fffd}'),
+            _ if is_steering(c) => out.push('\u{fffd}'),
             _ => out.push(c),
         }
     }
@@ -48,13 +50,6 @@ fn after_escape(rest: &str) -> &str {
 fn after_control_sequence(rest: &str) -> &str {
     let parameters = rest.trim_start_matches(|c| ('\u{20}'..='\u{3f}').contains(&c));
     parameters.strip_prefix(|c| ('\u{40}'..='\u{7e}').contains(&c)).unwrap_or(parameters)
-}
-
-/// Marks that reorder or hide text, and characters that are none in XML.
-fn misleads(c: char) -> bool {
-    matches!(c, '\u{61c}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}')
-        || matches!(c, '\u{feff}' | '\u{fdd0}'..='\u{fdef}')
-        || u32::from(c) & 0xfffe == 0xfffe
 }
 
 /// [`clean`]ed and on one line.

@@ -16,12 +16,14 @@ use hrdsl_runtime::{
     report::{End, Picked, ending, reasoning},
     testgen::{self, Options, Origin, generate_with, how_many_sets, seed_of},
 };
+use hrdsl_source::printable_line;
 use serde::Serialize;
 
 use crate::{
     color,
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 
 /// Show how the agents of a suite reason: what they take up, which plans they try and why, what they do.
@@ -124,16 +126,16 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let inspection = chosen.inspect(program, detail);
     let end = End::of(&inspection, &picked);
     let place = |span: Span| compilation.files.place(span);
-    let text = match (args.json, args.end) {
-        (true, true) => json(&end)? + "\n",
-        (true, false) => json_lines(&inspection, &picked, &place)?,
+    match (args.json, args.end) {
+        (true, true) => input::print_data(&(json(&end)? + "\n"))?,
+        (true, false) => input::print_data(&json_lines(&inspection, &picked, &place)?)?,
         (false, only_end) => {
             let color = color::stdout_has();
             let log = if only_end { String::new() } else { reasoning(&inspection, &picked, color, &place) };
-            format!("{}\n{log}{}", chosen.heading(program, color), ending(&end, color))
+            let text = format!("{}\n{log}{}", chosen.heading(program, color), ending(&end, color));
+            input::print(&text)?;
         }
-    };
-    input::print(&text)?;
+    }
     Ok(if end.is_regular() { Exit::Ok } else { Exit::Errors })
 }
 
@@ -180,7 +182,7 @@ impl<'p> Chosen<'p> {
         let what = format!("{}, suite {}, {}", program.name, self.suite.name, self.which);
         let beliefs = if self.text.is_empty() { "nothing chosen".to_owned() } else { self.text.join(", ") };
         let bold = color::paint(color, color::Style::Bold, &what);
-        format!("{bold}\n  beliefs: {beliefs}\n  players: {}\n", players.join(", "))
+        format!("{bold}\n  beliefs: {}\n  players: {}\n", printable_line(&beliefs), players.join(", "))
     }
 
     fn agents(&self, program: &'p Program) -> impl Iterator<Item = (AgentId, &'p str)> {
@@ -252,7 +254,7 @@ fn listed(args: &Args, program: &Program) -> String {
         };
         out += &format!("  {}: {sets}\n", suite.name);
     }
-    out + &format!("help: hrdsl inspect {} {} --set 1", args.file.display(), first.name)
+    out + &format!("help: hrdsl inspect {} {} --set 1", terminal::shown(&args.file), first.name)
 }
 
 /// A suite by agents and the number of a test: `bdi_tests.t017`, with or without the scenario's name before it.

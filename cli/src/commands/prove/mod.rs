@@ -17,12 +17,14 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{self, Answered, Found, Proof, Settings, Status, Watch};
+use hrdsl_source::{printable, printable_line};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::how::{Way, When, Witness};
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    terminal,
 };
 use asked::Asked;
 use table::Row;
@@ -148,8 +150,11 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     }
     clock.finish();
     write_run(args, &rows)?;
-    let text = if args.json { show::json(program, &rows)? } else { show::human(&rows, args.trace) };
-    input::print(&text)?;
+    if args.json {
+        input::print_data(&show::json(program, &rows)?)?;
+    } else {
+        input::print(&printable(&show::human(&rows, args.trace)))?;
+    }
     Ok(verdict(&rows))
 }
 
@@ -269,7 +274,11 @@ impl Clock {
                     return Ok(None);
                 }
             }
-            self.bar.set_message(format!("{name}: {} states", watch.stored.load(Ordering::Relaxed)));
+            self.bar.set_message(format!(
+                "{}: {} states",
+                printable_line(name),
+                watch.stored.load(Ordering::Relaxed)
+            ));
             self.bar.tick();
         }
     }
@@ -291,7 +300,10 @@ fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
         match (path, text) {
             (Some(path), Some(text)) => input::write(path, &text)?,
             (Some(path), None) => {
-                eprintln!("note: {} is not written: there is no run to show", path.display());
+                terminal::say_line(format_args!(
+                    "note: {} is not written: there is no run to show",
+                    terminal::shown(path)
+                ));
             }
             (None, _) => {}
         }

@@ -1,5 +1,7 @@
 //! Coverage points, their bins, and cross products.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, Sort, UnaryOp,
@@ -85,23 +87,21 @@ impl Checker<'_> {
     fn point_of(&mut self, cover: &ast::Cover) -> (Vec<EventPattern>, Vec<Bin>) {
         let count = self.patterns(&cover.count);
         let mut table = Table::default();
-        let mut bins: Vec<(Bin, Span)> = Vec::new();
+        let (mut bins, mut covered) = (Vec::new(), Covered::default());
         for bin in &cover.bins {
             Self::declare(&mut self.issues, &mut table, Noun::Bin, &bin.name);
             let resolved = self.bin(bin).unwrap_or(Bin { name: bin.name.text.clone(), lo: -1, hi: Some(-1) });
-            let meets = |other: &Bin| {
-                resolved.lo >= 0
-                    && other.lo >= 0
-                    && resolved.hi.is_none_or(|hi| other.lo <= hi)
-                    && other.hi.is_none_or(|hi| resolved.lo <= hi)
-            };
-            if let Some((other, first)) = bins.iter().find(|(b, _)| meets(b)) {
-                let issue = overlap(&bin.name.text, bin.span, &other.name, *first);
-                self.report(issue);
+            if resolved.lo >= 0 {
+                let (lo, hi) = (resolved.lo, resolved.hi.unwrap_or(i64::MAX));
+                if let Some(other) = covered.add(lo, hi, bins.len()) {
+                    let (other, first): (&Bin, Span) = (&bins[other], cover.bins[other].span);
+                    let issue = overlap(&bin.name.text, bin.span, &other.name, first);
+                    self.report(issue);
+                }
             }
-            bins.push((resolved, bin.span));
+            bins.push(resolved);
         }
-        (count, bins.into_iter().map(|(b, _)| b).collect())
+        (count, bins)
     }
 
     fn bin(&mut self, bin: &ast::Bin) -> Option<Bin> {
@@ -198,5 +198,63 @@ impl Checker<'_> {
             return None;
         };
         Some(Condition::In(id, u16::try_from(at).unwrap_or(u16::MAX)))
+    }
+}
+
+/// Which bin has each number: of those that share it the first. Wider numbers than those of bins have room for the end.
+#[derive(Default)]
+struct Covered {
+    /// By its first number: the last one, and the bin. They do not meet.
+    pieces: BTreeMap<i128, (i128, usize)>,
+    /// The same, neighbours joined.
+    whole: BTreeMap<i128, i128>,
+}
+
+impl Covered {
+    /// Adds a bin; gives one that it meets.
+    fn add(&mut self, lo: i64, hi: i64, bin: usize) -> Option<usize> {
+        let (lo, hi) = (i128::from(lo), i128::from(hi));
+        let before = self.pieces.range(..lo).next_back().filter(|(_, (end, _))| *end >= lo);
+        let met = before.or_else(|| self.pieces.range(lo..=hi).next()).map(|(_, (_, bin))| *bin);
+        let touches = self.whole.range(..lo).next_back().filter(|(_, end)| **end >= lo - 1);
+        let first = touches.map_or(lo, |(start, _)| *start);
+        let joined: Vec<(i128, i128)> = self.whole.range(first..=hi + 1).map(|(a, b)| (*a, *b)).collect();
+        let (mut next, mut last) = (lo, hi);
+        for (start, end) in joined {
+            if next < start && next <= hi {
+                self.pieces.insert(next, (hi.min(start - 1), bin));
+            }
+            (next, last) = (next.max(end + 1), last.max(end));
+            self.whole.remove(&start);
+        }
+        if next <= hi {
+            self.pieces.insert(next, (hi, bin));
+        }
+        self.whole.insert(first, last);
+        met
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bin_meets_another_if_they_share_a_number() {
+        let mut dice = 7u64;
+        for _ in 0..300 {
+            let (mut covered, mut all) = (Covered::default(), Vec::new());
+            for bin in 0..12 {
+                dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                let lo = (dice >> 33) as i64 % 40;
+                let hi = if dice % 7 == 0 { i64::MAX } else { lo + (dice >> 20) as i64 % 5 };
+                let meets = |(l, h): &(i64, i64)| *l <= hi && lo <= *h;
+                match covered.add(lo, hi, bin) {
+                    Some(met) => assert!(meets(&all[met]), "{lo}..{hi} and {:?} of {all:?}", all[met]),
+                    None => assert!(!all.iter().any(meets), "{lo}..{hi} and {all:?}"),
+                }
+                all.push((lo, hi));
+            }
+        }
     }
 }

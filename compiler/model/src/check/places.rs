@@ -1,6 +1,8 @@
 //! Where the names of a scenario stand, and which declarations it uses: read off the AST once all is resolved. Without
 //! errors the elements of the scenario are those of the AST, in the same order, those of an instance the template's.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
@@ -11,6 +13,7 @@ use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, Var, VarPlace};
 
 impl Checker<'_> {
     pub(super) fn places(&mut self) {
+        let shared = parts(&self.s.shared);
         for (item, span) in self.each_item() {
             match item {
                 ItemKind::Event(event) => {
@@ -18,8 +21,7 @@ impl Checker<'_> {
                 }
                 ItemKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
                 ItemKind::Var(var) => {
-                    let whole = |v: &&Var| v.span == var.name.span;
-                    let parts = self.s.shared.iter().filter(whole).count();
+                    let parts = shared.get(&var.name.span).copied().unwrap_or(0);
                     let place = VarPlace { name: var.name.span, whole: span };
                     self.s.places.shared.extend(std::iter::repeat_n(place, parts));
                 }
@@ -110,11 +112,12 @@ fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
 
 fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> AutomatonPlaces {
     let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
+    let vars = parts(&of.vars);
     for member in &automaton.members {
         match &member.kind {
             Member::Clock(clocks) => places.clocks.extend(clocks.iter().map(|c| c.span)),
             Member::Var(var) => {
-                let parts = of.vars.iter().filter(|v| v.span == var.name.span).count();
+                let parts = vars.get(&var.name.span).copied().unwrap_or(0);
                 let place = VarPlace { name: var.name.span, whole: member.span };
                 places.vars.extend(std::iter::repeat_n(place, parts));
             }
@@ -124,6 +127,13 @@ fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> A
         }
     }
     places
+}
+
+/// How many variables each declaration makes: one for each single value.
+fn parts(vars: &[Var]) -> BTreeMap<Span, usize> {
+    let mut parts = BTreeMap::new();
+    vars.iter().for_each(|v| *parts.entry(v.span).or_default() += 1);
+    parts
 }
 
 fn awaits(suite: &ast::Suite) -> Vec<Span> {

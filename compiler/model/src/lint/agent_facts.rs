@@ -1,13 +1,16 @@
 //! What the rules on plans ask about an agent: which beliefs come about and how, which goals are adopted, by whom.
 
 use crate::{
-    Agent, AgentId, Arg, Belief, BeliefId, ChoiceCondition, ChoiceKind, Context, GoalId, Method,
-    Performative, Plan, Player, Scenario, Step, StepKind, Subject, Suite, TriggerOn, each_step,
-    nearest::nearest,
+    Agent, AgentId, Arg, Belief, BeliefId, ChoiceCondition, ChoiceKind, Context, GoalId, Performative, Plan,
+    Scenario, Step, StepKind, TriggerOn, each_step, nearest::nearest,
 };
 use hrdsl_source::{Diagnostic, Span};
 
-use super::plan_terms::{Term, alternatives, may_unify, of_args, of_exprs, of_values};
+use super::{
+    agent_index::{AgentIndex, Message, Work},
+    facts::Facts,
+    plan_terms::{Term, alternatives, may_unify, of_args, of_exprs, of_values},
+};
 
 /// One agent, with what the scenario says about it.
 #[derive(Clone, Copy)]
@@ -15,6 +18,8 @@ pub(crate) struct AgentFacts<'a> {
     pub scenario: &'a Scenario,
     pub id: AgentId,
     pub agent: &'a Agent,
+    index: &'a AgentIndex<'a>,
+    work: &'a Work,
 }
 
 /// What is known of the facts of a belief at all times.
@@ -48,8 +53,18 @@ impl Literal<'_> {
 }
 
 /// All agents.
-pub(crate) fn agents(scenario: &Scenario) -> impl Iterator<Item = AgentFacts<'_>> {
-    (0..).zip(&scenario.agents).map(move |(i, agent)| AgentFacts { scenario, id: AgentId(i), agent })
+pub(crate) fn agents<'a>(
+    scenario: &'a Scenario,
+    facts: &'a Facts<'a>,
+) -> impl Iterator<Item = AgentFacts<'a>> {
+    let all = (0..).zip(scenario.agents.iter().zip(&facts.agents));
+    all.map(move |(i, (agent, index))| AgentFacts {
+        scenario,
+        id: AgentId(i),
+        agent,
+        index,
+        work: &facts.work,
+    })
 }
 
 /// The literals of a context from the left; negated are those under an odd number of `not`.
@@ -140,24 +155,29 @@ impl<'a> AgentFacts<'a> {
         &self.agent.goals[usize::from(id.0)].name
     }
 
-    pub fn plans(&self, on: TriggerOn) -> impl Iterator<Item = &'a Plan> {
-        self.agent.plans.iter().filter(move |p| p.trigger == on)
+    pub fn plans(&self, on: TriggerOn) -> impl Iterator<Item = &'a Plan> + use<'a> {
+        let agent = self.agent;
+        self.index.plans(on).iter().map(|i| &agent.plans[*i])
     }
 
-    fn steps(&self) -> impl Iterator<Item = &'a Step> {
-        self.agent.plans.iter().flat_map(|p| all_steps(&p.body))
+    /// Takes so many steps of looking; `false` if there are not that many left for all agents.
+    pub fn work(&self, steps: usize) -> bool {
+        self.work.take(steps)
     }
 
-    /// What is sent about something of this agent, and by whom.
-    fn messages(&self, of: Subject) -> impl Iterator<Item = (Option<Performative>, AgentId)> {
-        let index = usize::from(self.id.0);
-        let about = self.scenario.contents.iter().filter(move |c| c.of.get(index) == Some(&Some(of)));
-        about.flat_map(|c| c.uses.iter().copied())
+    /// How many plans and steps there are.
+    pub fn size(&self) -> usize {
+        self.index.size
+    }
+
+    /// What is sent about a belief of this agent, and by whom.
+    fn about(&self, belief: BeliefId) -> impl Iterator<Item = Message> {
+        self.index.about_belief[usize::from(belief.0)].iter().copied()
     }
 
     /// Others may add it: in messages, or as answers to the agent's own.
     pub fn is_told(&self, belief: BeliefId) -> bool {
-        self.messages(Subject::Belief(belief)).any(|(how, sender)| match how {
+        self.about(belief).any(|(how, sender)| match how {
             Some(Performative::Tell) => true,
             Some(Performative::AskOne | Performative::AskAll) => sender == self.id,
             Some(Performative::Untell | Performative::Achieve | Performative::Unachieve) | None => false,
@@ -166,7 +186,7 @@ impl<'a> AgentFacts<'a> {
 
     /// Others may withdraw what they have told.
     fn is_untold(&self, belief: BeliefId) -> bool {
-        self.messages(Subject::Belief(belief)).any(|(how, _)| how == Some(Performative::Untell))
+        self.about(belief).any(|(how, _)| how == Some(Performative::Untell))
     }
 
     /// It is perceived.
@@ -176,7 +196,7 @@ impl<'a> AgentFacts<'a> {
 
     /// Some rule derives it.
     pub fn is_derived(&self, belief: BeliefId) -> bool {
-        self.agent.rules.iter().any(|r| r.belief == belief)
+        self.index.derived[usize::from(belief.0)]
     }
 
     /// It comes about without a plan, in a way of which nothing more is known.
@@ -187,47 +207,37 @@ impl<'a> AgentFacts<'a> {
     /// Others ask for it, so that the plans for its query run.
     pub fn is_asked(&self, belief: BeliefId) -> bool {
         let asks = |how| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
-        self.messages(Subject::Belief(belief)).any(|(how, _)| asks(how))
+        self.about(belief).any(|(how, _)| asks(how))
     }
 
     /// Some message asks for the goal.
     fn is_requested(&self, goal: GoalId) -> bool {
-        self.messages(Subject::Goal(goal)).any(|(how, _)| how == Some(Performative::Achieve))
+        self.index.about_goal[usize::from(goal.0)].iter().any(|(how, _)| *how == Some(Performative::Achieve))
     }
 
-    pub fn changes(&self) -> impl Iterator<Item = Change<'a>> {
-        self.steps().filter_map(change)
-    }
-
-    /// The suites in which it plays, with how they choose a belief.
-    fn suites(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Suite, Option<ChoiceKind>)> {
-        let (scenario, id) = (self.scenario, self.id);
-        scenario.suites.iter().filter_map(move |suite| match &suite.method {
-            Method::Agents { players, choose, .. } if players.contains(&Player::Agent(id)) => {
-                let how = choose.iter().find(|c| c.agent == id && c.belief == belief).map(|c| c.how);
-                Some((suite, how))
-            }
-            Method::Agents { .. } | Method::Search { .. } | Method::Random { .. } => None,
-        })
+    /// The beliefs that plans change.
+    pub fn changed(&self) -> impl Iterator<Item = BeliefId> {
+        (0..).map(BeliefId).zip(&self.index.changes).filter(|(_, c)| !c.is_empty()).map(|(b, _)| b)
     }
 
     /// What suites ask of the beliefs that it starts with.
     pub fn choice_conditions(&self) -> impl Iterator<Item = &'a ChoiceCondition> {
-        let id = self.id;
-        let choices = self.scenario.suites.iter().filter_map(|suite| match &suite.method {
-            Method::Agents { choose, .. } => Some(choose),
-            Method::Search { .. } | Method::Random { .. } => None,
-        });
-        choices.flatten().filter(move |c| c.agent == id).filter_map(|c| c.condition.as_ref())
+        self.index.conditions.iter().copied()
     }
 
     fn is_chosen(&self, belief: BeliefId) -> bool {
-        self.suites(belief).any(|(_, how)| how.is_some())
+        !self.chosen(belief).is_empty()
+    }
+
+    /// How suites choose a belief, with the number of each among those in which the agent plays.
+    fn chosen(&self, belief: BeliefId) -> &'a [(usize, ChoiceKind)] {
+        &self.index.chosen[usize::from(belief.0)]
     }
 
     fn initial(&self, belief: BeliefId) -> impl Iterator<Item = Vec<Term<'a>>> {
         let agent = self.agent;
-        agent.initial_beliefs.iter().filter(move |f| f.belief == belief).map(|f| of_values(&f.args))
+        let facts = self.index.initial[usize::from(belief.0)].iter();
+        facts.map(|i| of_values(&agent.initial_beliefs[*i].args))
     }
 
     /// It holds before any plan has run, in some run.
@@ -237,7 +247,7 @@ impl<'a> AgentFacts<'a> {
 
     /// A plan adds it.
     pub fn is_added(&self, belief: BeliefId) -> bool {
-        self.changes().any(|c| matches!(c, Change::Adds(b, _) | Change::Replaces(b, _) if b == belief))
+        self.index.changes_of(belief).iter().any(|c| matches!(c, Change::Adds(..) | Change::Replaces(..)))
     }
 
     /// It holds at some time, in some run.
@@ -251,48 +261,66 @@ impl<'a> AgentFacts<'a> {
         let all = || (0..).map(BeliefId).take(self.agent.beliefs.len());
         let mut known: Vec<bool> =
             all().map(|b| self.is_given(b) || !self.is_added(b) || self.is_foreign(b)).collect();
-        loop {
-            let is_known = |b: BeliefId| known[usize::from(b.0)];
-            let mut more = Vec::new();
-            for plan in self.agent.plans.iter().filter(|p| needs_only(p, &is_known)) {
-                more.extend(all_steps(&plan.body).into_iter().filter_map(change).filter_map(|c| match c {
-                    Change::Adds(b, _) | Change::Replaces(b, _) if !is_known(b) => Some(b),
-                    Change::Adds(..) | Change::Replaces(..) | Change::Removes(..) => None,
-                }));
-            }
-            if more.is_empty() {
-                return all().filter(|b| !known[usize::from(b.0)]).collect();
-            }
-            more.iter().for_each(|b| known[usize::from(b.0)] = true);
+        // By belief: the plans that speak of it, which may run once it is known.
+        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); known.len()];
+        for (number, plan) in self.agent.plans.iter().enumerate() {
+            let trigger = plan.trigger.belief();
+            let needed = literals(&plan.context).into_iter().map(|l| l.belief).chain(trigger);
+            needed.for_each(|b| waiting[usize::from(b.0)].push(number));
         }
+        let mut runs = vec![false; self.agent.plans.len()];
+        let mut open: Vec<usize> = (0..runs.len()).collect();
+        while let Some(number) = open.pop() {
+            let plan = &self.agent.plans[number];
+            if runs[number] || !needs_only(plan, &|b| known[usize::from(b.0)]) {
+                continue;
+            }
+            runs[number] = true;
+            for change in all_steps(&plan.body).into_iter().filter_map(change) {
+                let b = usize::from(change.belief().0);
+                let adds = matches!(change, Change::Adds(..) | Change::Replaces(..));
+                if adds && !std::mem::replace(&mut known[b], true) {
+                    open.append(&mut waiting[b]);
+                }
+            }
+        }
+        all().filter(|b| !known[usize::from(b.0)]).collect()
     }
 
     /// A fact that these arguments of a plan match comes about.
     pub fn may_come_about(&self, belief: BeliefId, args: &[Term<'_>]) -> bool {
+        let changes = self.index.changes_of(belief);
         self.is_chosen(belief)
             || self.is_foreign(belief)
+            || !self.work(changes.len() + self.index.initial[usize::from(belief.0)].len())
             || self.initial(belief).any(|fact| may_unify(args, &fact, true))
-            || self.changes().any(|c| match c {
-                Change::Adds(b, made) | Change::Replaces(b, made) => {
-                    b == belief && may_unify(args, &made, true)
-                }
+            || changes.iter().any(|c| match c {
+                Change::Adds(_, made) | Change::Replaces(_, made) => may_unify(args, made, true),
                 Change::Removes(..) => false,
             })
     }
 
     /// What is certain of a belief's facts.
     pub fn held(&self, belief: BeliefId) -> Held {
-        let changes: Vec<Change<'_>> = self.changes().filter(|c| c.belief() == belief).collect();
+        *self.index.held[usize::from(belief.0)].get_or_init(|| self.certain(belief))
+    }
+
+    fn certain(&self, belief: BeliefId) -> Held {
+        let changes = self.index.changes_of(belief);
         if self.is_foreign(belief)
             || self.is_untold(belief)
             || changes.iter().any(|c| matches!(c, Change::Removes(..)))
         {
             return Held::Unknown;
         }
-        let chosen: Vec<Option<ChoiceKind>> = self.suites(belief).map(|(_, how)| how).collect();
-        let always = |kind: ChoiceKind| !chosen.is_empty() && chosen.iter().all(|how| *how == Some(kind));
+        let chosen = self.chosen(belief);
+        let always = |kind: ChoiceKind| {
+            !chosen.is_empty()
+                && chosen.len() == self.index.suites
+                && chosen.iter().all(|(_, how)| *how == kind)
+        };
         let added = changes.iter().any(|c| matches!(c, Change::Adds(..)));
-        match self.initial(belief).count() {
+        match self.index.initial[usize::from(belief.0)].len() {
             0 if always(ChoiceKind::One) => {
                 if added {
                     Held::Some
@@ -301,7 +329,7 @@ impl<'a> AgentFacts<'a> {
                 }
             }
             0 => match chosen.first() {
-                Some(Some(ChoiceKind::OnePer(param)))
+                Some((0, ChoiceKind::OnePer(param)))
                     if changes.is_empty() && always(ChoiceKind::OnePer(*param)) =>
                 {
                     Held::OnePer(*param)
@@ -320,17 +348,26 @@ impl<'a> AgentFacts<'a> {
     /// Who adopts a goal.
     pub fn adoptions(&self, goal: GoalId) -> impl Iterator<Item = Adoption<'a>> {
         let agent = self.agent;
-        let initial = agent.initial_goals.iter().filter(move |(g, _)| *g == goal).map(|_| Adoption::Root);
-        let by = asking(agent, move |kind| matches!(kind, StepKind::Achieve(g, ..) if *g == goal));
-        let spawns = asking(agent, move |kind| matches!(kind, StepKind::Spawn(g, _) if *g == goal));
+        let goal_index = usize::from(goal.0);
+        let initial = (0..self.index.initial_goals[goal_index]).map(|_| Adoption::Root);
+        let by = self.index.adopters(goal).iter().map(|(plan, at)| Adoption::By(&agent.plans[*plan], *at));
+        let spawns = self.index.spawned[goal_index].iter().map(|_| Adoption::Root);
         let asked = self.is_requested(goal).then_some(Adoption::Root);
-        let initial = initial.chain(asked);
-        initial.chain(by.map(|(plan, at)| Adoption::By(plan, at))).chain(spawns.map(|_| Adoption::Root))
+        initial.chain(asked).chain(by).chain(spawns)
+    }
+
+    /// The plans that adopt a goal, each as often as it does.
+    pub fn adopters(&self, goal: GoalId) -> impl Iterator<Item = &'a Plan> {
+        let agent = self.agent;
+        let by = self.index.adopters(goal).iter().map(|(plan, _)| plan);
+        by.chain(&self.index.spawned[usize::from(goal.0)]).map(|plan| &agent.plans[*plan])
     }
 
     /// The plans that ask for a belief, with the number of the step.
     pub fn askers(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Plan, usize)> {
-        asking(self.agent, move |kind| matches!(kind, StepKind::Query(l) if l.belief == belief))
+        let agent = self.agent;
+        let queries = self.index.queries[usize::from(belief.0)].iter();
+        queries.map(|(plan, at, _)| (&agent.plans[*plan], *at))
     }
 
     /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
@@ -351,16 +388,20 @@ impl<'a> AgentFacts<'a> {
         match plan.trigger {
             TriggerOn::Added(b) => !self.may_come_about(b, &args),
             TriggerOn::Removed(b) => {
-                let goes = self.changes().any(|c| match c {
-                    Change::Removes(r, removed) => r == b && may_unify(&args, &removed, true),
-                    Change::Replaces(r, _) => r == b,
-                    Change::Adds(..) => false,
-                });
+                let changes = self.index.changes_of(b);
+                let goes = !self.work(changes.len())
+                    || changes.iter().any(|c| match c {
+                        Change::Removes(_, removed) => may_unify(&args, removed, true),
+                        Change::Replaces(..) => true,
+                        Change::Adds(..) => false,
+                    });
                 (!goes && !self.is_foreign(b) && !self.is_untold(b)) || !self.may_come_about(b, &args)
             }
             TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
-                let asks = |s: &Step| matches!(&s.kind, StepKind::Query(q) if q.belief == b && may_unify(&args, &of_args(&q.args), true));
-                !self.is_asked(b) && !self.steps().any(asks)
+                let queries = &self.index.queries[usize::from(b.0)];
+                let asked = !self.work(queries.len())
+                    || queries.iter().any(|(_, _, q)| may_unify(&args, &of_args(&q.args), true));
+                !self.is_asked(b) && !asked
             }
             TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => false,
         }
@@ -379,7 +420,8 @@ impl<'a> AgentFacts<'a> {
             |id: &BeliefId| self.comes_about(*id) && self.belief(*id).params.len() == this.params.len();
         let ids = (0..).map(BeliefId).take(self.agent.beliefs.len());
         let names = ids.filter(fits).map(|id| self.belief(id).name.as_str());
-        let Some(near) = nearest(&this.name, names) else { return issue.help(otherwise) };
+        let near = self.work(self.agent.beliefs.len()).then(|| nearest(&this.name, names)).flatten();
+        let Some(near) = near else { return issue.help(otherwise) };
         let issue = issue.help(format!("did you mean `{near}`? Otherwise, {otherwise}"));
         match name {
             Some(span) => issue.fix(format!("replace `{}` by `{near}`", this.name), span, near, false),
@@ -409,17 +451,6 @@ fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
         | Context::Internal(..) => true,
     };
     trigger && alternatives(&plan.context).is_none_or(|all| all.iter().any(|parts| parts.iter().all(holds)))
-}
-
-/// The steps of some kind, with their plans; of one within a block the number of the block.
-fn asking(agent: &Agent, is: impl Fn(&StepKind) -> bool + Copy) -> impl Iterator<Item = (&Plan, usize)> {
-    agent.plans.iter().flat_map(move |plan| {
-        let steps = plan.body.iter().enumerate();
-        steps.flat_map(move |(at, step)| {
-            let found = all_steps(std::slice::from_ref(step)).into_iter().filter(move |s| is(&s.kind));
-            found.map(move |_| (plan, at))
-        })
-    })
 }
 
 /// A belief or goal with `_` for each argument: `drink(_)`.

@@ -17,6 +17,8 @@ use crate::{
 
 /// Steps of the search.
 const BUDGET: u32 = 20_000;
+/// Steps of a plan that are looked into.
+const LONG: usize = 200;
 /// A range with more values is not tried value by value.
 const LARGE: i64 = 16;
 
@@ -178,10 +180,16 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> boo
         StepKind::Query(literal) => is_simple_literal(literal),
         _ => true,
     };
+    if at > LONG || !facts.work(1) {
+        return true;
+    }
     if !answers || !is_simple(plan) || !plan.body[..at].iter().all(is_simple_step) {
         return true;
     }
     let is_so = |world: &World| {
+        if !facts.work(1 + at) {
+            return Ok(true);
+        }
         let mut here = Place::enter(facts, plan, world);
         if !here.selected(plan, at)? {
             // This plan is not the one that runs in such a world.
@@ -308,6 +316,9 @@ impl<'a> Place<'a> {
     /// Whether some plan for the goal is applicable.
     fn has_plan(&self, goal: GoalId, args: &[Sym]) -> Asked<bool> {
         for plan in self.facts.plans(TriggerOn::Achieve(goal)) {
+            if !self.facts.work(1) {
+                return Ok(true);
+            }
             let mut callee = Place {
                 name: format!("{}.{}", self.name, plan.label),
                 vars: vec![None; plan.vars.len()],
@@ -535,7 +546,7 @@ fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
             | StepKind::AskAll { .. }
             | StepKind::Control(..)
             | StepKind::Fail => {
-                all.extend(facts.changes().map(|c| c.belief()));
+                return facts.changed().collect();
             }
         }
     }

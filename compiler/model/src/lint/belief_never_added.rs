@@ -7,7 +7,7 @@ use super::{
     dead_plan::never_runs,
     facts::Facts,
 };
-use crate::{BeliefId, Context, Scenario, StepKind, TriggerOn};
+use crate::{BeliefId, Scenario, StepKind, TriggerOn};
 
 /// A place that tests a belief.
 struct Read {
@@ -17,50 +17,53 @@ struct Read {
     negated: bool,
 }
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         let ids = (0..).map(BeliefId).take(facts.agent.beliefs.len());
-        for belief in ids.filter(|b| !facts.comes_about(*b)) {
-            issues.extend(never_added(&facts, belief, &reads(&facts, belief), false));
+        let never: Vec<BeliefId> = ids.filter(|b| !facts.comes_about(*b)).collect();
+        let circular = facts.only_from_themselves();
+        if never.is_empty() && circular.is_empty() {
+            continue;
         }
-        for belief in facts.only_from_themselves() {
-            issues.extend(never_added(&facts, belief, &reads(&facts, belief), true));
+        let reads = reads(&facts);
+        for belief in never {
+            issues.extend(never_added(&facts, belief, &reads[usize::from(belief.0)], false));
+        }
+        for belief in circular {
+            issues.extend(never_added(&facts, belief, &reads[usize::from(belief.0)], true));
         }
     }
 }
 
-fn reads(facts: &AgentFacts<'_>, belief: BeliefId) -> Vec<Read> {
-    let name = &facts.belief(belief).name;
-    // A plan for the query may answer it without a fact.
-    let answered = facts.plans(TriggerOn::Test(belief)).next().is_some();
-    let mut all = Vec::new();
+/// By belief, the places that test it.
+fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<Read>> {
+    let mut all: Vec<Vec<Read>> = facts.agent.beliefs.iter().map(|_| Vec::new()).collect();
+    let mut read_in = |formula| {
+        for l in literals(formula) {
+            let name = Some(l.name_span(&facts.belief(l.belief).name));
+            all[usize::from(l.belief.0)].push(Read { span: l.span, name, negated: l.negated });
+        }
+    };
+    let mut queries = Vec::new();
     for plan in facts.agent.plans.iter().filter(|p| !never_runs(facts, p)) {
         let steps = all_steps(&plan.body);
-        let conditions = steps.iter().filter_map(|s| s.condition());
-        for formula in [&plan.context].into_iter().chain(conditions) {
-            all.extend(reads_in(formula, belief, name));
-        }
+        [&plan.context].into_iter().chain(steps.iter().filter_map(|s| s.condition())).for_each(&mut read_in);
         for step in steps {
-            if matches!(&step.kind, StepKind::Query(l) if l.belief == belief) && !answered {
-                all.push(Read { span: step.span, name: None, negated: false });
+            // A plan for the query may answer it without a fact.
+            if let StepKind::Query(l) = &step.kind
+                && facts.plans(TriggerOn::Test(l.belief)).next().is_none()
+            {
+                queries.push((l.belief, Read { span: step.span, name: None, negated: false }));
             }
         }
     }
-    for rule in &facts.agent.rules {
-        all.extend(reads_in(&rule.body, belief, name));
+    facts.agent.rules.iter().for_each(|rule| read_in(&rule.body));
+    facts.choice_conditions().for_each(|condition| read_in(&condition.context));
+    for (belief, read) in queries {
+        all[usize::from(belief.0)].push(read);
     }
-    for condition in facts.choice_conditions() {
-        all.extend(reads_in(&condition.context, belief, name));
-    }
+    all.iter_mut().for_each(|reads| reads.sort_by_key(|r| r.span));
     all
-}
-
-fn reads_in<'c>(formula: &'c Context, belief: BeliefId, name: &'c str) -> impl Iterator<Item = Read> + 'c {
-    literals(formula).into_iter().filter(move |l| l.belief == belief).map(move |l| Read {
-        span: l.span,
-        name: Some(l.name_span(name)),
-        negated: l.negated,
-    })
 }
 
 /// One diagnostic for all places that test the belief. `circular`: plans add it that need it themselves.

@@ -39,7 +39,7 @@ impl Sides {
     }
 }
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     let sides = Sides::of(scenario);
     for (channel, sides) in scenario.channels.iter().zip(&sides) {
         if channel.place.file != FileId(0) {

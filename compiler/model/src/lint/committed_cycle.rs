@@ -6,7 +6,7 @@ use hrdsl_syntax::ast::LocationKind;
 use super::facts::Facts;
 use crate::{Automaton, Edge, LocationId, Scenario, Sync, Time, Update};
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let instant = |l: LocationId| {

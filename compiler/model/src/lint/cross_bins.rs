@@ -13,7 +13,7 @@ const COMBINATIONS: usize = 1 << 14;
 const WORK: usize = 1 << 21;
 
 /// HR0703
-pub(crate) fn empty(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn empty<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for cross in &scenario.crosses {
         let Some(table) = Table::of(scenario, cross) else { continue };
         for ((name, _, span), set) in cross.bins.iter().zip(&table.bins) {
@@ -38,7 +38,7 @@ pub(crate) fn empty(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>
 }
 
 /// HR0704
-pub(crate) fn equal(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for cross in &scenario.crosses {
         let Some(table) = Table::of(scenario, cross) else { continue };
         let mut first: BTreeMap<Vec<bool>, usize> = BTreeMap::new();

@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{BeliefId, Plan, Scenario, TriggerOn};
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         for plan in facts.agent.plans.iter().filter(|p| !facts.is_unadopted(p)) {
             if facts.is_dead_trigger(plan) {
                 issues.push(dead_trigger(&facts, plan));

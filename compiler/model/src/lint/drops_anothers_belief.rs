@@ -1,5 +1,7 @@
 //! HR0406: a plan drops the belief that another plan handles, and keeps its own: a copy that was not changed throughout.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
@@ -8,6 +10,9 @@ use super::{
     plan_terms::{Term, may_unify, of_args},
 };
 use crate::{Arg, BeliefId, GoalId, Plan, Scenario, StepKind, TriggerOn, Value};
+
+/// Sub-goals of sub-goals that are looked into.
+const FAR: usize = 400;
 
 /// A belief that a plan is about: of its trigger, or one that its context needs.
 struct Handled<'a> {
@@ -55,14 +60,17 @@ fn handled(plan: &Plan) -> Vec<Handled<'_>> {
     all.map(|(belief, args, span)| Handled { belief, args, terms: of_args(args), span }).collect()
 }
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         for plan in &facts.agent.plans {
-            for (at, step) in plan.body.iter().enumerate() {
-                // Blocks, and removals of what others have told, are no copies of anything.
-                let plain = matches!(&step.kind, StepKind::Remove(l) if l.annotations.is_empty())
-                    && plan.body.iter().all(|s| s.blocks().is_empty());
-                if let Some(Change::Removes(belief, args)) = change(step).filter(|_| plain) {
+            // Blocks, and removals of what others have told, are no copies of anything.
+            let has_blocks = plan.body.iter().any(|s| !s.blocks().is_empty());
+            for (at, step) in plan.body.iter().enumerate().filter(|_| !has_blocks) {
+                let plain = matches!(&step.kind, StepKind::Remove(l) if l.annotations.is_empty());
+                if !plain || !facts.work(facts.size()) {
+                    continue;
+                }
+                if let Some(Change::Removes(belief, args)) = change(step) {
                     let dropped = Dropped { facts, plan, at, belief, args };
                     issues.extend(dropped.issue(step.span));
                 }
@@ -91,6 +99,9 @@ impl<'a> Dropped<'a> {
             return None;
         }
         let (kept, other) = own.iter().find_map(|kept| {
+            if !self.keeps(kept) {
+                return None;
+            }
             let other = self.facts.agent.plans.iter().find(|other| self.is_copied(kept, other))?;
             Some((kept, other))
         })?;
@@ -115,20 +126,20 @@ impl<'a> Dropped<'a> {
 
     /// Whether the plan looks like a copy of `other`, whose belief it drops in place of `kept`.
     fn is_copied(&self, kept: &Handled<'_>, other: &'a Plan) -> bool {
-        let consumes = |plan: &Plan, handled: &Handled<'_>| {
-            all_steps(&plan.body).into_iter().filter_map(change).any(|c| match c {
-                Change::Removes(b, args) => handled.meets(b, &args, false),
-                Change::Replaces(b, _) => handled.belief == b,
-                Change::Adds(..) => false,
-            })
-        };
         let owns = !std::ptr::eq(other, self.plan)
             && handled(other).iter().any(|h| h.meets(self.belief, &self.args, true) && consumes(other, h));
-        let keeps = !consumes(self.plan, kept)
-            && !self.facts.agent.plans.iter().any(|p| {
-                handled(p).iter().any(|h| h.meets(kept.belief, &kept.terms, true) && consumes(p, h))
-            });
-        owns && keeps && (kept.belief == self.belief || self.same_part(kept, other))
+        owns && (kept.belief == self.belief || self.same_part(kept, other))
+    }
+
+    /// Whether neither this plan nor another one that handles the belief uses it up.
+    fn keeps(&self, kept: &Handled<'_>) -> bool {
+        !consumes(self.plan, kept)
+            && !self
+                .facts
+                .agent
+                .plans
+                .iter()
+                .any(|p| handled(p).iter().any(|h| h.meets(kept.belief, &kept.terms, true) && consumes(p, h)))
     }
 
     /// Beliefs of different names are taken for copies of each other if they play the same part: both or neither are the
@@ -152,7 +163,7 @@ impl<'a> Dropped<'a> {
 
     /// The sub-goals before it may have added the belief.
     fn made_by_subgoals(&self) -> bool {
-        let mut seen = Vec::new();
+        let mut seen = BTreeSet::new();
         let before = &self.plan.body[..self.at];
         before.iter().any(|step| match step.kind {
             StepKind::Achieve(goal, ..) | StepKind::Spawn(goal, _) => self.goal_makes(goal, &mut seen),
@@ -178,11 +189,14 @@ impl<'a> Dropped<'a> {
         })
     }
 
-    fn goal_makes(&self, goal: GoalId, seen: &mut Vec<GoalId>) -> bool {
-        if seen.contains(&goal) {
+    fn goal_makes(&self, goal: GoalId, seen: &mut BTreeSet<GoalId>) -> bool {
+        // So many goals may well make it.
+        if seen.len() == FAR {
+            return true;
+        }
+        if !seen.insert(goal) {
             return false;
         }
-        seen.push(goal);
         self.facts.plans(TriggerOn::Achieve(goal)).chain(self.facts.plans(TriggerOn::Failed(goal))).any(
             |plan| {
                 makes(plan, plan.body.len(), self.belief, &self.args, true)
@@ -214,11 +228,11 @@ impl<'a> Dropped<'a> {
 
     /// A plan on the way to this one handles the belief, or has made it.
     fn known_to_callers(&self) -> bool {
-        let mut seen: Vec<&Plan> = vec![self.plan];
+        let mut seen = BTreeSet::from([self.plan.span]);
         let mut open = vec![self.plan];
         while let Some(plan) = open.pop() {
             for caller in callers(&self.facts, plan) {
-                if seen.iter().any(|p| std::ptr::eq(*p, caller)) {
+                if !seen.insert(caller.span) {
                     continue;
                 }
                 let knows = handled(caller).iter().any(|h| h.meets(self.belief, &self.args, true))
@@ -226,12 +240,20 @@ impl<'a> Dropped<'a> {
                 if knows {
                     return true;
                 }
-                seen.push(caller);
                 open.push(caller);
             }
         }
         false
     }
+}
+
+/// Whether a plan takes away or replaces a belief that it handles.
+fn consumes(plan: &Plan, handled: &Handled<'_>) -> bool {
+    all_steps(&plan.body).into_iter().filter_map(change).any(|c| match c {
+        Change::Removes(b, args) => handled.meets(b, &args, false),
+        Change::Replaces(b, _) => handled.belief == b,
+        Change::Adds(..) => false,
+    })
 }
 
 /// Whether a step before `at` adds a fact that is dropped, or asks for it.
@@ -255,16 +277,9 @@ fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
         }
         TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => return Vec::new(),
     };
-    let mut all: Vec<&Plan> = facts
-        .agent
-        .plans
-        .iter()
-        .filter(|p| {
-            all_steps(&p.body)
-                .into_iter()
-                .any(|s| matches!(s.kind, StepKind::Achieve(g, ..) | StepKind::Spawn(g, _) if g == goal))
-        })
-        .collect();
+    let mut all: Vec<&Plan> = facts.adopters(goal).collect();
+    all.sort_by_key(|p| p.span);
+    all.dedup_by_key(|p| p.span);
     if failed {
         all.extend(facts.plans(TriggerOn::Achieve(goal)));
     }

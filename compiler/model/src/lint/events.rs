@@ -15,7 +15,7 @@ pub(super) fn own_events(scenario: &Scenario) -> impl Iterator<Item = (EventId, 
 }
 
 /// HR0304
-pub(crate) fn not_made(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn not_made<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (id, event, span) in own_events(scenario) {
         if facts.made(id) || !facts.read(id) || facts.told(id) {
             continue;
@@ -36,7 +36,7 @@ pub(crate) fn not_made(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diag
 }
 
 /// HR0305
-pub(crate) fn not_taken(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn not_taken<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (id, event, span) in own_events(scenario) {
         let idle = event.stimulus.is_none() && facts.made(id) && !facts.read(id) && !facts.perceived(id);
         if idle {
@@ -50,7 +50,7 @@ pub(crate) fn not_taken(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Dia
 }
 
 /// HR0405
-pub(crate) fn awaits_nothing(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn awaits_nothing<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for wait in &facts.waits {
         if !facts.in_vain(&wait.any_of) {
             continue;

@@ -6,6 +6,7 @@ use hrdsl_source::Span;
 
 use super::{
     agent_facts::all_steps,
+    agent_index::{AgentIndex, Work, indices},
     flow::{Flow, flows},
 };
 use crate::{
@@ -70,7 +71,7 @@ struct EventFacts {
 }
 
 /// Answers that are worked out once for all rules.
-pub(crate) struct Facts {
+pub(crate) struct Facts<'a> {
     events: Vec<EventFacts>,
     pub waits: Vec<Wait>,
     /// The triggers of requirements, by requirement; empty for those without.
@@ -79,14 +80,25 @@ pub(crate) struct Facts {
     pub has_tests: bool,
     /// By automaton: the values of its variables.
     pub flows: Vec<Flow>,
+    /// By agent.
+    pub agents: Vec<AgentIndex<'a>>,
+    /// What the rules on plans may still look at.
+    pub work: Work,
 }
 
-impl Facts {
-    pub fn of(scenario: &Scenario) -> Self {
+impl<'a> Facts<'a> {
+    pub fn of(scenario: &'a Scenario) -> Self {
         let has_tests = !scenario.suites.is_empty() || !scenario.tests.is_empty();
         let events = vec![EventFacts::default(); scenario.events.len()];
-        let mut facts =
-            Self { events, waits: Vec::new(), triggers: Vec::new(), has_tests, flows: flows(scenario) };
+        let mut facts = Self {
+            events,
+            waits: Vec::new(),
+            triggers: Vec::new(),
+            has_tests,
+            flows: flows(scenario),
+            agents: indices(scenario),
+            work: Work::default(),
+        };
         facts.declared(scenario);
         facts.agents(scenario);
         facts.automata(scenario);

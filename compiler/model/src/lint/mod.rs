@@ -3,6 +3,7 @@
 //! Each rule is one small file with one code; all are warnings unless the rule says that the text can never work.
 
 mod agent_facts;
+mod agent_index;
 mod applicable;
 mod belief_never_added;
 mod channels;
@@ -19,6 +20,7 @@ mod never_triggered;
 mod no_failure_plan;
 mod overflow;
 mod plan_terms;
+mod query_reads;
 mod recursion_without_time;
 mod removes_nothing;
 mod shadowed_plan;
@@ -35,7 +37,7 @@ use crate::Scenario;
 use facts::Facts;
 
 /// A rule: reads the scenario and says what it finds.
-type Rule = fn(&Scenario, &Facts, &mut Vec<Diagnostic>);
+type Rule = for<'a> fn(&'a Scenario, &'a Facts<'a>, &mut Vec<Diagnostic>);
 
 /// All rules, by code.
 const RULES: &[Rule] = &[

@@ -6,7 +6,7 @@ use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use super::facts::Facts;
 use crate::{Expr, ExprKind, Function, Leaf, Pattern, Scenario, Term, Value};
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
         let why = if facts.in_vain(trigger) {
             let event = trigger.first().and_then(|w| scenario.events.get(usize::from(w.event.0)));

@@ -1,5 +1,10 @@
 //! HR0409: a step can fail, and on the way down to the root of its intention no failure plan is found.
 
+use std::{
+    cell::OnceCell,
+    collections::{BTreeMap, BTreeSet},
+};
+
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use super::{
@@ -15,16 +20,25 @@ use crate::{GoalId, Plan, Scenario, Step, StepKind, TriggerOn};
 struct Unhandled<'a> {
     plan: &'a Plan,
     steps: Vec<(&'a Step, &'static str)>,
-    roots: Vec<&'a Plan>,
+    roots: Roots<'a>,
 }
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         let mut all: Vec<Unhandled<'_>> = Vec::new();
+        let mut by_goal: BTreeMap<GoalId, usize> = BTreeMap::new();
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let found = in_plan(&facts, plan);
-            let of_goal = matches!(plan.trigger, TriggerOn::Achieve(_));
-            match all.iter_mut().find(|u| of_goal && u.plan.trigger == plan.trigger) {
+            let group = match plan.trigger {
+                TriggerOn::Achieve(goal) => *by_goal.entry(goal).or_insert(all.len()),
+                TriggerOn::Failed(_)
+                | TriggerOn::Added(_)
+                | TriggerOn::Removed(_)
+                | TriggerOn::Test(_)
+                | TriggerOn::TestFailed(_)
+                | TriggerOn::Perceived(_) => all.len(),
+            };
+            match all.get_mut(group) {
                 Some(group) => group.join(found),
                 None => all.push(found),
             }
@@ -34,26 +48,38 @@ pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>
 }
 
 fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a Plan) -> Unhandled<'a> {
-    let mut found = Unhandled { plan, steps: Vec::new(), roots: Vec::new() };
+    let mut found = Unhandled { plan, steps: Vec::new(), roots: Roots::default() };
+    let (middle, last) = (OnceCell::new(), OnceCell::new());
     for (at, step) in plan.body.iter().enumerate() {
-        let mut roots = Vec::new();
-        dying(facts, plan, is_before_others(plan, at), &mut Vec::new(), &mut roots);
-        if !roots.is_empty()
+        let lost = is_before_others(plan, at);
+        let roots = (if lost { &middle } else { &last }).get_or_init(|| dying(facts, plan, lost));
+        if !roots.plans.is_empty()
             && let Some(why) = can_fail(facts, plan, at)
         {
-            found.join(Unhandled { plan, steps: vec![(step, why)], roots });
+            found.join(Unhandled { plan, steps: vec![(step, why)], roots: roots.clone() });
         }
     }
     found
 }
 
+/// Plans, each once, in the order in which they were found.
+#[derive(Clone, Default)]
+struct Roots<'a> {
+    plans: Vec<&'a Plan>,
+    spans: BTreeSet<Span>,
+}
+
+impl<'a> Roots<'a> {
+    fn add(&mut self, plan: &'a Plan) {
+        if self.spans.insert(plan.span) {
+            self.plans.push(plan);
+        }
+    }
+}
+
 /// The plan has more to do after this step.
 fn is_before_others(plan: &Plan, at: usize) -> bool {
     at + 1 < plan.body.len()
-}
-
-fn is_in(plans: &[&Plan], plan: &Plan) -> bool {
-    plans.iter().any(|p| std::ptr::eq(*p, plan))
 }
 
 /// Why a step can fail, if its goal has no failure plan of its own.
@@ -105,39 +131,42 @@ fn has_failure_plan(facts: &AgentFacts<'_>, goal: GoalId, args: &[Term<'_>]) -> 
 /// The plans at whose end an intention dies if a step of `plan` fails, and with it something that was still to do: where
 /// each plan is at its last step, the intention would end anyhow. The way down is that of the run: only plans selected for
 /// `+!g` look for a failure plan, all others pass the failure on.
-fn dying<'a>(
-    facts: &AgentFacts<'a>,
-    plan: &'a Plan,
-    lost: bool,
-    seen: &mut Vec<(&'a Plan, bool)>,
-    roots: &mut Vec<&'a Plan>,
-) {
-    if seen.iter().any(|(p, l)| std::ptr::eq(*p, plan) && *l == lost) {
-        return;
-    }
-    seen.push((plan, lost));
-    match plan.trigger {
-        TriggerOn::Achieve(goal) if has_failure_plan(facts, goal, &of_args(&plan.args)) => {}
-        TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
-            for adoption in facts.adoptions(goal) {
-                match adoption {
-                    Adoption::Root if lost && !is_in(roots, plan) => roots.push(plan),
-                    Adoption::Root => {}
-                    Adoption::By(by, at) => dying(facts, by, lost || is_before_others(by, at), seen, roots),
+fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
+    let mut roots = Roots::default();
+    let mut seen = BTreeSet::new();
+    let mut open = vec![(plan, lost)];
+    while let Some((plan, lost)) = open.pop() {
+        if !seen.insert((plan.span, lost)) {
+            continue;
+        }
+        if !facts.work(1) {
+            return Roots::default();
+        }
+        let from = open.len();
+        match plan.trigger {
+            TriggerOn::Achieve(goal) if has_failure_plan(facts, goal, &of_args(&plan.args)) => {}
+            TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
+                for adoption in facts.adoptions(goal) {
+                    match adoption {
+                        Adoption::Root if lost => roots.add(plan),
+                        Adoption::Root => {}
+                        Adoption::By(by, at) => open.push((by, lost || is_before_others(by, at))),
+                    }
+                }
+            }
+            TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
+                open.extend(facts.askers(belief).map(|(by, at)| (by, lost || is_before_others(by, at))));
+            }
+            TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => {
+                if lost {
+                    roots.add(plan);
                 }
             }
         }
-        TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
-            for (by, at) in facts.askers(belief) {
-                dying(facts, by, lost || is_before_others(by, at), seen, roots);
-            }
-        }
-        TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => {
-            if lost && !is_in(roots, plan) {
-                roots.push(plan);
-            }
-        }
+        // In the order of the text, each with all that is above it before the next one.
+        open[from..].reverse();
     }
+    roots
 }
 
 impl<'a> Unhandled<'a> {
@@ -146,11 +175,7 @@ impl<'a> Unhandled<'a> {
             self.plan = other.plan;
         }
         self.steps.extend(other.steps);
-        for root in other.roots {
-            if !is_in(&self.roots, root) {
-                self.roots.push(root);
-            }
-        }
+        other.roots.plans.into_iter().for_each(|root| self.roots.add(root));
     }
 
     /// One diagnostic for all steps, with all ends.
@@ -161,7 +186,7 @@ impl<'a> Unhandled<'a> {
         for (step, why) in more {
             issue = issue.label(step.span, format!("here too: {why}"));
         }
-        for root in &self.roots {
+        for root in &self.roots.plans {
             let text = match root.trigger {
                 TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
                     format!("then the goal `!{}` dies, with all that it still was to do", facts.goal(goal))
@@ -181,7 +206,7 @@ impl<'a> Unhandled<'a> {
 
     /// Adds what to type.
     fn mend(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
-        let mut all = [self.plan].into_iter().chain(self.roots.iter().copied());
+        let mut all = [self.plan].into_iter().chain(self.roots.plans.iter().copied());
         let handler = all.find_map(|p| match p.trigger {
             TriggerOn::Achieve(goal) => Some((shown(facts, goal), p)),
             TriggerOn::Failed(_)

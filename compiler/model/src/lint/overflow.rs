@@ -12,7 +12,7 @@ use crate::{
     StimulusStep, Sync, TriggerOn, Type, Update,
 };
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     let mut checker = Checker { scenario, issues };
     scenario.events.iter().for_each(|e| checker.stimulus(e));
     scenario.agents.iter().for_each(|a| checker.agent(a));

@@ -1,6 +1,6 @@
 //! HR0410: a goal that comes back to itself at the same instant, with nothing changed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_source::{Code, Diagnostic, Span};
 
@@ -15,24 +15,28 @@ use crate::{Arg, Context, GoalId, Internal, Plan, Scenario, Step, StepKind, Trig
 /// Longer ways back are not looked for.
 const DEEP: usize = 8;
 
+/// So many triggers are followed from one step.
+const FAR: usize = 400;
+
 /// So many adoptions are followed in one agent.
 const MANY: usize = 20_000;
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let endless = all_steps(&plan.body).into_iter().filter(|step| is_endless(&facts, step));
             issues.extend(endless.map(|step| endless_loop(step.span)));
         }
-        let (mut left, mut progress) = (MANY, BTreeMap::new());
+        let (mut left, mut progress, mut said) = (MANY, BTreeMap::new(), BTreeSet::new());
         for start in &facts.agent.plans {
             if let TriggerOn::Achieve(goal) = start.trigger
                 && !never_runs(&facts, start)
             {
                 let args: Vec<Passed> = start.args.iter().enumerate().map(Passed::at_start).collect();
-                let (left, progress) = (&mut left, &mut progress);
+                let (left, progress, said) = (&mut left, &mut progress, &mut said);
                 let way = Vec::new();
-                let mut search = Search { facts, start, goal, args: &args, way, left, progress, issues };
+                let mut search =
+                    Search { facts, start, goal, args: &args, way, left, progress, said, issues };
                 search.from(start, &args);
             }
         }
@@ -77,6 +81,8 @@ struct Search<'a, 'i> {
     left: &'i mut usize,
     /// By goal: whether its plans let time pass or change a belief.
     progress: &'i mut BTreeMap<GoalId, bool>,
+    /// The cycles that are said already, by their places.
+    said: &'i mut BTreeSet<Vec<Span>>,
     issues: &'i mut Vec<Diagnostic>,
 }
 
@@ -107,12 +113,12 @@ impl<'a> Search<'a, '_> {
 
     fn progresses(&mut self, step: &Step) -> bool {
         let StepKind::Achieve(goal, ..) = &step.kind else {
-            return progresses(&self.facts, step, &mut Vec::new());
+            return progresses(&self.facts, step, &mut BTreeSet::new());
         };
         if let Some(known) = self.progress.get(goal) {
             return *known;
         }
-        let found = progresses(&self.facts, step, &mut Vec::new());
+        let found = progresses(&self.facts, step, &mut BTreeSet::new());
         self.progress.insert(*goal, found);
         found
     }
@@ -120,7 +126,7 @@ impl<'a> Search<'a, '_> {
     fn adopted(&mut self, goal: GoalId, args: &[Passed], span: Span) {
         if goal == self.goal && args == self.args {
             let issue = self.issue(span);
-            if !self.issues.contains(&issue) {
+            if self.said.insert(issue.labels.iter().map(|l| l.span).collect()) {
                 self.issues.push(issue);
             }
             return;
@@ -164,7 +170,7 @@ fn is_endless(facts: &AgentFacts<'_>, step: &Step) -> bool {
         | StepKind::If { .. }
         | StepKind::For { .. }
         | StepKind::Fork { .. }
-        | StepKind::While { .. } => !progresses(facts, step, &mut Vec::new()),
+        | StepKind::While { .. } => !progresses(facts, step, &mut BTreeSet::new()),
         StepKind::Achieve(..)
         | StepKind::Spawn(..)
         | StepKind::Query(_)
@@ -222,7 +228,7 @@ fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
 }
 
 /// Whether time may pass in a step, or a belief change.
-fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut Vec<TriggerOn>) -> bool {
+fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut BTreeSet<TriggerOn>) -> bool {
     let on = match &step.kind {
         StepKind::Do(event, _) => {
             return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
@@ -248,10 +254,13 @@ fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut Vec<TriggerOn>) ->
         StepKind::Achieve(goal, ..) => TriggerOn::Achieve(*goal),
         StepKind::Query(l) => TriggerOn::Test(l.belief),
     };
-    if seen.contains(&on) {
+    // Where there is that much on the way, something may well change.
+    if seen.len() == FAR || !facts.work(1) {
+        return true;
+    }
+    if !seen.insert(on) {
         return false;
     }
-    seen.push(on);
     let failed = match on {
         TriggerOn::Achieve(goal) => Some(TriggerOn::Failed(goal)),
         TriggerOn::Added(_)

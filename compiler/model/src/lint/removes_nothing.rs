@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{Annotation, BeliefId, Scenario, StepKind};
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
         for step in facts.agent.plans.iter().flat_map(|p| all_steps(&p.body)) {
             let StepKind::Remove(literal) = &step.kind else { continue };
             let sourced = literal.annotations.iter().any(|(a, _)| *a == Annotation::Source);

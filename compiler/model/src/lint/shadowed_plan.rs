@@ -3,7 +3,7 @@
 use hrdsl_source::{Code, Diagnostic};
 
 use super::{
-    agent_facts::agents,
+    agent_facts::{agents, literals},
     dead_plan::never_runs,
     facts::Facts,
     plan_terms::{
@@ -12,13 +12,16 @@ use super::{
 };
 use crate::{Arg, Context, Plan, Scenario, Value};
 
-pub(crate) fn check(scenario: &Scenario, _: &Facts, issues: &mut Vec<Diagnostic>) {
-    for facts in agents(scenario) {
-        for (i, later) in facts.agent.plans.iter().enumerate() {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    for facts in agents(scenario, all) {
+        for later in &facts.agent.plans {
             if never_runs(&facts, later) {
                 continue;
             }
-            let earlier = facts.agent.plans[..i].iter().find(|earlier| shadows(earlier, later));
+            let earlier = facts.plans(later.trigger).take_while(|earlier| !std::ptr::eq(*earlier, later));
+            let mut looked_at =
+                earlier.take_while(|earlier| facts.work(1 + literals(&earlier.context).len()));
+            let earlier = looked_at.find(|earlier| shadows(earlier, later));
             issues.extend(earlier.map(|earlier| shadowed(earlier, later)));
         }
     }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Automaton, ClockConstraint, ClockOp, Edge, Location, LocationId, Scenario, Update};
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let (barred, stopping) = (barred(automaton, flow), stopping(automaton, flow));

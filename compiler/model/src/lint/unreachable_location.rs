@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Automaton, AutomatonPlaces, Edge, LocationId, Scenario};
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let dead = dead_edges(automaton, flow);

@@ -6,20 +6,22 @@ use super::{
     agent_facts::{all_steps, change},
     events::own_events,
     facts::Facts,
+    query_reads::QueryReads,
 };
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
     Performative, Player, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
 };
 
-pub(crate) fn check(scenario: &Scenario, facts: &Facts, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     let mut found = Vec::new();
     vocabulary(scenario, facts, &mut found);
+    let queries = QueryReads::of(scenario);
     if facts.has_tests {
-        players(scenario, &mut found);
+        players(scenario, &queries, &mut found);
     }
     scenario.agents.iter().enumerate().for_each(|(i, a)| beliefs(scenario, i, a, &mut found));
-    variables(scenario, &mut found);
+    variables(scenario, &queries, &mut found);
     signals(scenario, &mut found);
     issues.extend(found.into_iter().filter(|u| u.at.file == FileId(0)).map(Unused::said));
 }
@@ -41,6 +43,8 @@ impl Unused<'_> {
         let message = format!("{noun} `{name}` is never {lacks}");
         let issue = Diagnostic::warning(Code::UNUSED, at, message);
         match whole {
+            // One of several that are declared together cannot simply go.
+            Some((span, _)) if span == at => issue.help("use it, or delete it"),
             Some((span, certain)) => {
                 issue.help("use it, or delete it").fix(format!("delete `{name}`"), span, "", certain)
             }
@@ -68,11 +72,11 @@ fn vocabulary<'a>(scenario: &'a Scenario, facts: &Facts, found: &mut Vec<Unused<
     }
 }
 
-/// Agents and automata that play in no suite, networks that no suite searches.
-fn players<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
+/// Agents and automata that play in no suite, networks that neither a suite nor a query searches.
+fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unused<'a>>) {
     let mut agents = vec![false; scenario.agents.len()];
     let mut automata = vec![false; scenario.automata.len()];
-    let mut networks = vec![false; scenario.networks.len()];
+    let mut networks = queries.networks.clone();
     let set =
         |used: &mut [bool], i: u16| used.iter_mut().skip(usize::from(i)).take(1).for_each(|u| *u = true);
     for suite in &scenario.suites {
@@ -184,6 +188,14 @@ impl Uses {
     fn new(count: usize) -> Self {
         Self { read: vec![false; count], set: vec![false; count] }
     }
+
+    fn read_by(read: &[bool]) -> Self {
+        Self { read: read.to_vec(), ..Self::new(read.len()) }
+    }
+}
+
+fn or(read: &mut [bool], more: &[bool]) {
+    read.iter_mut().zip(more).for_each(|(read, more)| *read |= *more);
 }
 
 /// Marks the variables that an expression reads; `but` is the one it is for.
@@ -200,16 +212,18 @@ fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
     });
 }
 
-fn variables<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
-    let mut shared = Uses::new(scenario.shared.len());
+fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unused<'a>>) {
+    let mut shared = Uses::read_by(&queries.shared.vars);
     let owned = |owner: Option<AutomatonId>| -> Vec<&Routine> {
         scenario.functions.iter().filter(|f| f.owner == owner).collect()
     };
     in_functions(&owned(None), &mut Uses::new(0), &mut shared);
     let first = scenario.clocks.len();
-    let mut shared_clocks = Uses::new(first);
+    let mut shared_clocks = Uses::read_by(&queries.shared.clocks);
     for (index, automaton) in scenario.automata.iter().enumerate() {
-        let (mut own, clocks) = uses_of(automaton, first, &mut shared);
+        let (mut own, mut clocks) = uses_of(automaton, first, &mut shared);
+        or(&mut own.read, &queries.automata[index].vars);
+        or(&mut clocks.read[first..], &queries.automata[index].clocks);
         let id = u16::try_from(index).ok().map(AutomatonId);
         in_functions(&owned(id), &mut own, &mut shared);
         for (i, (read, set)) in clocks.read.iter().zip(&clocks.set).take(first).enumerate() {

@@ -1,0 +1,124 @@
+//! The variables and clocks that queries read: of automata, and shared ones.
+
+use crate::{Ask, ClockId, Expr, Formula, Leaf, Measure, Query, Scenario};
+
+/// What is read, by index.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Read {
+    pub vars: Vec<bool>,
+    pub clocks: Vec<bool>,
+}
+
+impl Read {
+    fn new(vars: usize, clocks: usize) -> Self {
+        Self { vars: vec![false; vars], clocks: vec![false; clocks] }
+    }
+}
+
+pub(crate) struct QueryReads {
+    pub shared: Read,
+    /// By automaton: its own.
+    pub automata: Vec<Read>,
+    /// By network: some query is about it.
+    pub networks: Vec<bool>,
+}
+
+impl QueryReads {
+    pub fn of(scenario: &Scenario) -> Self {
+        let automata = scenario.automata.iter().map(|a| Read::new(a.vars.len(), a.clocks.len()));
+        let mut reads = Self {
+            shared: Read::new(scenario.shared.len(), scenario.clocks.len()),
+            automata: automata.collect(),
+            networks: vec![false; scenario.networks.len()],
+        };
+        for query in &scenario.queries {
+            reads.query(scenario, query);
+        }
+        reads
+    }
+
+    fn query(&mut self, scenario: &Scenario, query: &Query) {
+        let at = usize::from(query.network.0);
+        let Some(network) = scenario.networks.get(at) else { return };
+        self.networks[at] = true;
+        let automata: Vec<usize> = network.automata.iter().map(|a| usize::from(a.0)).collect();
+        let mut reader = Reader { automata: &automata, reads: self };
+        match &query.ask {
+            Ask::Possibly(f) | Ask::Invariantly(f) | Ask::PotentiallyAlways(f) | Ask::Eventually(f) => {
+                reader.formula(f);
+            }
+            Ask::LeadsTo(f, g) => {
+                reader.formula(f);
+                reader.formula(g);
+            }
+            Ask::Sup { of, when } | Ask::Inf { of, when } => {
+                reader.formula(when);
+                of.iter().for_each(|m| match m {
+                    Measure::Clock(clock) => reader.clock(*clock),
+                    Measure::Data(e) => reader.data(e),
+                });
+            }
+        }
+    }
+}
+
+/// A query counts the variables and clocks of its automata on, in the network's order; shared clocks come first.
+struct Reader<'a> {
+    automata: &'a [usize],
+    reads: &'a mut QueryReads,
+}
+
+impl Reader<'_> {
+    fn formula(&mut self, formula: &Formula) {
+        match formula {
+            Formula::Data(e) => self.data(e),
+            Formula::Clock(bound) => {
+                [Some(bound.clock), bound.minus].into_iter().flatten().for_each(|c| self.clock(c));
+                bound.bound.terms.iter().for_each(|(_, e)| self.data(e));
+            }
+            Formula::Not(f) => self.formula(f),
+            Formula::And(fs) | Formula::Or(fs) => fs.iter().for_each(|f| self.formula(f)),
+            Formula::At { .. } | Formula::Deadlock => {}
+        }
+    }
+
+    fn data(&mut self, e: &Expr) {
+        e.each_leaf(&mut |leaf| match leaf {
+            Leaf::Own(i) => mark(self.automata, &mut self.reads.automata, usize::from(i), |r| &mut r.vars),
+            Leaf::Shared(i) => {
+                if let Some(read) = self.reads.shared.vars.get_mut(usize::from(i)) {
+                    *read = true;
+                }
+            }
+            Leaf::Local(_) | Leaf::Signal(_) => {}
+        });
+    }
+
+    fn clock(&mut self, clock: ClockId) {
+        let (at, shared) = (usize::from(clock.0), &mut self.reads.shared.clocks);
+        match at.checked_sub(shared.len()) {
+            None => shared[at] = true,
+            Some(own) => mark(self.automata, &mut self.reads.automata, own, |r| &mut r.clocks),
+        }
+    }
+}
+
+/// Marks what is at this place when those of the automata are put one after the other.
+fn mark(
+    automata: &[usize],
+    reads: &mut [Read],
+    mut at: usize,
+    of: impl for<'r> Fn(&'r mut Read) -> &'r mut Vec<bool>,
+) {
+    for automaton in automata {
+        let Some(read) = reads.get_mut(*automaton) else { return };
+        let all = of(read);
+        match all.get_mut(at) {
+            Some(read) => {
+                *read = true;
+                return;
+            }
+            None => at -= all.len(),
+        }
+    }
+}
