@@ -13,6 +13,7 @@ mod fix;
 mod input;
 mod installing;
 mod project;
+mod quantity;
 mod render;
 mod results_folder;
 mod terminal;

@@ -901,7 +901,11 @@ module.exports = grammar({
       choice(
         seq(keyword($, "run"), field("value", $.string)),
         seq(keyword($, "coverage"), list(field("value", $.string))),
-        ...["limit", "budget"].map((word) => seq(keyword($, word), field("value", $.expression))),
+        ...["limit", "budget", "cpu", "wall", "memory", "output"].map((word) =>
+          seq(keyword($, word), field("value", $.expression)),
+        ),
+        seq(keyword($, "env"), list(field("value", $.identifier))),
+        keyword($, "online"),
       ),
   },
 });

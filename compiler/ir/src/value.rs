@@ -45,6 +45,7 @@ pub enum Unit {
     Pascal,
     Hertz,
     NewtonMetre,
+    Byte,
 }
 
 impl Unit {
@@ -65,6 +66,7 @@ impl Unit {
             Unit::Pascal => "Pa",
             Unit::Hertz => "Hz",
             Unit::NewtonMetre => "Nm",
+            Unit::Byte => "B",
         }
     }
 }

@@ -1189,5 +1189,14 @@ pub struct System {
     /// Seconds.
     pub limit: f64,
     pub budget: f64,
+    /// Seconds.
+    pub cpu: Option<f64>,
+    pub wall: Option<f64>,
+    /// Bytes.
+    pub memory: Option<f64>,
+    pub output: Option<f64>,
+    /// Names of variables.
+    pub env: Vec<String>,
+    pub online: bool,
     pub span: Span,
 }

@@ -9,17 +9,19 @@ use serde::Serialize;
 
 use hrdsl_source::Enumeration;
 
-/// A physical dimension: exponents of metre, kilogram, second and radian.
+/// A physical dimension: exponents of metre, kilogram, second, radian and byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Dim {
     pub m: i8,
     pub kg: i8,
     pub s: i8,
     pub rad: i8,
+    #[serde(rename = "B")]
+    pub byte: i8,
 }
 
 const fn dim(m: i8, kg: i8, s: i8, rad: i8) -> Dim {
-    Dim { m, kg, s, rad }
+    Dim { m, kg, s, rad, byte: 0 }
 }
 
 /// The dimensions that have a name: its type's name, the name in a sentence, its SI unit.
@@ -37,6 +39,7 @@ const NAMED: &[(Dim, &str, &str, &str)] = &[
     (Dim::PRESSURE, "pressure", "a pressure", "Pa"),
     (Dim::TORQUE, "torque", "a torque", "Nm"),
     (Dim::FREQUENCY, "frequency", "a frequency", "Hz"),
+    (Dim::DATA, "data", "an amount of data", "B"),
 ];
 
 impl Dim {
@@ -53,19 +56,28 @@ impl Dim {
     pub const PRESSURE: Dim = dim(-1, 1, -2, 0);
     pub const TORQUE: Dim = dim(2, 1, -2, 0);
     pub const FREQUENCY: Dim = dim(0, 0, -1, 0);
+    pub const DATA: Dim = Dim { byte: 1, ..Dim::NUMBER };
 
     /// The dimension of a product.
     #[must_use]
     pub fn times(self, other: Dim) -> Dim {
-        let add = i8::saturating_add;
-        dim(add(self.m, other.m), add(self.kg, other.kg), add(self.s, other.s), add(self.rad, other.rad))
+        self.combine(other, i8::saturating_add)
     }
 
     /// The dimension of a quotient.
     #[must_use]
     pub fn per(self, other: Dim) -> Dim {
-        let sub = i8::saturating_sub;
-        dim(sub(self.m, other.m), sub(self.kg, other.kg), sub(self.s, other.s), sub(self.rad, other.rad))
+        self.combine(other, i8::saturating_sub)
+    }
+
+    fn combine(self, other: Dim, by: fn(i8, i8) -> i8) -> Dim {
+        Dim {
+            m: by(self.m, other.m),
+            kg: by(self.kg, other.kg),
+            s: by(self.s, other.s),
+            rad: by(self.rad, other.rad),
+            byte: by(self.byte, other.byte),
+        }
     }
 
     /// The SI unit's symbol; `None` for a dimension without a name.
@@ -81,7 +93,7 @@ impl fmt::Display for Dim {
             return f.write_str(named.2);
         }
         f.write_str("a quantity in")?;
-        for (unit, power) in [("m", self.m), ("kg", self.kg), ("s", self.s), ("rad", self.rad)] {
+        for (unit, power) in [("m", self.m), ("kg", self.kg), ("s", self.s), ("rad", self.rad), ("B", self.byte)] {
             match power {
                 0 => {}
                 1 => write!(f, " {unit}")?,
@@ -403,6 +415,13 @@ pub const UNITS: &[Unit] = &[
     unit("Nm", Dim::TORQUE, 1.0, 1.0),
     unit("Hz", Dim::FREQUENCY, 1.0, 1.0),
     unit("kHz", Dim::FREQUENCY, 1e3, 1.0),
+    unit("B", Dim::DATA, 1.0, 1.0),
+    unit("kB", Dim::DATA, 1e3, 1.0),
+    unit("MB", Dim::DATA, 1e6, 1.0),
+    unit("GB", Dim::DATA, 1e9, 1.0),
+    unit("KiB", Dim::DATA, 1024.0, 1.0),
+    unit("MiB", Dim::DATA, 1_048_576.0, 1.0),
+    unit("GiB", Dim::DATA, 1_073_741_824.0, 1.0),
     unit("%", Dim::NUMBER, 1.0, 1e2),
 ];
 

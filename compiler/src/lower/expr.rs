@@ -49,6 +49,7 @@ pub(crate) fn unit(dim: Dim) -> Unit {
         (Dim::PRESSURE, Unit::Pascal),
         (Dim::TORQUE, Unit::NewtonMetre),
         (Dim::FREQUENCY, Unit::Hertz),
+        (Dim::DATA, Unit::Byte),
     ];
     units.into_iter().find(|(d, _)| *d == dim).map_or(Unit::None, |(_, unit)| unit)
 }

@@ -76,6 +76,12 @@ pub(crate) fn system(s: &model::System) -> System {
         coverage: s.coverage.clone(),
         limit: nanos(s.limit),
         budget: nanos(s.budget),
+        cpu: s.cpu.map(nanos),
+        wall: s.wall.map(nanos),
+        memory: s.memory.map(|bytes| bytes as u64),
+        output: s.output.map(|bytes| bytes as u64),
+        env: s.env.clone(),
+        online: s.online,
         origin: s.span,
     }
 }

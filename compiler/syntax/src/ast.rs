@@ -1069,7 +1069,19 @@ pub enum SystemMemberKind {
     Coverage(Vec<Text>),
     /// `limit 300 s`: simulated time
     Limit(Expr),
-    /// `budget 10 s`: wall-clock time for one request
+    /// `budget 10 s`: processor time, or sleep, for one request
     Budget(Expr),
+    /// `cpu 5 min`: processor time for a test
+    Cpu(Expr),
+    /// `wall 1 h`: wall time for a test
+    Wall(Expr),
+    /// `memory 2 GB`: for each process
+    Memory(Expr),
+    /// `output 10 MB`: for a test
+    Output(Expr),
+    /// `env ROBOT_NAME, ROS_DOMAIN_ID`: variables of the environment that are handed on
+    Env(Vec<Name>),
+    /// `online`: it uses the machine's network
+    Online,
     Error,
 }

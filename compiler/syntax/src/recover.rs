@@ -396,5 +396,5 @@ members! {
     TestMember TestMemberKind StartTestMember [] starts_call: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
         Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;
-    SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget;
+    SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget | Cpu | Wall | Memory | Output | Env | Online;
 }

@@ -259,6 +259,12 @@ tokens! {
     Coverage "coverage" Soft "system",
     Limit "limit" Soft "system",
     Budget "budget" Soft "system",
+    Cpu "cpu" Soft "system",
+    Wall "wall" Soft "system",
+    Memory "memory" Soft "system",
+    Output "output" Soft "system",
+    Env "env" Soft "system",
+    Online "online" Soft "system",
 }
 
 impl Kind {

@@ -58,7 +58,7 @@ pub struct Args {
     #[command(flatten)]
     how: How,
     /// Stop after this time, like `60s` or `500ms`: what is not decided then is open.
-    #[arg(long, value_name = "T", value_parser = duration)]
+    #[arg(long, value_name = "T", value_parser = quantity::time)]
     timeout: Option<Duration>,
     /// Tell each run that shows something, step by step.
     #[arg(long)]
@@ -102,8 +102,8 @@ pub struct How {
     #[arg(long, value_name = "N")]
     budget_states: Option<usize>,
     /// The most memory for them, like `2GB` or `500MB`.
-    #[arg(long, value_name = "SIZE", value_parser = memory)]
-    budget_memory: Option<usize>,
+    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
+    budget_memory: Option<u64>,
 }
 
 impl How {
@@ -315,40 +315,4 @@ fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
 fn verdict(rows: &[Row]) -> Exit {
     let worst = |exit: Exit| rows.iter().any(|r| r.exit() == exit).then_some(exit);
     worst(Exit::Errors).or(worst(Exit::Findings)).or(worst(Exit::Open)).unwrap_or(Exit::Ok)
-}
-
-/// `60s`, `500ms`, `2min`; a bare number counts seconds.
-fn duration(text: &str) -> Result<Duration, String> {
-    let (number, unit) = split(text)?;
-    let factor = match unit {
-        "" | "s" => 1.0,
-        "ms" => 1e-3,
-        "min" => 60.0,
-        "h" => 3600.0,
-        other => return Err(format!("`{other}` is no unit of time: ms, s, min or h")),
-    };
-    Duration::try_from_secs_f64(number * factor).map_err(|e| e.to_string())
-}
-
-/// `2GB`, `500MB`, `64kB`; a bare number counts bytes.
-fn memory(text: &str) -> Result<usize, String> {
-    let (number, unit) = split(text)?;
-    let factor = match unit.to_ascii_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "k" | "kb" => 1e3,
-        "m" | "mb" => 1e6,
-        "g" | "gb" => 1e9,
-        "kib" => 1024.0,
-        "mib" => 1_048_576.0,
-        "gib" => 1_073_741_824.0,
-        _ => return Err(format!("`{unit}` is no unit of memory: kB, MB or GB")),
-    };
-    Ok((number * factor) as usize)
-}
-
-fn split(text: &str) -> Result<(f64, &str), String> {
-    let text = text.trim();
-    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-    let number: f64 = text[..end].parse().map_err(|_| format!("`{text}` begins with no number"))?;
-    Ok((number, text[end..].trim()))
 }

@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use hrdsl_ir::{Program, system::System, test::Test};
+use hrdsl_ir::{Nanos, Program, system::System, test::Test};
 use hrdsl_runtime::{
     campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare},
     report,
@@ -26,6 +26,7 @@ use crate::{
     exit::Exit,
     input::{self, Fault},
     installing::Installing,
+    quantity,
     results_folder::ResultsFolder,
 };
 
@@ -84,17 +85,17 @@ pub struct Args {
     #[arg(long, value_enum, value_name = "HOW")]
     isolation: Option<IsolationArg>,
     /// Processor time that the program may use in a test, as `90s` or `5min`, instead of what the scenario says.
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
     cpu_limit: Option<Duration>,
     /// Wall time after which a test is given up.
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
     wall_limit: Option<Duration>,
     /// Memory that each process of the program may use, as `500MB` or `2GB`.
-    #[arg(long, value_name = "SIZE")]
-    memory_limit: Option<bytesize::ByteSize>,
+    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
+    memory_limit: Option<u64>,
     /// Output that the program may write in a test.
-    #[arg(long, value_name = "SIZE")]
-    output_limit: Option<bytesize::ByteSize>,
+    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
+    output_limit: Option<u64>,
 }
 
 /// How tests are kept apart.
@@ -170,6 +171,7 @@ fn prepared<'p>(
         Cells::probe(Supervisor::this_program(SUPERVISE), &dir, wanted).map_err(|e| e.to_string())?;
     cells.hidden = hidden(&dir, out, folder);
     cells.terminal = args.debug;
+    cells.network = system.online;
     for gap in &cells.gaps {
         eprintln!("note: {gap}");
     }
@@ -182,7 +184,7 @@ fn prepared<'p>(
         env,
         cells,
         limits: limits(args, system),
-        variables: variables(args),
+        variables: variables(args, system),
         keep: args.keep_files.then(|| folder.staging().join("files")).map(absolute).transpose()?,
         jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
         stop: stop_flag(args.debug)?,
@@ -204,12 +206,14 @@ fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
 }
 
 /// What the program finds in its environment besides what every program does.
-fn variables(args: &Args) -> Vec<(OsString, OsString)> {
-    if !args.debug {
-        return Vec::new();
+fn variables(args: &Args, system: &System) -> Vec<(OsString, OsString)> {
+    let given = |name: &String| Some((name.into(), std::env::var_os(name)?));
+    let mut variables: Vec<_> = system.env.iter().filter_map(given).collect();
+    if args.debug {
+        variables.push(("HRDSL_DEBUG".into(), "1".into()));
+        variables.extend(std::env::var_os("TERM").map(|term| ("TERM".into(), term)));
     }
-    let terminal = std::env::var_os("TERM").map(|term| ("TERM".into(), term));
-    [("HRDSL_DEBUG".into(), "1".into())].into_iter().chain(terminal).collect()
+    variables
 }
 
 fn limits(args: &Args, system: &System) -> ProgramLimits {
@@ -219,12 +223,13 @@ fn limits(args: &Args, system: &System) -> ProgramLimits {
         let for_ever = Duration::from_secs(u64::from(u32::MAX));
         return ProgramLimits { budget: for_ever, cpu: for_ever, wall: for_ever, ..default };
     }
+    let declared = |time: Option<Nanos>| time.map(|t| Duration::from_nanos(t.max(0).unsigned_abs()));
     ProgramLimits {
-        budget: Duration::from_nanos(system.budget.max(0).unsigned_abs()),
-        cpu: args.cpu_limit.unwrap_or(default.cpu),
-        wall: args.wall_limit.unwrap_or(default.wall),
-        memory: args.memory_limit.map_or(default.memory, |size| size.as_u64()),
-        output: args.output_limit.map_or(default.output, |size| size.as_u64()),
+        budget: declared(Some(system.budget)).unwrap_or(default.budget),
+        cpu: args.cpu_limit.or(declared(system.cpu)).unwrap_or(default.cpu),
+        wall: args.wall_limit.or(declared(system.wall)).unwrap_or(default.wall),
+        memory: args.memory_limit.or(system.memory).unwrap_or(default.memory),
+        output: args.output_limit.or(system.output).unwrap_or(default.output),
     }
 }
 
@@ -335,7 +340,7 @@ fn rerun(args: &Args, out: &Path) -> String {
     let times = [("--cpu-limit", args.cpu_limit), ("--wall-limit", args.wall_limit)];
     let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
-    let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?.as_u64())));
+    let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());
     words.join(" ")

@@ -17,6 +17,9 @@ pub(super) const FUNCTIONS: [(&str, Function); 4] =
 /// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
 pub(super) const MAX_TIME: f64 = 1e9;
 
+/// More bytes than any machine has.
+const MAX_DATA: f64 = 1e15;
+
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
     pub(super) fn expr(&mut self, e: &ast::Expr, env: &mut Env) -> Expr {
@@ -205,6 +208,17 @@ impl<'a> Checker<'a> {
             return None;
         }
         Some(t)
+    }
+
+    /// A constant amount of data, in bytes: at least one.
+    pub(super) fn data(&mut self, e: &ast::Expr, what: &str) -> Option<f64> {
+        let bytes = self.quantity_of(e, Dim::DATA)?;
+        if (1.0..=MAX_DATA).contains(&bytes) {
+            return Some(bytes);
+        }
+        let rule = if bytes < 1.0 { "at least 1 B".to_owned() } else { format!("at most {MAX_DATA} B") };
+        self.report(types::must_be(what, &rule, e.span));
+        None
     }
 
     /// A constant whole number of at least `lo`.

@@ -31,8 +31,20 @@ impl Checker<'_> {
             self.report(issue);
         }
         let actor = actor.unwrap_or(ActorId(0));
-        let mut resolved =
-            System { actor, run: String::new(), coverage: Vec::new(), limit: 300.0, budget: 10.0, span };
+        let mut resolved = System {
+            actor,
+            run: String::new(),
+            coverage: Vec::new(),
+            limit: 300.0,
+            budget: 10.0,
+            cpu: None,
+            wall: None,
+            memory: None,
+            output: None,
+            env: Vec::new(),
+            online: false,
+            span,
+        };
         let mut runs = false;
         for member in &system.members {
             match &member.kind {
@@ -50,6 +62,12 @@ impl Checker<'_> {
                 Member::Coverage(files) => resolved.coverage.extend(files.iter().map(|f| f.text.clone())),
                 Member::Limit(e) => resolved.limit = self.time(e, "the limit", true).unwrap_or(300.0),
                 Member::Budget(e) => resolved.budget = self.time(e, "the budget", true).unwrap_or(10.0),
+                Member::Cpu(e) => resolved.cpu = self.time(e, "the processor time", true),
+                Member::Wall(e) => resolved.wall = self.time(e, "the wall time", true),
+                Member::Memory(e) => resolved.memory = self.data(e, "the memory"),
+                Member::Output(e) => resolved.output = self.data(e, "the output"),
+                Member::Env(names) => resolved.env.extend(names.iter().map(|n| n.text.clone())),
+                Member::Online => resolved.online = true,
                 Member::Error => runs = true,
             }
         }

@@ -286,8 +286,17 @@ impl Marker<'_> {
 
     pub(super) fn system_member(&mut self, kind: &SystemMemberKind) {
         match kind {
-            SystemMemberKind::Limit(expr) | SystemMemberKind::Budget(expr) => self.expr(expr),
-            SystemMemberKind::Run(_) | SystemMemberKind::Coverage(_) | SystemMemberKind::Error => {}
+            SystemMemberKind::Limit(expr)
+            | SystemMemberKind::Budget(expr)
+            | SystemMemberKind::Cpu(expr)
+            | SystemMemberKind::Wall(expr)
+            | SystemMemberKind::Memory(expr)
+            | SystemMemberKind::Output(expr) => self.expr(expr),
+            SystemMemberKind::Run(_)
+            | SystemMemberKind::Coverage(_)
+            | SystemMemberKind::Env(_)
+            | SystemMemberKind::Online
+            | SystemMemberKind::Error => {}
         }
     }
 
