@@ -406,11 +406,11 @@ fn an_editable_package_behind_a_hook_is_told() {
     let info = site.join("my_lib-1.0.dist-info");
     fs::create_dir(&info).unwrap();
     fs::write(info.join("RECORD"), "__editable__.my_lib-1.0.pth,sha256=x,1\n").unwrap();
-    fs::write(
-        info.join("direct_url.json"),
-        r#"{"url": "file:///src/my%20lib", "dir_info": {"editable": true}}"#,
-    )
-    .unwrap();
+    project.library("code of it", "x");
+    let folder = project.at("code of it").display().to_string();
+    let url = format!("file://{}", folder.replace(' ', "%20"));
+    let origin = format!(r#"{{"url": "{url}", "dir_info": {{"editable": true}}}}"#);
+    fs::write(info.join("direct_url.json"), origin).unwrap();
     let hook = "import __editable___my_lib_1_0_finder; __editable___my_lib_1_0_finder.install()\n";
     fs::write(site.join("__editable__.my_lib-1.0.pth"), hook).unwrap();
     let told = RefCell::new(Vec::new());
@@ -420,11 +420,10 @@ fn an_editable_package_behind_a_hook_is_told() {
         }
     };
     project.prepare_with(".venv/bin/python", &listen).unwrap();
-    let expected = Hooked { package: "my_lib".into(), folder: Some("/src/my lib".into()) };
+    let expected = Hooked { package: "my_lib".into(), folder: Some(folder) };
     assert_eq!(told.take(), [expected]);
     // Once it is required, there is nothing to tell.
-    project.library("my-lib", "x");
-    project.write("requirements.txt", "-e ./my-lib");
+    project.write("requirements.txt", "-e './code of it'");
     project.prepare_with(".venv/bin/python", &listen).unwrap();
     assert_eq!(told.take(), []);
 }
