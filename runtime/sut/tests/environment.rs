@@ -299,6 +299,20 @@ fn what_an_interrupted_installation_leaves_is_removed() {
     assert!(tag.starts_with("Signature: 8a477f597d28d172789f06886806bc55"));
 }
 
+/// Else what was half of one state and half of another would be kept as the one.
+#[test]
+fn a_library_that_changes_while_it_is_installed_is_not_kept() {
+    let project = Project::with_library("old");
+    project.write("requirements.txt", "./mylib");
+    let edit = format!("open({:?}, 'a').write('#')\n", project.at("mylib/mylib.py").display().to_string());
+    project.write("mylib/backend.py", &format!("{edit}{BACKEND}"));
+    let error = project.prepare_with("python3", &|_| {}).unwrap_err().to_string();
+    assert!(error.contains("changed while they were installed"), "{error}");
+    project.write("mylib/backend.py", BACKEND);
+    project.greet("mylib", "new");
+    expect(project.greeting(), "new", 1);
+}
+
 #[test]
 fn pip_is_heard_while_it_works() {
     let project = Project::with_library("heard");

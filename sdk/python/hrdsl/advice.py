@@ -38,7 +38,8 @@ def _inside(name, inner):
     for folder in getattr(package, "__path__", ()):
         project = _project_of(os.path.join(os.path.relpath(folder), inner))
         if project:
-            return "%s is the folder of a project: put `%s` into requirements.txt beside the scenario" % (folder, project)
+            advice = "%s is the folder of a project: put `%s` into requirements.txt beside the scenario"
+            return advice % (folder, project)
     return None
 
 
