@@ -6,7 +6,7 @@ mod support;
 use std::{fs, path::Path, process::Output};
 
 use serde_json::Value;
-use support::{command, expect_code, folder, handover, stderr};
+use support::{command, expect_code, folder, handover, root, stderr};
 
 const ROBOT: &str = "import sys\nimport mylib\nsys.exit('says ' + mylib.GREETING + ' in ' + sys.prefix)\n";
 
@@ -85,6 +85,17 @@ fn pips_configuration_decides_what_is_tested() {
     fs::remove_file(folder.join("two/mylib-2.0-py3-none-any.whl")).unwrap();
     let (_, error) = sim(folder, &configured);
     assert!(error.contains("says 1.0"), "{error}");
+    forget(folder);
+}
+
+/// Removes what was installed for a project: it serves no other test.
+fn forget(project: &Path) {
+    for entry in fs::read_dir(root().join("target/hrdsl-cache")).unwrap().flatten() {
+        let text = fs::read_to_string(entry.path().join("mylib.py")).unwrap_or_default();
+        if text.contains(&project.display().to_string()) {
+            fs::remove_dir_all(entry.path()).unwrap();
+        }
+    }
 }
 
 #[test]

@@ -274,25 +274,15 @@ fn of_several_that_need_the_same_one_installs_and_the_others_wait() {
     let project = Project::with_library("once");
     project.write("requirements.txt", "./mylib");
     let together = Barrier::new(3);
-    let steps: Vec<(usize, usize)> = std::thread::scope(|scope| {
+    let installed: Vec<usize> = std::thread::scope(|scope| {
         let prepare = || {
             together.wait();
-            let (started, waited) = (RefCell::new(0), RefCell::new(0));
-            let listen = |step: Preparation<'_>| match step {
-                Preparation::Started { what } => *started.borrow_mut() += usize::from(what == "mylib"),
-                Preparation::Waiting { what } => *waited.borrow_mut() += usize::from(what == "mylib"),
-                Preparation::Damaged { .. }
-                | Preparation::Working { .. }
-                | Preparation::Finished { .. }
-                | Preparation::Hooked { .. } => {}
-            };
-            project.prepare_with("python3", &listen).unwrap();
-            (started.into_inner(), waited.into_inner())
+            project.prepare().1.len()
         };
         let threads: Vec<_> = (0..3).map(|_| scope.spawn(prepare)).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
-    assert_eq!(steps.iter().map(|s| s.0).sum::<usize>(), 1, "{steps:?}");
+    assert_eq!(installed.iter().sum::<usize>(), 1, "{installed:?}");
     expect(project.greeting(), "once", 0);
 }
 
@@ -307,6 +297,20 @@ fn what_an_interrupted_installation_leaves_is_removed() {
     assert!(project.unfinished().is_empty(), "{:?}", project.unfinished());
     let tag = fs::read_to_string(project.at("cache/CACHEDIR.TAG")).unwrap();
     assert!(tag.starts_with("Signature: 8a477f597d28d172789f06886806bc55"));
+}
+
+/// Else what was half of one state and half of another would be kept as the one.
+#[test]
+fn a_library_that_changes_while_it_is_installed_is_not_kept() {
+    let project = Project::with_library("old");
+    project.write("requirements.txt", "./mylib");
+    let edit = format!("open({:?}, 'a').write('#')\n", project.at("mylib/mylib.py").display().to_string());
+    project.write("mylib/backend.py", &format!("{edit}{BACKEND}"));
+    let error = project.prepare_with("python3", &|_| {}).unwrap_err().to_string();
+    assert!(error.contains("changed while they were installed"), "{error}");
+    project.write("mylib/backend.py", BACKEND);
+    project.greet("mylib", "new");
+    expect(project.greeting(), "new", 1);
 }
 
 #[test]
@@ -416,11 +420,11 @@ fn an_editable_package_behind_a_hook_is_told() {
     let info = site.join("my_lib-1.0.dist-info");
     fs::create_dir(&info).unwrap();
     fs::write(info.join("RECORD"), "__editable__.my_lib-1.0.pth,sha256=x,1\n").unwrap();
-    fs::write(
-        info.join("direct_url.json"),
-        r#"{"url": "file:///src/my%20lib", "dir_info": {"editable": true}}"#,
-    )
-    .unwrap();
+    project.library("code of it", "x");
+    let folder = project.at("code of it").display().to_string();
+    let url = format!("file://{}", folder.replace(' ', "%20"));
+    let origin = format!(r#"{{"url": "{url}", "dir_info": {{"editable": true}}}}"#);
+    fs::write(info.join("direct_url.json"), origin).unwrap();
     let hook = "import __editable___my_lib_1_0_finder; __editable___my_lib_1_0_finder.install()\n";
     fs::write(site.join("__editable__.my_lib-1.0.pth"), hook).unwrap();
     let told = RefCell::new(Vec::new());
@@ -430,11 +434,10 @@ fn an_editable_package_behind_a_hook_is_told() {
         }
     };
     project.prepare_with(".venv/bin/python", &listen).unwrap();
-    let expected = Hooked { package: "my_lib".into(), folder: Some("/src/my lib".into()) };
+    let expected = Hooked { package: "my_lib".into(), folder: Some(folder) };
     assert_eq!(told.take(), [expected]);
     // Once it is required, there is nothing to tell.
-    project.library("my-lib", "x");
-    project.write("requirements.txt", "-e ./my-lib");
+    project.write("requirements.txt", "-e './code of it'");
     project.prepare_with(".venv/bin/python", &listen).unwrap();
     assert_eq!(told.take(), []);
 }

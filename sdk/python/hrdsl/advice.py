@@ -21,19 +21,13 @@ def about(error: ImportError) -> str | None:
         return "`%s` belongs to Python, but %s came without it: install it there" % (name, sys.executable)
     place = _in_project(name)
     if place is None:
-        return (
-            "put `%s` into requirements.txt beside the scenario (or the package that has it, if that is called otherwise)"
-            % name
-        )
+        return "put `%s` into requirements.txt beside the scenario (or the package that has it)" % name
     project = _project_of(place)
     if project:
         return "`%s` is at %s: put `%s` into requirements.txt beside the scenario" % (name, place, project)
     folder = os.path.dirname(place) or "."
-    return '`%s` is at %s, where no module is looked for: add `sys.path.append("%s")` before the import' % (
-        name,
-        place,
-        folder,
-    )
+    advice = '`%s` is at %s, where no module is looked for: add `sys.path.append("%s")` before the import'
+    return advice % (name, place, folder)
 
 
 def _inside(name: str, inner: str) -> str | None:
@@ -46,7 +40,8 @@ def _inside(name: str, inner: str) -> str | None:
     for folder in getattr(package, "__path__", ()):
         project = _project_of(os.path.join(os.path.relpath(folder), inner))
         if project:
-            return "%s is the folder of a project: put `%s` into requirements.txt beside the scenario" % (folder, project)
+            advice = "%s is the folder of a project: put `%s` into requirements.txt beside the scenario"
+            return advice % (folder, project)
     return None
 
 

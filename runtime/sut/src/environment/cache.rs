@@ -56,7 +56,8 @@ impl<'a> Cache<'a> {
         let dir = dir.canonicalize().map_err(SutError::io("cannot find the cache"))?;
         let tag = dir.join(TAG.0);
         if !tag.exists() {
-            fs::write(&tag, TAG.1).map_err(SutError::io(format!("cannot write {}", tag.display())))?;
+            // A cache that cannot be written may still have all that is needed.
+            let _ = fs::write(&tag, TAG.1);
         }
         let cache = Self { dir, listen };
         cache.sweep();
@@ -205,4 +206,110 @@ fn damage(place: &Path) -> Option<String> {
             Err(_) => Some(format!("{} is missing", path.display())),
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{cell::RefCell, sync::mpsc::channel};
+
+    use super::*;
+
+    fn part() -> Part<'static> {
+        Part { kind: "x", key: "1".to_owned(), what: "x" }
+    }
+
+    fn fill(making: &Making) -> Result<(), SutError> {
+        fs::write(making.folder.join("all"), "12").map_err(SutError::io("write"))
+    }
+
+    fn kept(dir: &Path) -> Vec<String> {
+        let names = fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        names.filter(|name| !name.ends_with(".lock") && name != TAG.0).collect()
+    }
+
+    #[test]
+    fn a_folder_is_made_once_and_never_half() {
+        let dir = tempfile::tempdir().unwrap();
+        let cache = Cache::open(dir.path(), &|_| {}).unwrap();
+        let fail = cache.made(&part(), |making| {
+            fs::write(making.folder.join("half"), "").unwrap();
+            Err(SutError::Environment { what: "w".into(), detail: "d".into() })
+        });
+        assert!(fail.is_err());
+        assert!(kept(dir.path()).is_empty(), "nothing stays behind");
+        let first = cache.made(&part(), fill).unwrap();
+        let again = cache.made(&part(), |_| panic!("made twice")).unwrap();
+        assert_eq!(first, again);
+        assert_eq!(kept(dir.path()), ["x-1"]);
+    }
+
+    #[test]
+    fn damage_is_told_and_mended() {
+        let dir = tempfile::tempdir().unwrap();
+        let told = RefCell::new(Vec::new());
+        let listen = |step: Preparation<'_>| {
+            if let Preparation::Damaged { why, .. } = step {
+                told.borrow_mut().push(why.to_owned());
+            }
+        };
+        let cache = Cache::open(dir.path(), &listen).unwrap();
+        let place = cache.made(&part(), fill).unwrap();
+        fs::write(place.join("of a program"), "").unwrap();
+        cache.made(&part(), |_| panic!("a file more is no damage")).unwrap();
+        fs::write(place.join("all"), "1").unwrap();
+        cache.made(&part(), fill).unwrap();
+        let time = fs::File::open(place.join("all")).unwrap();
+        time.set_modified(std::time::UNIX_EPOCH).unwrap();
+        cache.made(&part(), fill).unwrap();
+        fs::remove_file(place.join("all")).unwrap();
+        cache.made(&part(), fill).unwrap();
+        let ends: Vec<bool> = ["all has changed", "all has changed", "all is missing"]
+            .iter()
+            .zip(told.borrow().iter())
+            .map(|(end, why)| why.ends_with(end))
+            .collect();
+        assert_eq!(ends, [true; 3], "{:?}", told.borrow());
+    }
+
+    /// The second says that it waits, and makes nothing; meanwhile nobody sweeps away what the first is making.
+    #[test]
+    fn a_second_maker_waits_for_the_first() {
+        let dir = tempfile::tempdir().unwrap();
+        let (waits, waiting) = channel();
+        let (begins, begun) = channel();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let first = Cache::open(dir.path(), &|_| {}).unwrap();
+                let made = first.made(&part(), move |making| {
+                    begins.send(()).unwrap();
+                    waiting.recv().unwrap();
+                    fill(making)
+                });
+                made.unwrap();
+            });
+            begun.recv().unwrap();
+            let listen = |step: Preparation<'_>| match step {
+                Preparation::Waiting { .. } => waits.send(()).unwrap(),
+                other => panic!("{other:?}"),
+            };
+            let second = Cache::open(dir.path(), &listen).unwrap();
+            let place = second.made(&part(), |_| panic!("made twice")).unwrap();
+            assert!(place.join("all").exists());
+        });
+    }
+
+    #[test]
+    fn what_nobody_works_in_is_swept_away() {
+        let dir = tempfile::tempdir().unwrap();
+        let left = dir.path().join(format!("{}abc", temporary_prefix("x-1")));
+        fs::create_dir(&left).unwrap();
+        fs::write(left.join("half"), "").unwrap();
+        let lock = File::create(dir.path().join(".x-1.lock")).unwrap();
+        lock.lock().unwrap();
+        Cache::open(dir.path(), &|_| {}).unwrap();
+        assert!(left.exists(), "somebody works there");
+        drop(lock);
+        Cache::open(dir.path(), &|_| {}).unwrap();
+        assert!(!left.exists());
+    }
 }

@@ -20,6 +20,7 @@ use crate::SutError;
 
 /// How much of what pip said is passed on when it fails.
 const LAST_LINES: usize = 16;
+const LONGEST_LINE: usize = 240;
 
 /// What is installed, and how.
 pub(super) struct Order<'a> {
@@ -88,23 +89,35 @@ fn pip(order: &Order<'_>, python: &Path, written: &Written, making: &Making) -> 
 
 fn failure(order: &Order<'_>, written: &Written, said: &Said) -> SutError {
     let lines = if said.stderr.is_empty() { &said.stdout } else { &said.stderr };
-    // Which package it was about, errors of its build do not say.
+    let last = lines[lines.len().saturating_sub(LAST_LINES)..].iter();
+    let mut text = written.original(&last.map(|line| shortened(line)).collect::<Vec<_>>().join("\n"));
+    let mut required = blamed(order.requirements, &text);
+    // Errors of a build do not say which package it was.
     let is_about = |line: &&String| ["Collecting ", "Processing "].iter().any(|word| line.starts_with(word));
-    let about = said.stdout.iter().rfind(is_about).filter(|_| !said.stderr.is_empty());
-    let last = &lines[lines.len().saturating_sub(LAST_LINES)..];
-    let text = about.into_iter().chain(last).map(String::as_str).collect::<Vec<_>>().join("\n");
-    let text = written.original(&text);
-    let blamed = |line: &&Line| line.name.is_some() && is_blamed(line, &text);
-    let mut lines: Vec<String> = order
-        .requirements
-        .all_lines()
-        .filter(blamed)
-        .map(|line| format!("required at {}: {}", line.origin, line.text))
-        .collect();
-    lines.insert(0, text);
-    lines
-        .push("without a network, give pip a folder of wheels by PIP_FIND_LINKS and PIP_NO_INDEX".to_owned());
-    SutError::Environment { what: format!("pip could not install {}", order.what), detail: lines.join("\n") }
+    if let (true, Some(about)) = (required.is_empty(), said.stdout.iter().rfind(is_about)) {
+        text = format!("{}\n{text}", written.original(about));
+        required = blamed(order.requirements, &text);
+    }
+    let advice = "without a network, give pip a folder of wheels by PIP_FIND_LINKS and PIP_NO_INDEX";
+    SutError::Environment {
+        what: format!("pip could not install {}", order.what),
+        detail: format!("{text}\n{required}{advice}"),
+    }
+}
+
+/// The requirements that pip's errors name, a line for each.
+fn blamed(requirements: &Requirements, text: &str) -> String {
+    let blamed = |line: &&Line| line.name.is_some() && is_blamed(line, text);
+    let lines = requirements.all_lines().filter(blamed);
+    lines.map(|line| format!("required at {}: {}\n", line.origin, line.text)).collect()
+}
+
+/// A line of pip may hold all versions of a project.
+fn shortened(line: &str) -> String {
+    match line.char_indices().nth(LONGEST_LINE) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.to_owned(),
+    }
 }
 
 /// Whether pip's errors name a requirement: its path, or its project as a word.
@@ -225,7 +238,7 @@ mod tests {
     fn errors_are_traced_to_their_requirements() {
         let requirements = Requirements::built_in("Py_Yaml==9\nother", Path::new("/"));
         let text = "ERROR: No matching distribution found for py-yaml==9\nnote: other";
-        let blamed: Vec<bool> = requirements.lines.iter().map(|line| is_blamed(line, text)).collect();
-        assert_eq!(blamed, [true, false]);
+        assert_eq!(blamed(&requirements, text), "required at built in:1: Py_Yaml==9\n");
+        assert_eq!(shortened(&"é".repeat(300)).chars().count(), LONGEST_LINE + 1);
     }
 }

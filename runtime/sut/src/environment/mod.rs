@@ -163,12 +163,14 @@ fn variable(name: &str) -> Option<String> {
 
 /// The packages that no program will find, apart from those that the requirements install.
 fn say_hooked(probe: &Probe, requirements: Option<&Requirements>, listen: Listener<'_>) {
-    let required: Vec<String> = requirements.into_iter().flat_map(Requirements::named).map(normal).collect();
+    let lines = || requirements.into_iter().flat_map(Requirements::all_lines);
+    let names: Vec<String> = lines().filter_map(|line| line.name.as_deref()).map(normal).collect();
+    let folder = |path: &Path| path.canonicalize().ok();
+    let folders: Vec<PathBuf> = lines().filter_map(|line| folder(&line.local.as_ref()?.path)).collect();
     let mut hooked = probe.hooked();
     hooked.retain(|hook| {
-        let folder = hook.folder.as_ref().and_then(|folder| Path::new(folder).file_name());
-        let is_named = |name: Option<&str>| name.is_some_and(|name| required.contains(&normal(name)));
-        !is_named(Some(&hook.package)) && !is_named(folder.and_then(|name| name.to_str()))
+        let place = hook.folder.as_ref().and_then(|place| folder(Path::new(place)));
+        !names.contains(&normal(&hook.package)) && !place.is_some_and(|place| folders.contains(&place))
     });
     if !hooked.is_empty() {
         listen(Preparation::Hooked { packages: &hooked });

@@ -205,10 +205,11 @@ pub(super) fn is_folder(text: &str, folder: &Path) -> bool {
 
 /// What a requirement is called: its project, or the last part of a path or an address, which may hold a password
 /// before.
-pub(super) fn title(text: &str) -> String {
-    let address = || text.split(['#', '?', ';', ' ']).next().unwrap_or(text).trim_end_matches('/');
-    let name = project(text).unwrap_or_else(|| address().rsplit('/').next().unwrap_or(text));
-    if name.is_empty() || name.starts_with('.') { text.to_owned() } else { name.to_owned() }
+pub(super) fn title(text: &str, local: Option<&Local>) -> String {
+    let named = project(text).map(str::to_owned);
+    let file = || Some(local?.path.file_name()?.to_string_lossy().into_owned());
+    let address = || text.split(['#', '?', ' ']).next().unwrap_or(text).trim_end_matches('/');
+    named.or_else(file).unwrap_or_else(|| address().rsplit('/').next().unwrap_or(text).to_owned())
 }
 
 /// The project's name at a requirement's beginning, if it begins with one.

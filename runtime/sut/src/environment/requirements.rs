@@ -88,7 +88,7 @@ impl Requirements {
             origin: Origin { file: PathBuf::from("built in"), line: at + 1 },
             text: text.to_owned(),
             expanded: text.to_owned(),
-            name: Some(named::title(text)),
+            name: Some(named::title(text, None)),
             local: None,
         };
         let lines = text.lines().enumerate().map(line).collect();
@@ -148,8 +148,8 @@ impl Reader<'_> {
         let (requirement, option_words) = options::split(&expanded);
         if !requirement.is_empty() {
             let local = named::local(requirement, &self.found.folder, &origin)?;
+            let name = Some(named::title(requirement, local.as_ref()));
             let local = local.map(|local| local.followed_by(option_words));
-            let name = Some(named::title(requirement));
             self.push(Line { origin, text, expanded, name, local }, role);
             return Ok(());
         }
@@ -190,9 +190,9 @@ impl Reader<'_> {
             what.to_owned()
         };
         let local = named::local(&shown, &self.found.folder, &origin)?;
+        let name = Some(named::title(&shown, local.as_ref()));
         let local = local.map(|local| local.followed_by(&rest));
         let text = format!("{shown} {rest}").trim_end().to_owned();
-        let name = Some(named::title(&shown));
         self.push(Line { origin, expanded: text.clone(), text, name, local }, role);
         Ok(())
     }
@@ -375,10 +375,13 @@ mod tests {
     }
 
     #[test]
-    fn titles_hold_no_passwords() {
-        assert_eq!(named::title("numpy>=1"), "numpy");
-        assert_eq!(named::title("https://user:word@host/a/b-1.0.zip#sha256=1"), "b-1.0.zip");
-        assert_eq!(named::title("./lib[x] ; y"), "lib[x]");
-        assert_eq!(named::title("."), ".");
+    fn titles_are_short_and_hold_no_passwords() {
+        let title = |text: &str| named::title(text, None);
+        assert_eq!(title("numpy>=1"), "numpy");
+        assert_eq!(title("https://user:word@host/a/b-1.0.zip#sha256=1"), "b-1.0.zip");
+        assert_eq!(title("git+https://user:word@host/a/b.git@main"), "b.git@main");
+        let found =
+            read(&[("requirements.txt", "-e './my lib'\n."), ("my lib/setup.py", ""), ("setup.py", "")]);
+        assert_eq!(found.as_ref().unwrap().named().next(), Some("my lib"));
     }
 }
