@@ -19,6 +19,7 @@ pub use expr::{Expr, ExprKind, Function, Index, Leaf, Place, Term};
 pub use lint::lint;
 pub use nearest::{distance, nearest};
 pub use query::{Ask, ClockBound, Formula, Linear, Measure, Query};
+pub use report::world::LIBRARY_PARTS;
 pub use scenario::*;
 pub use types::{Dim, Kind, Of, Type, UNITS, Unit};
 pub use value::{Elements, FoldError, Text, Value};

@@ -155,7 +155,14 @@ impl<'a> Checker<'a> {
         } else if env.plan && is_variable_name(&name.text) {
             self.report(unbound(&name.text, name.span, names.iter().map(String::as_str)));
         } else {
+            let said = self.issues.len();
             self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, None);
+            if env.plan
+                && env.noun == Some(Noun::Variable)
+                && let Some(issue) = self.issues.get_mut(said)
+            {
+                crate::report::agents::small_variable(issue, &name.text, &names);
+            }
         }
         Expr::error(name.span)
     }

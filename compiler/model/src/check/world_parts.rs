@@ -187,7 +187,11 @@ impl<'a> Checker<'a> {
                 return None;
             }
             // A part often has the name of an actor or of its instance, which would say nothing.
+            let said = self.issues.len();
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
+            if let Some(issue) = self.issues.get_mut(said) {
+                crate::report::world::missing_part(issue, &of.text, names.is_empty());
+            }
             return None;
         };
         // A part in itself would be doubled at each level if it is there twice.

@@ -2,13 +2,30 @@
 
 use hrdsl_source::{Code, Diagnostic, Span};
 
-use crate::{Kind, noun::Noun, report::names::with_nearest};
+use crate::{Kind, nearest::nearest, noun::Noun, report::names::with_nearest};
 
 /// HR0401: a variable is read before anything gives it a value.
 pub(crate) fn unbound<'a>(name: &str, span: Span, others: impl IntoIterator<Item = &'a str>) -> Diagnostic {
     let error = Diagnostic::error(Code::UNBOUND_VARIABLE, span, format!("`{name}` never has a value here"))
         .here("read before the trigger, a belief or a query binds it");
     with_nearest(error, Noun::Variable, name, others)
+}
+
+/// Of a name without a value that may have been meant as a variable: variables begin with a capital letter. Of other names that
+/// are near, only long ones tell what was meant.
+pub(crate) fn small_variable(issue: &mut Diagnostic, name: &str, names: &[String]) {
+    if issue.code != Code::UNKNOWN_NAME {
+        return;
+    }
+    let rule = "variables of agents begin with a capital letter";
+    if let Some(same) = names.iter().find(|other| other.eq_ignore_ascii_case(name)) {
+        issue.help = Some(format!("{rule}: write `{same}`"));
+    } else if name.len() <= 2 || nearest(name, names.iter().map(String::as_str)).is_none() {
+        let capital: String =
+            name.chars().take(1).map(|c| c.to_ascii_uppercase()).chain(name.chars().skip(1)).collect();
+        issue.help = Some(format!("{rule}: write `{capital}` here and where it gets its value"));
+        issue.fixes.clear();
+    }
 }
 
 /// HR0403

@@ -6,3 +6,33 @@ use hrdsl_source::{Code, Diagnostic, Span};
 pub(crate) fn bad_world(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
     Diagnostic::error(Code::BAD_WORLD, span, message).help(help)
 }
+
+/// The parts of the library, and the modules that they are in. A test compares them with the library.
+pub const LIBRARY_PARTS: &[(&str, &str)] = &[
+    ("adult", "std.person"),
+    ("base", "std.robots.mobile"),
+    ("bert2", "std.robots.bert2"),
+    ("collision", "std.sensors"),
+    ("gaze", "std.sensors"),
+    ("location", "std.sensors"),
+    ("person", "std.person"),
+    ("presence", "std.sensors"),
+    ("pressure", "std.sensors"),
+    ("proximity", "std.sensors"),
+    ("speedometer", "std.sensors"),
+    ("tiago", "std.robots.mobile"),
+    ("watched", "std.sensors"),
+];
+
+/// What to write for a part that is not there; `none`: no part is.
+pub(crate) fn missing_part(issue: &mut Diagnostic, name: &str, none: bool) {
+    if let Some((_, module)) = LIBRARY_PARTS.iter().find(|(part, _)| *part == name) {
+        issue.help =
+            Some(format!("`{name}` is in the library: write `use {module}` before the declarations"));
+        issue.fixes.clear();
+    } else if none {
+        issue.help = Some(format!(
+            "declare it, as `part {name} {{ … }}`, or take one of the library, such as `person` after `use std.person`"
+        ));
+    }
+}
