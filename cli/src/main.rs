@@ -12,10 +12,11 @@ mod exit;
 mod fix;
 mod input;
 mod project;
+mod reach;
 mod render;
 mod terminal;
 
-use std::process::ExitCode;
+use std::{path::PathBuf, process::ExitCode};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -31,6 +32,10 @@ struct Cli {
     /// When to use colours.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
     color: color::Choice,
+    /// Let the files below this folder be named by others (`use "…"`, `include`), besides those of the project; may be given
+    /// several times.
+    #[arg(long, global = true, value_name = "DIR")]
+    allow_path: Vec<PathBuf>,
     #[command(subcommand)]
     command: Command,
 }
@@ -57,7 +62,8 @@ fn main() -> ExitCode {
     let matches = Cli::command().color(choice.into()).get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     color::choose(cli.color);
-    let result = match cli.command {
+    let allowed = reach::allow(&cli.allow_path);
+    let result = allowed.and_then(|()| match cli.command {
         Command::Check(args) => commands::check::run(&args),
         Command::Completions(args) => commands::completions::run(&args, Cli::command()),
         Command::Emit(args) => commands::emit::run(&args),
@@ -71,7 +77,7 @@ fn main() -> ExitCode {
         Command::New(args) => commands::new::run(&args),
         Command::Prove(args) => commands::prove::run(&args),
         Command::Sim(args) => commands::sim::run(&args),
-    };
+    });
     result
         .unwrap_or_else(|fault| {
             terminal::say_line(format_args!("error: {fault}"));
