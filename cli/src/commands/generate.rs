@@ -77,6 +77,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
     let minimise = args.minimise.then_some(true);
+    input::mark_results(&args.out)?;
     let mut suites = Vec::new();
     for suite in chosen(program, &args.suite)? {
         let options = Options {
