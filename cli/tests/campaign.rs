@@ -120,7 +120,7 @@ fn broken_robots_are_errors_of_their_tests() {
     let robots = [
         ("import sys\nsys.exit(3)\n", "ended"),
         ("raise RuntimeError('no arm today')\n", "no arm today"),
-        ("import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    pass\n", "within 5000 ms"),
+        ("import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    pass\n", "within 5 s of processor time"),
         ("import os\nos.write(int(os.environ['HRDSL_REQUEST_FD']), b'rubbish\\n')\n", "rubbish"),
     ];
     for (program, reason) in robots {
@@ -207,7 +207,9 @@ fn the_example_gives_the_expected_results() {
     let run = sim(&handover(), &out, &["-n", "16", "--exit-zero"]);
     expect_code(&run, 0);
     let text = stdout(&run);
-    let (summary, _) = text.rsplit_once("report: ").unwrap();
+    // What depends on the machine is left out: paths, versions, wall time.
+    let (summary, _) = text.rsplit_once("ran in ").unwrap();
+    let summary: String = summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
     let path = root().join("examples/handover/expected.txt");
     if std::env::var_os("HRDSL_RENEW").is_some() {
         fs::write(&path, summary).unwrap();

@@ -372,7 +372,6 @@ struct RunInfo<'a> {
     isolation: Isolation,
     /// What could not be kept apart.
     gaps: &'a [String],
-    jobs: usize,
     system: String,
 }
 
@@ -386,7 +385,6 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
         python: campaign.env.version(),
         isolation: campaign.cells.isolation,
         gaps: &campaign.cells.gaps,
-        jobs: campaign.jobs,
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     };
     input::write(&to.join("run.json"), &json(&info)?)?;
