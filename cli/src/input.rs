@@ -109,18 +109,6 @@ pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
     fs::write(path, text).map_err(fault)
 }
 
-/// The file that marks a folder of results, which `check` and `fmt` do not search.
-pub const MARKER: &str = ".hrdsl-results";
-
-/// Marks a folder that hrdsl writes to, unless it holds something else already.
-///
-/// # Errors
-/// A folder or file that cannot be written.
-pub fn mark_results(folder: &Path) -> Result<(), Fault> {
-    let is_new = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
-    if is_new { write(&folder.join(MARKER), "What is here was written by hrdsl.\n") } else { Ok(()) }
-}
-
 /// Puts another text in a file's place, all of it or nothing: it is written beside the file, and renamed.
 ///
 /// # Errors

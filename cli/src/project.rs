@@ -10,7 +10,7 @@ use hrdsl_source::FileId;
 
 use crate::{
     input::{self, Fault, Kind},
-    terminal,
+    results_folder, terminal,
 };
 
 /// Folders that hold no scenarios of one's own.
@@ -125,7 +125,7 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
         // What hrdsl wrote itself is searched only if it is named.
-        if folder != root && folder.join(input::MARKER).exists() {
+        if folder != root && folder.join(results_folder::MARKER).exists() {
             continue;
         }
         let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(&folder));

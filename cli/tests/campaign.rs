@@ -209,7 +209,8 @@ fn the_example_gives_the_expected_results() {
     let text = stdout(&run);
     // What depends on the machine is left out: paths, versions, wall time.
     let (summary, _) = text.rsplit_once("ran in ").unwrap();
-    let summary: String = summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
+    let summary: String =
+        summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
     let path = root().join("examples/handover/expected.txt");
     if std::env::var_os("HRDSL_RENEW").is_some() {
         fs::write(&path, summary).unwrap();

@@ -51,7 +51,8 @@ while True:
 /// A project with this robot and so many tests that ask once.
 fn project(robot: &str, tests: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let text: String = (1..=tests).map(|n| format!("test hand.t{n:02} {{ seed {n}; ask; wait 1 s }}\n")).collect();
+    let text: String =
+        (1..=tests).map(|n| format!("test hand.t{n:02} {{ seed {n}; ask; wait 1 s }}\n")).collect();
     fs::write(folder.path().join("scenario.hri"), SCENARIO).unwrap();
     fs::write(folder.path().join("robot.py"), robot).unwrap();
     fs::write(folder.path().join("tests.hri"), text).unwrap();
@@ -131,7 +132,11 @@ fn a_test_that_broke_off_hits_no_bin_and_its_output_is_kept() {
     assert!(stdout(&again).contains("\n1 test, "), "{}", stdout(&again));
     let unknown = sim(folder.path(), "--test hand.t99");
     expect_code(&unknown, 2);
-    assert!(stderr(&unknown).contains("no test is called `hand.t99`; there are hand.t01, hand.t02"), "{}", stderr(&unknown));
+    assert!(
+        stderr(&unknown).contains("no test is called `hand.t99`; there are hand.t01, hand.t02"),
+        "{}",
+        stderr(&unknown)
+    );
 }
 
 #[test]
@@ -149,7 +154,11 @@ fn an_exception_in_a_thread_is_in_the_output_of_a_test_that_passes() {
 fn one_that_never_speaks_is_told_from_one_that_dies() {
     let folder = project("print('hello, world')\n", 1);
     expect_code(&sim(folder.path(), ""), 3);
-    assert!(errors(folder.path())[0].contains("it never spoke to the harness"), "{:?}", errors(folder.path()));
+    assert!(
+        errors(folder.path())[0].contains("it never spoke to the harness"),
+        "{:?}",
+        errors(folder.path())
+    );
 }
 
 /// With namespaces and without: neither what earlier tests wrote, nor the order and number of tests, changes a result.
@@ -226,7 +235,10 @@ for byte in n:
     let out = sim(folder.path(), "--check-determinism");
     expect_code(&out, 3);
     let text = stdout(&out);
-    assert!(text.contains("2 of 2 tests differ between two runs") && text.contains("mini.hand.t01: step "), "{text}");
+    assert!(
+        text.contains("2 of 2 tests differ between two runs") && text.contains("mini.hand.t01: step "),
+        "{text}"
+    );
 }
 
 #[test]
@@ -289,7 +301,9 @@ fn until(holds: impl Fn() -> bool, what: &str) {
 
 /// Living processes whose command line has this word.
 fn running(mark: &str) -> usize {
-    let has = |pid: PathBuf| fs::read(pid.join("cmdline")).is_ok_and(|l| l.split(|b| *b == 0).any(|w| w == mark.as_bytes()));
+    let has = |pid: PathBuf| {
+        fs::read(pid.join("cmdline")).is_ok_and(|l| l.split(|b| *b == 0).any(|w| w == mark.as_bytes()))
+    };
     fs::read_dir("/proc").unwrap().filter(|e| has(e.as_ref().unwrap().path())).count()
 }
 
