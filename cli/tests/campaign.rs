@@ -213,7 +213,7 @@ fn the_example_gives_the_expected_results() {
         summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
     let path = root().join("examples/handover/expected.txt");
     if std::env::var_os("HRDSL_RENEW").is_some() {
-        fs::write(&path, summary).unwrap();
+        fs::write(&path, &summary).unwrap();
     }
     assert_eq!(summary, fs::read_to_string(path).unwrap());
 }

@@ -121,7 +121,7 @@ fn a_test_that_broke_off_hits_no_bin_and_its_output_is_kept() {
     assert!(text.contains("its last line on stderr: no more today"), "{text}");
     assert!(text.contains("  hrdsl sim ../scenario.hri ../tests.hri --test hand.t01\n"), "{text}");
     for report in ["report.html", "junit.xml"] {
-        let text = fs::read_to_string(folder.path().join("out").join(report)).unwrap();
+        let text = fs::read_to_string(folder.path().join("out").join(report)).unwrap().replace("&#x2f;", "/");
         assert!(text.contains("hrdsl sim ../scenario.hri ../tests.hri --test hand.t01"), "{report}");
     }
     let output = fs::read_to_string(folder.path().join("out/output/mini.hand.t01.txt")).unwrap();
@@ -152,7 +152,7 @@ fn an_exception_in_a_thread_is_in_the_output_of_a_test_that_passes() {
 
 #[test]
 fn one_that_never_speaks_is_told_from_one_that_dies() {
-    let folder = project("print('hello, world')\n", 1);
+    let folder = project("import os\nos._exit(4)\n", 1);
     expect_code(&sim(folder.path(), ""), 3);
     assert!(
         errors(folder.path())[0].contains("it never spoke to the harness"),
@@ -395,6 +395,29 @@ fn where_namespaces_are_refused_tests_run_in_copies_and_it_is_said_once() {
     assert!(said.contains("absolute paths elsewhere"), "{said}");
     let run: Value = serde_json::from_slice(&fs::read(folder.path().join("out/run.json")).unwrap()).unwrap();
     assert_eq!(run["isolation"], "copies");
+}
+
+#[test]
+fn a_project_on_several_file_systems_is_as_much_its_own() {
+    let robot = "
+import os, hrdsl
+node = hrdsl.Node('robot')
+for path in ['log.txt', 'disk/log.txt', 'disk/deep/log.txt', 'data.txt']:
+    with open(path, 'a') as file:
+        file.write('x')
+    assert os.path.getsize(path) == 1 + 4 * (path == 'data.txt'), path
+node.wait_for('asked')
+node.emit('said', n=1)
+";
+    let folder = project(robot, 2);
+    fs::create_dir(folder.path().join("disk")).unwrap();
+    fs::write(folder.path().join("data.txt"), "data").unwrap();
+    let script = "mount -t tmpfs tmpfs disk && mkdir disk/deep && mount -t tmpfs tmpfs disk/deep && \
+                  $HRDSL sim scenario.hri tests.hri -j 1 --isolation namespaces -o out";
+    let Some(out) = as_root_of_namespaces(folder.path(), script) else { return };
+    expect_code(&out, 0);
+    assert!(!folder.path().join("log.txt").exists());
+    assert_eq!(fs::read_to_string(folder.path().join("data.txt")).unwrap(), "data");
 }
 
 #[test]
