@@ -165,6 +165,28 @@ fn an_absent_robot_is_named() {
     assert!(results["tests"][0]["error"].as_str().unwrap().contains("robot.py"), "{}", results["tests"][0]);
 }
 
+/// The arm's own limit is above what the requirement allows: whether the arm is slow is up to the code.
+#[test]
+fn a_robot_that_hurries_violates_the_limit_of_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = root().join("examples/handover");
+    for name in ["scenario.hri", "fsm.py", "robot.py"] {
+        let text = fs::read_to_string(example.join(name)).unwrap();
+        assert!(name != "robot.py" || text.contains("CARRY_SPEED = 0.2 "));
+        fs::write(folder.path().join(name), text.replace("CARRY_SPEED = 0.2 ", "CARRY_SPEED = 0.3 "))
+            .unwrap();
+    }
+    let out = folder.path().join("out");
+    expect_code(&sim(&folder.path().join("scenario.hri"), &out, &["--suite", "bdi_tests", "-n", "2"]), 3);
+    let results = results(&out);
+    let r6 = results["requirements"].as_array().unwrap().iter().find(|r| r["name"] == "R6").unwrap();
+    assert_eq!(
+        r6["failing"],
+        serde_json::json!(["handover.bdi_tests.t002"]),
+        "in the first nobody asks: {r6}"
+    );
+}
+
 /// What is recorded is what is judged: each failure's witness lines are in the recording at their place.
 #[test]
 fn failures_are_borne_out_by_recordings() {

@@ -77,9 +77,10 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
     let minimise = args.minimise.then_some(true);
+    let chosen = chosen(program, &args.suite)?;
     let mut folder = ResultsFolder::beside(&args.out)?;
     let mut suites = Vec::new();
-    for suite in chosen(program, &args.suite)? {
+    for suite in chosen {
         let options = Options {
             count: args.count,
             seed: args.seed,
