@@ -107,6 +107,38 @@ node.emit('said', n=1)
     assert_eq!(errors(folder.path()), vec![""; 16]);
 }
 
+/// The first run of each test sleeps where simulated time does not reach; the second, alone, finds out by a file that lies
+/// outside its copy and goes on. One of them always sleeps.
+#[test]
+fn a_test_that_wall_time_ends_is_run_again_alone_and_marked() {
+    let outside = tempfile::tempdir_in("/var/tmp").unwrap();
+    let robot = format!(
+        "
+import os, threading, hrdsl
+node = hrdsl.Node('robot')
+mark = '{}/%d' % node.seed
+if node.seed == 3 or not os.path.exists(mark):
+    open(mark, 'w').close()
+    threading.Event().wait()
+node.wait_for('asked')
+node.emit('said', n=1)
+",
+        outside.path().display()
+    );
+    let folder = project(&robot, 3);
+    fs::write(folder.path().join("scenario.hri"), SCENARIO.replace("budget 5 s", "budget 1 s")).unwrap();
+    let out = sim(folder.path(), "-j 2 --isolation copies");
+    expect_code(&out, 3);
+    let results = results(folder.path());
+    let marks: Vec<&Value> = results["tests"].as_array().unwrap().iter().map(|t| &t["marks"]).collect();
+    let depends = serde_json::json!(["depends_on_load"]);
+    assert_eq!(marks, [&depends, &depends, &Value::Null]);
+    let errors = errors(folder.path());
+    assert_eq!(errors[..2], ["", ""]);
+    assert!(errors[2].contains("it slept for 1 s of wall time"), "{}", errors[2]);
+    assert!(stdout(&out).contains("depends on load"), "{}", stdout(&out));
+}
+
 #[test]
 fn a_test_that_broke_off_hits_no_bin_and_its_output_is_kept() {
     let robot = "import sys, hrdsl\nnode = hrdsl.Node('robot')\nnode.wait_for('asked')\nprint('got it')\nnode.emit('said', n=1)\nsys.exit('no more today')\n";
@@ -242,6 +274,42 @@ for byte in n:
 }
 
 #[test]
+fn limits_are_said_in_the_scenario_and_on_the_command_line() {
+    let robot = "
+import hrdsl
+node = hrdsl.Node('robot')
+node.wait_for('asked')
+try:
+    taken = bytearray(400_000_000)
+    node.emit('said', n=2)
+except MemoryError:
+    node.emit('said', n=1)
+for n in range(2_000):
+    print('x' * 1_000)
+for n in range(8_000_000):
+    pass
+node.sleep(1)
+";
+    let folder = project(robot, 1);
+    let with = |members: &str, options: &str| -> ([bool; 2], String) {
+        let scenario = SCENARIO.replace("limit 20 s", &format!("limit 20 s\n  {members}"));
+        fs::write(folder.path().join("scenario.hri"), scenario).unwrap();
+        sim(folder.path(), options);
+        let trace = tree(&folder.path().join("out/traces")).into_values().next().unwrap();
+        let said = String::from_utf8(trace).unwrap();
+        let said = ["\"n\":1", "\"n\":2"].map(|n| said.contains(n));
+        (said, errors(folder.path())[0].clone())
+    };
+    assert_eq!(with("", ""), ([false, true], String::new()));
+    assert_eq!(with("memory 200 MB", "").0, [true, false]);
+    assert_eq!(with("memory 200 MB", "--memory-limit 1GB").0, [false, true]);
+    assert!(with("output 1 MB", "").1.contains("more than 1000000 bytes of output"));
+    assert!(with("", "--output-limit 1MB").1.contains("more than 1000000 bytes of output"));
+    // Processor time is looked at from time to time; this program takes longer than that.
+    assert!(with("cpu 1 ms", "").1.contains("more than 0.001 s of processor time"));
+}
+
+#[test]
 fn a_long_name_is_the_name_of_a_file_all_the_same() {
     let folder = project(GOOD, 0);
     let long = "x".repeat(300);
@@ -249,6 +317,34 @@ fn a_long_name_is_the_name_of_a_file_all_the_same() {
     expect_code(&sim(folder.path(), ""), 0);
     let names: Vec<String> = tree(&folder.path().join("out/traces")).into_keys().collect();
     assert!(names.len() == 1 && names[0].len() < 220, "{names:?}");
+}
+
+#[test]
+fn a_debugger_has_the_terminal_and_interrupts_are_for_it() {
+    let robot = "import hrdsl\nnode = hrdsl.Node('robot')\nx = 41\nbreakpoint()\nnode.wait_for('asked')\nnode.emit('said', n=x - 40)\n";
+    for isolation in ["namespaces", "copies"] {
+        let folder = project(robot, 2);
+        let words =
+            format!("sim scenario.hri tests.hri -o out --test hand.t01 --debug --isolation {isolation}");
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/debug_session.py");
+        let mut session = Command::new("python3");
+        session.arg(script).arg(folder.path()).arg(env!("CARGO_BIN_EXE_hrdsl")).args(words.split(' '));
+        let out = session.env("NO_COLOR", "1").env("HRDSL_CACHE", support::root().join("target/hrdsl-cache"));
+        let out = out.output().unwrap();
+        expect_code(&out, 0);
+        let shown = stdout(&out);
+        assert!(shown.contains("41"), "{shown}");
+        let trace = tree(&folder.path().join("out/traces")).into_values().next().unwrap();
+        assert!(String::from_utf8(trace).unwrap().contains("\"n\":5"), "what was typed counts: {shown}");
+    }
+    let folder = project(robot, 2);
+    let out = sim(folder.path(), "");
+    expect_code(&out, 3);
+    assert!(
+        errors(folder.path())[0].contains("hrdsl sim --test NAME --debug"),
+        "{:?}",
+        errors(folder.path())
+    );
 }
 
 // ── results folders ──

@@ -6,7 +6,7 @@ use hrdsl_compiler::{Input, compile};
 use hrdsl_coverage::Collector;
 use hrdsl_monitor::{Checker, Outcome};
 use hrdsl_runtime::{
-    campaign::{Campaign, prepare},
+    campaign::{Campaign, Cells, ProgramLimits, StopFlag, Supervisor, prepare},
     testgen::generate,
 };
 
@@ -18,13 +18,28 @@ fn a_recording_is_judged_as_the_run_was() {
     let program = compile(Input { name: "scenario.hri", text: &text }, &[]).program.unwrap();
     let run = &program.system.as_ref().unwrap().run;
     let env = prepare(run, &dir, &root.join("target/hrdsl-cache"), &|_| {}).unwrap();
-    let campaign = Campaign { program: &program, dir, env, jobs: 2 };
+    let supervisor = Supervisor::program(env!("CARGO_BIN_EXE_supervise-cell"));
+    let campaign = Campaign {
+        program: &program,
+        cells: Cells::probe(supervisor, &dir, None).unwrap(),
+        dir,
+        env,
+        limits: ProgramLimits::default(),
+        variables: Vec::new(),
+        keep: None,
+        jobs: 2,
+        stop: StopFlag::default(),
+    };
     let tests: Vec<_> =
         program.suites.iter().flat_map(|s| generate(&program, s, Some(4), 11).unwrap().tests).collect();
     let recordings = Mutex::new(vec![String::new(); tests.len()]);
     let results = campaign
-        .run(&tests, |done| recordings.lock().unwrap()[done.index] = done.recording.to_owned())
-        .unwrap();
+        .run(&tests, |done| {
+            recordings.lock().unwrap()[done.index] = done.recording.to_owned();
+            Ok(())
+        })
+        .unwrap()
+        .tests;
 
     let mut outcomes = Vec::new();
     for (result, recording) in results.iter().zip(recordings.into_inner().unwrap()) {

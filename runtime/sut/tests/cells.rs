@@ -191,6 +191,11 @@ fn other_processes_are_noticed_and_secrets_are_not_handed_on() {
             text.contains("'ROBOT_NAME'") && text.contains("'HOME'") && !text.contains("CARGO"),
             "{text}"
         );
+        assert_eq!(
+            with("signals").output.stdout.text(),
+            "set() 0 1\n",
+            "nothing blocked, and as Python has it"
+        );
         assert_eq!(with("addresses").output.stdout.text(), with("addresses").output.stdout.text());
     }
 }

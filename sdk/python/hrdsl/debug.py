@@ -61,19 +61,23 @@ def _take_terminal() -> Callable[[], None]:
     except OSError as error:
         raise RuntimeError("there is no terminal to debug the program on: /dev/tty: %s" % error.strerror) from None
     kept = [os.dup(stream) for stream in _STREAMS]
-    group = os.tcgetpgrp(terminal)
+    group, own = os.tcgetpgrp(terminal), os.getpgrp()
+    # A process group that may not read from the terminal in the background. 0 is the harness's own, seen from a namespace
+    # of processes that it is not in: it has the terminal.
+    in_background = own not in (0, group)
 
     def leave() -> None:
         _flush()
-        _to_foreground(terminal, group)
+        if in_background:
+            _to_foreground(terminal, group)
         for stream, before in zip(_STREAMS, kept):
             os.dup2(before, stream)
             os.close(before)
         os.close(terminal)
 
     _flush()
-    # The harness gave the program a process group of its own, which may not read from the terminal in the background.
-    _to_foreground(terminal, os.getpgrp())
+    if in_background:
+        _to_foreground(terminal, own)
     for stream in _STREAMS:
         os.dup2(terminal, stream)
     return leave

@@ -40,6 +40,9 @@ def main(argv: list[str]) -> NoReturn:
         link = _links.the_link()
     except ProtocolError as error:
         sys.exit("hrdsl: %s" % error)
+    # Whoever started the harness may ignore some, as `nohup` does; the program is not to depend on it.
+    _signal.signal(_signal.SIGINT, _signal.default_int_handler)
+    _signal.signal(_signal.SIGHUP, _signal.SIG_DFL)
     _signal.signal(_signal.SIGTERM, _terminated)
     recorder = None
     if files and out is not None and not debug.is_wanted():  # the debugger traces, too

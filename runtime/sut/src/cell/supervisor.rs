@@ -16,7 +16,7 @@ use std::{
 };
 
 use nix::sys::{
-    signal::{SigSet, Signal},
+    signal::{SigSet, SigmaskHow, Signal},
     signalfd::{SfdFlags, SignalFd},
     wait::{Id, WaitPidFlag, WaitStatus, waitid},
 };
@@ -274,12 +274,17 @@ fn start(order: &CellOrder, place: &Place, descriptors: &[OwnedFd]) -> Result<Ch
     for (name, descriptor) in order.descriptors.iter().zip(descriptors) {
         command.env(name, descriptor.as_raw_fd().to_string());
     }
-    if order.terminal {
-        command.stdin(Stdio::null());
-    } else {
-        command.stdin(Stdio::null()).process_group(0);
+    command.stdin(Stdio::null());
+    if !order.terminal {
+        command.process_group(0);
     }
-    command.spawn().map_err(|e| Refusal {
+    // A program inherits what is blocked, and expects nothing to be.
+    let blocked = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
+    let child = command.spawn();
+    if let Ok(blocked) = blocked {
+        let _ = blocked.thread_set_mask();
+    }
+    child.map_err(|e| Refusal {
         absent: e.kind() == io::ErrorKind::NotFound,
         what: words[0].to_string_lossy().into_owned(),
         why: e.to_string(),

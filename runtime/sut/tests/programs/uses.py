@@ -33,5 +33,9 @@ elif what == "children":
     os.system("true")
 elif what == "environment":
     print(sorted(os.environ))
+elif what == "signals":
+    import signal
+
+    print(signal.pthread_sigmask(signal.SIG_BLOCK, []), signal.getsignal(signal.SIGCHLD), signal.getsignal(signal.SIGPIPE))
 elif what == "addresses":
     print(id(object()), hash(None), [hash(object()) for _ in range(3)], id(sys))
