@@ -133,6 +133,7 @@ codes! {
     EMPTY_BIN = 703 "a bin that contradicts itself",
     EQUAL_BINS = 704 "bins that are the same",
     BAD_WORLD = 801 "a world that cannot be built",
+    NOTHING_CARRIES = 802 "a body that nothing carries",
     BAD_TEST = 901 "a test that cannot run",
 }
 

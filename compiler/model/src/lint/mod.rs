@@ -18,6 +18,7 @@ mod flow;
 mod interval;
 mod never_triggered;
 mod no_failure_plan;
+mod nothing_carries;
 mod overflow;
 mod plan_terms;
 mod query_reads;
@@ -60,6 +61,7 @@ const RULES: &[Rule] = &[
     never_triggered::check,
     cross_bins::empty,
     cross_bins::equal,
+    nothing_carries::check,
 ];
 
 /// Looks for what cannot be meant in a scenario that has no errors.
