@@ -1,16 +1,18 @@
 //! Files and streams: reading text, writing it, and compiling one scenario.
 
 use std::{
+    collections::BTreeMap,
     fs,
     io::{Read, Write},
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
 use hrdsl_compiler::{Compilation, Input, Loader, Source, ast, compile_with};
 use hrdsl_ir::Program;
+use hrdsl_source::{Diagnostic, FileId, Files, printable_line};
 
 pub use crate::terminal::{print, print_data};
-use crate::{render, terminal};
+use crate::{reach::Reach, render, terminal};
 
 /// A failure that is no diagnostic: a file, an argument.
 pub type Fault = String;
@@ -60,35 +62,21 @@ pub fn read(path: &Path) -> Result<String, Fault> {
 }
 
 /// The files that `use "…"` names, relative to the file that uses them.
-pub struct Disk;
+pub struct Disk(Reach);
 
-impl Loader for Disk {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
-        let file = tidy(&folder(Path::new(from)).join(path));
-        let text = match read(&file) {
-            Ok(text) => text,
-            Err(_) if !file.exists() => return Err(format!("there is no file {}", terminal::shown(&file))),
-            Err(fault) => return Err(fault),
-        };
-        Ok(Source { name: file.display().to_string(), text })
+impl Disk {
+    /// For a file that was named on the command line, or for standard input.
+    #[must_use]
+    pub fn of(file: Option<&Path>) -> Self {
+        Self(Reach::of(file, &["hri"]))
     }
 }
 
-/// The same path without `.` and, where a folder can be taken back, without `..`: one file has one name.
-fn tidy(path: &Path) -> PathBuf {
-    let mut tidy = PathBuf::new();
-    for part in path.components() {
-        match part {
-            Component::CurDir => {}
-            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
-                tidy.pop();
-            }
-            Component::ParentDir | Component::Normal(_) | Component::RootDir | Component::Prefix(_) => {
-                tidy.push(part);
-            }
-        }
+impl Loader for Disk {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let (file, text) = self.0.read(from, path)?;
+        Ok(Source { name: file.display().to_string(), text })
     }
-    tidy
 }
 
 /// Reads all of stdin.
@@ -159,7 +147,7 @@ pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<Compilation, Fault> {
         }
     }
     let tests: Vec<Input<'_>> = files.iter().map(|(name, text)| Input { name, text }).collect();
-    Ok(compile_with(Input { name: &name, text: &text }, &tests, &Disk))
+    Ok(compile_with(Input { name: &name, text: &text }, &tests, &Disk::of(Some(scenario))))
 }
 
 fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {
@@ -189,15 +177,42 @@ pub fn folder(scenario: &Path) -> PathBuf {
     }
 }
 
-/// Shows all diagnostics on stderr; gives the program, which there is if none of them is an error.
-pub fn report(compilation: &Compilation) -> Option<&Program> {
-    for diagnostic in &compilation.diagnostics {
-        terminal::say(render::diagnostic(&compilation.files, diagnostic));
+/// Shows the diagnostics on stderr, at most so many of each file (0: all): errors before warnings, in the order of the text.
+pub fn show(files: &Files, diagnostics: &[&Diagnostic], most: usize) {
+    let mut by_file: BTreeMap<FileId, Vec<&Diagnostic>> = BTreeMap::new();
+    for diagnostic in diagnostics {
+        by_file.entry(diagnostic.span().file).or_default().push(diagnostic);
     }
-    let errors = compilation.diagnostics.iter().filter(|d| d.is_error()).count();
-    let warnings = compilation.diagnostics.len() - errors;
-    if errors + warnings > 0 {
-        terminal::say_line(render::totals(errors, warnings));
+    for (file, all) in by_file {
+        let (errors, warnings): (Vec<&Diagnostic>, Vec<&Diagnostic>) = all.iter().partition(|d| d.is_error());
+        let most = if most == 0 { all.len() } else { most };
+        let (shown, rest) = (most.min(errors.len()), most.saturating_sub(errors.len()).min(warnings.len()));
+        let (mut left_errors, mut left_warnings) = (shown, rest);
+        for diagnostic in all {
+            let left = if diagnostic.is_error() { &mut left_errors } else { &mut left_warnings };
+            if *left > 0 {
+                *left -= 1;
+                terminal::say(render::diagnostic(files, diagnostic));
+            }
+        }
+        let (errors, warnings) = (errors.len() - shown, warnings.len() - rest);
+        if errors + warnings > 0 {
+            let name = files.get(file).map_or("?", |f| &f.name);
+            let (name, more) = (printable_line(name), render::totals(errors, warnings));
+            terminal::say_line(format_args!(
+                "{name}: {more} more are not shown (`hrdsl check --max-findings 0` shows all)"
+            ));
+        }
+    }
+}
+
+/// Shows the diagnostics on stderr; gives the program, which there is if none of them is an error.
+pub fn report(compilation: &Compilation) -> Option<&Program> {
+    let all: Vec<&Diagnostic> = compilation.diagnostics.iter().collect();
+    show(&compilation.files, &all, render::SHOWN);
+    let errors = all.iter().filter(|d| d.is_error()).count();
+    if !all.is_empty() {
+        terminal::say_line(render::totals(errors, all.len() - errors));
     }
     compilation.program.as_ref()
 }
@@ -205,9 +220,7 @@ pub fn report(compilation: &Compilation) -> Option<&Program> {
 /// Shows the errors on stderr, and how many warnings there are: who runs tests has seen them, or can.
 pub fn report_errors<'c>(scenario: &Path, compilation: &'c Compilation) -> Option<&'c Program> {
     let (errors, warnings): (Vec<_>, Vec<_>) = compilation.diagnostics.iter().partition(|d| d.is_error());
-    for error in &errors {
-        terminal::say(render::diagnostic(&compilation.files, error));
-    }
+    show(&compilation.files, &errors, render::SHOWN);
     if !errors.is_empty() {
         terminal::say_line(render::totals(errors.len(), 0));
     }

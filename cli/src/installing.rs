@@ -5,6 +5,8 @@ use std::{cell::RefCell, time::Duration};
 use hrdsl_runtime::campaign::{Hooked, Preparation};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::terminal;
+
 /// How much of what pip says is shown.
 const WIDTH: usize = 60;
 
@@ -43,7 +45,7 @@ impl Installing {
         self.end();
         let line = ProgressBar::new_spinner();
         if line.is_hidden() {
-            eprintln!("{text} …");
+            terminal::say_line(format_args!("{text} …"));
             return;
         }
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed}  {msg}") {
@@ -57,7 +59,7 @@ impl Installing {
     fn print(&self, text: &str) {
         match &*self.line.borrow() {
             Some(line) => line.println(text),
-            None => eprintln!("{text}"),
+            None => terminal::say_line(text),
         }
     }
 

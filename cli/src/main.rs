@@ -14,11 +14,12 @@ mod input;
 mod installing;
 mod project;
 mod quantity;
+mod reach;
 mod render;
 mod results_folder;
 mod terminal;
 
-use std::process::ExitCode;
+use std::{path::PathBuf, process::ExitCode};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -34,6 +35,10 @@ struct Cli {
     /// When to use colours.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
     color: color::Choice,
+    /// Let the files below this folder be named by others (`use "…"`, `include`), besides those of the project; may be given
+    /// several times.
+    #[arg(long, global = true, value_name = "DIR")]
+    allow_path: Vec<PathBuf>,
     #[command(subcommand)]
     command: Command,
 }
@@ -64,7 +69,8 @@ fn main() -> ExitCode {
     let matches = Cli::command().color(choice.into()).get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     color::choose(cli.color);
-    let result = match cli.command {
+    let allowed = reach::allow(&cli.allow_path);
+    let result = allowed.and_then(|()| match cli.command {
         Command::Check(args) => commands::check::run(&args),
         Command::Completions(args) => commands::completions::run(&args, Cli::command()),
         Command::Emit(args) => commands::emit::run(&args),
@@ -78,7 +84,7 @@ fn main() -> ExitCode {
         Command::New(args) => commands::new::run(&args),
         Command::Prove(args) => commands::prove::run(&args),
         Command::Sim(args) => commands::sim::run(&args),
-    };
+    });
     result
         .unwrap_or_else(|fault| {
             terminal::say_line(format_args!("error: {fault}"));

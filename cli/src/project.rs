@@ -10,7 +10,7 @@ use hrdsl_source::FileId;
 
 use crate::{
     input::{self, Fault, Kind},
-    terminal,
+    results_folder, terminal,
 };
 
 /// Folders that hold no scenarios of one's own.
@@ -85,7 +85,8 @@ impl Project {
     pub fn compile(&self, unit: &Unit) -> Compilation {
         let input = |i: usize| Input { name: &self.sources[i].name, text: &self.sources[i].text };
         let tests: Vec<Input<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
-        compile_with(input(unit.head), &tests, &input::Disk)
+        let disk = input::Disk::of(self.sources[unit.head].path.as_deref());
+        compile_with(input(unit.head), &tests, &disk)
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
@@ -123,6 +124,10 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
+        // What hrdsl wrote itself is searched only if it is named.
+        if folder != root && folder.join(results_folder::MARKER).exists() {
+            continue;
+        }
         let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(&folder));
         for entry in fs::read_dir(&folder).map_err(fault)? {
             let entry = entry.map_err(fault)?;

@@ -10,7 +10,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::input::Fault;
+use crate::{
+    input::{self, Fault},
+    terminal::shown,
+};
 
 /// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips folders that have it.
 pub const MARKER: &str = ".hrdsl-results";
@@ -18,8 +21,7 @@ pub const MARKER: &str = ".hrdsl-results";
 const STAGING: &str = ".hrdsl-partial";
 const FIRST_LINE: &str = "hrdsl results 1";
 
-/// A results folder that is being written; nobody else can write it meanwhile. Dropped without
-/// [`publish`](Self::publish), it leaves the folder as it was.
+/// A folder that hrdsl writes to; nobody else can write to it meanwhile.
 pub struct ResultsFolder {
     dir: PathBuf,
     marker: File,
@@ -30,23 +32,64 @@ pub struct ResultsFolder {
 }
 
 impl ResultsFolder {
-    /// Opens or makes a folder, in which `names` are to be written.
+    /// Opens or makes a folder, to [write](Self::write) files into it one by one, beside what is there.
+    ///
+    /// # Errors
+    /// Who else is writing, or why the folder cannot be written.
+    pub fn beside(dir: &Path) -> Result<Self, Fault> {
+        refuse_link(dir)?;
+        let is_new = !dir.exists();
+        fs::create_dir_all(dir).map_err(|e| format!("cannot make {}: {e}", shown(dir)))?;
+        let (marker, listed) = open_marker(dir)?;
+        Ok(Self { dir: dir.to_owned(), marker, listed, is_new })
+    }
+
+    /// Opens or makes a folder, in which `names` are to be [published](Self::publish). Dropped before that, it leaves the
+    /// folder as it was.
     ///
     /// # Errors
     /// What would be lost or overwritten, who else is writing, or why the folder cannot be written.
     pub fn open(dir: &Path, names: &[&str]) -> Result<Self, Fault> {
-        refuse_link(dir)?;
-        let is_new = !dir.exists();
-        fs::create_dir_all(dir).map_err(|e| format!("cannot make {}: {e}", dir.display()))?;
-        let (marker, listed) = open_marker(dir)?;
-        let folder = Self { dir: dir.to_owned(), marker, listed, is_new };
+        let folder = Self::beside(dir)?;
         for name in names {
             folder.refuse_foreign(Path::new(name))?;
         }
         refuse_link(&folder.staging())?;
         folder.clear_staging()?;
-        fs::create_dir(folder.staging()).map_err(|e| format!("cannot write to {}: {e}", dir.display()))?;
+        fs::create_dir(folder.staging()).map_err(|e| format!("cannot write to {}: {e}", shown(dir)))?;
         Ok(folder)
+    }
+
+    /// Writes a file of ours, in the place of an earlier one or of none.
+    ///
+    /// # Errors
+    /// A file that is somebody else's, or that cannot be written.
+    pub fn write(&mut self, name: &Path, text: &str) -> Result<PathBuf, Fault> {
+        self.refuse_foreign(name)?;
+        if !self.listed.iter().any(|l| l == name) {
+            self.listed.push(name.to_owned());
+            // Listed first: what is there and not listed is not ours.
+            let listed = self.listed.clone();
+            self.write_marker(listed.iter())?;
+        }
+        let path = self.dir.join(name);
+        input::write(&path, text)?;
+        Ok(path)
+    }
+
+    /// Removes what is ours in and below a folder of this folder.
+    ///
+    /// # Errors
+    /// A file that cannot be removed.
+    pub fn clear(&mut self, below: &Path) -> Result<(), Fault> {
+        let (old, rest): (Vec<PathBuf>, Vec<PathBuf>) =
+            std::mem::take(&mut self.listed).into_iter().partition(|l| l.starts_with(below));
+        self.listed = rest;
+        for path in &old {
+            self.remove(path)?;
+        }
+        let listed = self.listed.clone();
+        self.write_marker(listed.iter())
     }
 
     /// Where to write results until they are published.
@@ -82,7 +125,7 @@ impl ResultsFolder {
         names.sort_by_key(is_last);
         for name in names {
             let (from, to) = (staging.join(&name), self.dir.join(&name));
-            fs::rename(&from, &to).map_err(|e| format!("cannot write {}: {e}", to.display()))?;
+            fs::rename(&from, &to).map_err(|e| format!("cannot write {}: {e}", shown(&to)))?;
         }
         self.write_marker(new.iter())?;
         self.listed = new;
@@ -101,7 +144,7 @@ impl ResultsFolder {
             self.marker.write_all(text.as_bytes())?;
             self.marker.set_len(text.len() as u64)
         };
-        write().map_err(|e| format!("cannot write {}: {e}", self.dir.join(MARKER).display()))
+        write().map_err(|e| format!("cannot write {}: {e}", shown(&self.dir.join(MARKER))))
     }
 
     /// Removes a listed file, and the folders that are empty then.
@@ -109,7 +152,7 @@ impl ResultsFolder {
         let file = self.dir.join(path);
         match fs::remove_file(&file) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(format!("cannot remove {}: {e}", file.display()));
+                return Err(format!("cannot remove {}: {e}", shown(&file)));
             }
             Ok(()) | Err(_) => {}
         }
@@ -133,12 +176,12 @@ impl ResultsFolder {
             } else {
                 Err(format!(
                     "{} was not written by hrdsl and would be lost; move it, or name another folder with -o",
-                    full.display()
+                    shown(&full)
                 ))
             };
         }
-        for entry in fs::read_dir(&full).map_err(|e| format!("cannot read {}: {e}", full.display()))? {
-            let entry = entry.map_err(|e| format!("cannot read {}: {e}", full.display()))?;
+        for entry in fs::read_dir(&full).map_err(|e| format!("cannot read {}: {e}", shown(&full)))? {
+            let entry = entry.map_err(|e| format!("cannot read {}: {e}", shown(&full)))?;
             self.refuse_foreign(&path.join(entry.file_name()))?;
         }
         Ok(())
@@ -147,7 +190,7 @@ impl ResultsFolder {
     fn clear_staging(&self) -> Result<(), Fault> {
         match fs::remove_dir_all(self.staging()) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                Err(format!("cannot clear {}: {e}", self.staging().display()))
+                Err(format!("cannot clear {}: {e}", shown(&self.staging())))
             }
             Ok(()) | Err(_) => Ok(()),
         }
@@ -171,7 +214,7 @@ fn refuse_link(path: &Path) -> Result<(), Fault> {
     if path.is_symlink() {
         return Err(format!(
             "{} is a symbolic link, and results are not written through links; name the folder itself with -o",
-            path.display()
+            shown(path)
         ));
     }
     Ok(())
@@ -181,7 +224,7 @@ fn refuse_link(path: &Path) -> Result<(), Fault> {
 fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
     let path = dir.join(MARKER);
     refuse_link(&path)?;
-    let fault = |e: std::io::Error| format!("cannot write {}: {e}", path.display());
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", shown(&path));
     let mut file =
         File::options().read(true).write(true).create(true).truncate(false).open(&path).map_err(fault)?;
     match file.try_lock() {
@@ -189,7 +232,7 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
         Err(TryLockError::WouldBlock) => {
             return Err(format!(
                 "another run is writing to {}; wait for it to end, or name another folder with -o",
-                dir.display()
+                shown(dir)
             ));
         }
         Err(TryLockError::Error(e)) => return Err(fault(e)),
@@ -198,10 +241,7 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
     file.read_to_string(&mut text).map_err(fault)?;
     let mut lines = text.lines();
     if !matches!(lines.next(), None | Some(FIRST_LINE)) {
-        return Err(format!(
-            "{} is of another version of hrdsl; name another folder with -o",
-            path.display()
-        ));
+        return Err(format!("{} is of another version of hrdsl; name another folder with -o", shown(&path)));
     }
     // A path that leads out of the folder is none of ours, whoever wrote it there.
     let is_inside = |p: &PathBuf| p.components().all(|c| matches!(c, std::path::Component::Normal(_)));
@@ -211,7 +251,7 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
 /// All files in and below a folder, relative to it, in order.
 fn collect(root: &Path, below: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
     let folder = root.join(below);
-    let fault = |e: std::io::Error| format!("cannot read {}: {e}", folder.display());
+    let fault = |e: std::io::Error| format!("cannot read {}: {e}", shown(&folder));
     let mut entries = fs::read_dir(&folder).map_err(fault)?.collect::<Result<Vec<_>, _>>().map_err(fault)?;
     entries.sort_by_key(fs::DirEntry::file_name);
     for entry in entries {

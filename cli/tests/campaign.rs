@@ -35,7 +35,7 @@ fn generated_tests_check_and_are_the_same_again() {
         expect_code(&out, 0);
     }
     assert_eq!(tree(&dirs[0]), tree(&dirs[1]));
-    assert_eq!(tree(&dirs[0]).len(), 3);
+    assert_eq!(tree(&dirs[0]).len(), 4, "those of three suites, and the mark of results");
     expect_code(&hrdsl(["check", handover().to_str().unwrap(), dirs[0].to_str().unwrap()]), 0);
 }
 
@@ -120,7 +120,7 @@ fn broken_robots_are_errors_of_their_tests() {
     let robots = [
         ("import sys\nsys.exit(3)\n", "ended"),
         ("raise RuntimeError('no arm today')\n", "no arm today"),
-        ("import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    pass\n", "within 5000 ms"),
+        ("import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    pass\n", "within 5 s of processor time"),
         ("import os\nos.write(int(os.environ['HRDSL_REQUEST_FD']), b'rubbish\\n')\n", "rubbish"),
     ];
     for (program, reason) in robots {
@@ -165,6 +165,28 @@ fn an_absent_robot_is_named() {
     assert!(results["tests"][0]["error"].as_str().unwrap().contains("robot.py"), "{}", results["tests"][0]);
 }
 
+/// The arm's own limit is above what the requirement allows: whether the arm is slow is up to the code.
+#[test]
+fn a_robot_that_hurries_violates_the_limit_of_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = root().join("examples/handover");
+    for name in ["scenario.hri", "fsm.py", "robot.py"] {
+        let text = fs::read_to_string(example.join(name)).unwrap();
+        assert!(name != "robot.py" || text.contains("CARRY_SPEED = 0.2 "));
+        fs::write(folder.path().join(name), text.replace("CARRY_SPEED = 0.2 ", "CARRY_SPEED = 0.3 "))
+            .unwrap();
+    }
+    let out = folder.path().join("out");
+    expect_code(&sim(&folder.path().join("scenario.hri"), &out, &["--suite", "bdi_tests", "-n", "2"]), 3);
+    let results = results(&out);
+    let r6 = results["requirements"].as_array().unwrap().iter().find(|r| r["name"] == "R6").unwrap();
+    assert_eq!(
+        r6["failing"],
+        serde_json::json!(["handover.bdi_tests.t002"]),
+        "in the first nobody asks: {r6}"
+    );
+}
+
 /// What is recorded is what is judged: each failure's witness lines are in the recording at their place.
 #[test]
 fn failures_are_borne_out_by_recordings() {
@@ -207,10 +229,13 @@ fn the_example_gives_the_expected_results() {
     let run = sim(&handover(), &out, &["-n", "16", "--exit-zero"]);
     expect_code(&run, 0);
     let text = stdout(&run);
-    let (summary, _) = text.rsplit_once("report: ").unwrap();
+    // What depends on the machine is left out: paths, versions, wall time.
+    let (summary, _) = text.rsplit_once("ran in ").unwrap();
+    let summary: String =
+        summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
     let path = root().join("examples/handover/expected.txt");
     if std::env::var_os("HRDSL_RENEW").is_some() {
-        fs::write(&path, summary).unwrap();
+        fs::write(&path, &summary).unwrap();
     }
     assert_eq!(summary, fs::read_to_string(path).unwrap());
 }

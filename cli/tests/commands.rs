@@ -121,13 +121,14 @@ fn the_specification_names_every_command_and_option() {
         let section = page[start + 1..].split("\n## ").next().unwrap();
         let help = stdout(&hrdsl([name, "--help"]));
         let words = help.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
-        let options =
-            words.filter(|w| w.starts_with("--") && w.len() > 2 && !["--help", "--color"].contains(w));
+        let options = words.filter(|w| {
+            w.starts_with("--") && w.len() > 2 && !["--help", "--color", "--allow-path"].contains(w)
+        });
         for option in options {
             assert!(section.contains(option), "{name}: {option} is not described");
         }
     }
-    assert!(page.contains("`--color"));
+    assert!(page.contains("`--color") && page.contains("`--allow-path"));
     let help = stdout(&hrdsl(["--help"]));
     for code in 0..=3 {
         assert!(
@@ -156,7 +157,7 @@ fn a_new_project_checks_generates_and_runs() {
     let out = hrdsl_in(&here, "gen scenario.hri");
     expect_code(&out, 0);
     assert!(stdout(&out).contains(" 0 unreachable, 0 open"), "every goal is reached: {}", stdout(&out));
-    assert_eq!(tree(&here.join("hrdsl-tests")).len(), 3);
+    assert_eq!(tree(&here.join("hrdsl-tests")).len(), 4);
     expect_code(&hrdsl_in(&here, "check . --deny warnings"), 0);
 
     let out = hrdsl_in(&here, "sim scenario.hri -n 6");

@@ -19,7 +19,8 @@ fn generated(example: &str, folder: &Path) -> (BTreeMap<String, String>, String)
     });
     assert_eq!(made[0], made[1], "two runs give the same");
     expect_code(&hrdsl(["check", scenario, folder.join("a").to_str().unwrap(), "--deny", "warnings"]), 0);
-    let [(files, said), _] = made;
+    let [(mut files, said), _] = made;
+    assert!(files.remove(".hrdsl-results").is_some());
     let text = |(name, bytes)| (name, String::from_utf8(bytes).unwrap());
     (files.into_iter().map(text).collect(), said)
 }

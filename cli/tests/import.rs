@@ -43,6 +43,6 @@ fn what_is_no_program_is_an_error() {
     fs::write(folder.path().join("house.mas2j"), "MAS house { agents: robot; owner; }").unwrap();
     let out = hrdsl_in(folder.path(), "import agentspeak house.mas2j");
     expect_code(&out, 1);
-    assert!(stderr(&out).contains("no such file: owner.asl"), "{}", stderr(&out));
+    assert!(stderr(&out).contains("there is no file owner.asl"), "{}", stderr(&out));
     expect_code(&hrdsl_in(folder.path(), "import agentspeak house.hri"), 2);
 }

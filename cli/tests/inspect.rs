@@ -226,7 +226,7 @@ fn traces_are_the_runs_that_tests_came_from() {
     let run = hrdsl(args.iter().copied().chain([out.to_str().unwrap()]));
     expect_code(&run, 0);
     let files = tree(&out);
-    assert_eq!(files.len(), 31);
+    assert_eq!(files.len(), 32, "those, the tests and the mark of results");
     let tests = String::from_utf8(files["bdi_tests.hri"].clone()).unwrap();
     for name in ["t001", "t017"] {
         let log = String::from_utf8(files[&format!("bdi_tests.traces/{name}.log")].clone()).unwrap();

@@ -37,6 +37,9 @@ pub struct Args {
     /// Make warnings errors: all (`warnings`), or those of a code (`HR0403`); may be given several times.
     #[arg(long, value_name = "WHAT", value_parser = denied)]
     deny: Vec<Deny>,
+    /// The most findings of a file that are shown to people; 0: all of them.
+    #[arg(long, value_name = "N", default_value_t = render::SHOWN)]
+    max_findings: usize,
     /// Apply the fixes that are certain to the files.
     #[arg(long)]
     fix: bool,
@@ -95,7 +98,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let checked = check(&project, &args.deny);
     match args.format {
         Format::Human => {
-            show(&checked);
+            show(&checked, args.max_findings);
             let text = if args.diff { difference(&project) } else { summary(&project, &checked) };
             input::print(&text)?;
         }
@@ -173,14 +176,14 @@ fn difference(project: &Project) -> String {
     pairs.map(|(old, new)| render::unified(&old.name, &old.text, &new.text, color::stdout_has())).collect()
 }
 
-/// Everything that was found, on stderr.
-fn show(checked: &[Checked]) {
+/// What was found, on stderr: of each file so much.
+fn show(checked: &[Checked], most: usize) {
     let (mut errors, mut warnings) = (0, 0);
     for Checked { compilation, .. } in checked {
-        for diagnostic in &compilation.diagnostics {
-            terminal::say(render::diagnostic(&compilation.files, diagnostic));
-            *(if diagnostic.is_error() { &mut errors } else { &mut warnings }) += 1;
-        }
+        let all: Vec<&Diagnostic> = compilation.diagnostics.iter().collect();
+        input::show(&compilation.files, &all, most);
+        let wrong = all.iter().filter(|d| d.is_error()).count();
+        (errors, warnings) = (errors + wrong, warnings + all.len() - wrong);
     }
     if errors + warnings > 0 {
         terminal::say_line(render::totals(errors, warnings));

@@ -2,7 +2,6 @@
 
 use std::{
     collections::{BTreeMap, btree_map::Entry},
-    fs,
     path::{Path, PathBuf},
 };
 
@@ -22,6 +21,7 @@ use super::inspect::{Chosen, json_lines};
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    results_folder::ResultsFolder,
     terminal,
 };
 
@@ -77,8 +77,10 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
     let minimise = args.minimise.then_some(true);
+    let chosen = chosen(program, &args.suite)?;
+    let mut folder = ResultsFolder::beside(&args.out)?;
     let mut suites = Vec::new();
-    for suite in chosen(program, &args.suite)? {
+    for suite in chosen {
         let options = Options {
             count: args.count,
             seed: args.seed,
@@ -92,15 +94,19 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             },
         };
         let generated = generate_with(program, suite, options)?;
-        let path = save(&args.out, program, &generated)?;
-        let traces = if args.trace { trace(args, &compilation, program, suite, &generated)? } else { vec![] };
+        let path = folder.write(&file_of(&generated), &write(program, &generated.tests))?;
+        let traces = if args.trace {
+            trace(args, &compilation, program, suite, &generated, &mut folder)?
+        } else {
+            vec![]
+        };
         if args.json {
             suites.push(Made::of(&generated, &path, &traces));
             continue;
         }
         let mut text = format!("{}  written to {}\n", describe(&generated), terminal::shown(&path));
         if !traces.is_empty() {
-            text += &format!("  traces in {}\n", terminal::shown(&traces_of(&args.out, &suite.name)));
+            text += &format!("  traces in {}\n", terminal::shown(&args.out.join(traces_of(&suite.name))));
         }
         if let Some(explanation) = generated.explanation.as_ref().filter(|_| args.explain) {
             text += &format!("\n{}\n", explain_text(&suite.name, explanation, generated.coverage.as_ref()));
@@ -171,8 +177,8 @@ impl Made {
     }
 }
 
-fn traces_of(out: &Path, suite: &str) -> PathBuf {
-    out.join(format!("{suite}.traces"))
+fn traces_of(suite: &str) -> PathBuf {
+    PathBuf::from(format!("{suite}.traces"))
 }
 
 /// Writes how the agents reasoned in the run that each test came from; gives the files, one for each test of a suite by
@@ -183,9 +189,11 @@ fn trace(
     program: &Program,
     suite: &Suite,
     generated: &Generated,
+    to: &mut ResultsFolder,
 ) -> Result<Vec<PathBuf>, Fault> {
-    let folder = traces_of(&args.out, &suite.name);
-    clear(&folder)?;
+    let folder = traces_of(&suite.name);
+    // An earlier generation may have had more tests.
+    to.clear(&folder)?;
     let place = |span| compilation.files.place(span);
     let mut runs: BTreeMap<u64, String> = BTreeMap::new();
     let mut paths = Vec::new();
@@ -200,9 +208,8 @@ fn trace(
         };
         let (ending, heading) =
             if args.json { ("jsonl", String::new()) } else { ("log", chosen.heading(program, false) + "\n") };
-        let path = folder.join(format!("t{number:03}.{ending}"));
-        input::write(&path, &(heading + text.as_str()))?;
-        paths.push(path);
+        let name = folder.join(format!("t{number:03}.{ending}"));
+        paths.push(to.write(&name, &(heading + text.as_str()))?);
     }
     Ok(paths)
 }
@@ -215,17 +222,6 @@ fn traced(inspection: &Inspection, json: bool, place: &dyn Fn(Span) -> String) -
     }
     let end = ending(&End::of(inspection, &picked), false);
     Ok(reasoning(inspection, &picked, false, place) + &end)
-}
-
-/// Removes the traces of an earlier generation, which may have had more tests.
-fn clear(folder: &Path) -> Result<(), Fault> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
-    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-        if path.extension().is_some_and(|e| e == "log" || e == "jsonl") {
-            fs::remove_file(&path).map_err(|e| format!("cannot remove {}: {e}", terminal::shown(&path)))?;
-        }
-    }
-    Ok(())
 }
 
 /// The suites of these names; all, without names.
@@ -252,9 +248,14 @@ pub fn chosen<'p>(program: &'p Program, names: &[String]) -> Result<Vec<&'p Suit
 /// # Errors
 /// A file that cannot be written.
 pub fn save(folder: &Path, program: &Program, generated: &Generated) -> Result<PathBuf, Fault> {
-    let path = folder.join(format!("{}.hri", generated.suite));
+    let path = folder.join(file_of(generated));
     input::write(&path, &write(program, &generated.tests))?;
     Ok(path)
+}
+
+/// The file of a suite's tests.
+fn file_of(generated: &Generated) -> PathBuf {
+    PathBuf::from(format!("{}.hri", generated.suite))
 }
 
 /// What was generated, in a few lines.

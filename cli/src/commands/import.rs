@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::{
     exit::Exit,
     input::{self, Fault},
+    reach::Reach,
     terminal,
 };
 
@@ -114,12 +115,12 @@ struct To {
 }
 
 /// Files that programs and projects name, relative to them.
-struct Disk;
+struct Disk(Reach);
 
 impl Loader for Disk {
     fn load(&self, from: &str, path: &str) -> Result<Source, String> {
-        let file = Path::new(from).parent().map_or_else(|| PathBuf::from(path), |folder| folder.join(path));
-        Ok(Source { text: input::read(&file)?, name: file.display().to_string() })
+        let (file, text) = self.0.read(from, path)?;
+        Ok(Source { text, name: file.display().to_string() })
     }
 }
 
@@ -147,7 +148,11 @@ fn from_agentspeak(args: &AgentSpeak) -> Result<Exit, Fault> {
         }
         files.push(source(path)?);
     }
-    let imported = agentspeak::import(&files, &Disk, &Options { name: args.name.clone() });
+    let imported = agentspeak::import(
+        &files,
+        &Disk(Reach::of(args.files.first().map(PathBuf::as_path), &["asl"])),
+        &Options { name: args.name.clone() },
+    );
     finished(&args.to, imported)
 }
 

@@ -7,6 +7,9 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 
 use super::excerpt::Excerpt;
 
+/// Findings of a file that are shown unless somebody asks for more: nobody reads on.
+pub const SHOWN: usize = 50;
+
 /// One diagnostic as miette wants it.
 struct Shown<'a> {
     diagnostic: &'a Diagnostic,

@@ -8,7 +8,7 @@ mod page;
 mod sarif;
 
 pub use diff::unified;
-pub use human::{diagnostic, totals};
+pub use human::{SHOWN, diagnostic, totals};
 pub use json::document as json;
 pub use page::terminal as page;
 pub use sarif::document as sarif;

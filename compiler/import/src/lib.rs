@@ -14,6 +14,19 @@ pub mod uppaal;
 
 pub use note::{Imported, Note, Severity, SyntaxError};
 
+/// The most bytes of one program or model, files that it includes among them.
+pub const MAX_BYTES: usize = 8 << 20;
+
+/// What is wrong with the size of a file, if anything.
+pub(crate) fn too_large(source: &Source) -> Option<SyntaxError> {
+    (source.text.len() > MAX_BYTES).then(|| SyntaxError {
+        file: source.name.clone(),
+        line: 1,
+        column: 1,
+        message: format!("the file is larger than {} MiB: import a part of it", MAX_BYTES >> 20),
+    })
+}
+
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {

@@ -93,7 +93,9 @@ impl fmt::Display for Dim {
             return f.write_str(named.2);
         }
         f.write_str("a quantity in")?;
-        for (unit, power) in [("m", self.m), ("kg", self.kg), ("s", self.s), ("rad", self.rad), ("B", self.byte)] {
+        for (unit, power) in
+            [("m", self.m), ("kg", self.kg), ("s", self.s), ("rad", self.rad), ("B", self.byte)]
+        {
             match power {
                 0 => {}
                 1 => write!(f, " {unit}")?,

@@ -148,6 +148,9 @@ pub fn generate(
     generate_with(program, suite, Options { count, seed, ..Options::default() })
 }
 
+/// The most tests of one suite: all of them are held in memory, and written to one file.
+pub const MAX_TESTS: u32 = 20_000;
+
 /// Makes the tests of a suite.
 ///
 /// # Errors
@@ -155,6 +158,9 @@ pub fn generate(
 pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Result<Generated, String> {
     let Options { count, seed, minimise, .. } = options;
     let most = count.unwrap_or(suite.tests);
+    if most > MAX_TESTS {
+        return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
+    }
     let (method, harvest, minimise) = match &suite.method {
         Method::Agents { minimise: said, .. } => {
             ("agents", agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))

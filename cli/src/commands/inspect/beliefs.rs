@@ -117,7 +117,8 @@ fn fact(
     let mark = if has_some { "," } else { " =" };
     // What ends with nothing, like `belief away`, ends where the next word begins.
     let text = format!("{}{mark} {} {}", &file.text[..end], given.text, &file.text[end..]);
-    let changed = Changed { name: &file.name, text: &text };
+    let disk = Disk::of(Some(scenario));
+    let changed = Changed { disk, name: &file.name, text: &text };
     let name = scenario.display().to_string();
     let own = input::read(scenario)?;
     let head = if file.name == name { &text } else { &own };
@@ -158,13 +159,14 @@ fn declaration(compilation: &Compilation, wanted: &str, origin: hrdsl_source::Sp
 
 /// The files on disk, one of them changed.
 struct Changed<'a> {
+    disk: Disk,
     name: &'a str,
     text: &'a str,
 }
 
 impl Loader for Changed<'_> {
     fn load(&self, from: &str, path: &str) -> Result<Source, String> {
-        let source = Disk.load(from, path)?;
+        let source = self.disk.load(from, path)?;
         let is_it = source.name == self.name;
         Ok(if is_it { Source { text: self.text.to_owned(), ..source } } else { source })
     }

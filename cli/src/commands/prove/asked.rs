@@ -21,7 +21,7 @@ impl Asked {
     pub fn load(args: &Args) -> Result<Self, Fault> {
         let mut text = input::read(&args.file)?;
         let name = args.file.display().to_string();
-        let plain = compile_with(Input { name: &name, text: &text }, &[], &Disk);
+        let plain = compile_with(Input { name: &name, text: &text }, &[], &Disk::of(Some(&args.file)));
         if args.ask.is_empty() {
             return Ok(Self { compilation: plain, added: Vec::new() });
         }
@@ -40,7 +40,7 @@ impl Asked {
             }
         }
         text.push('\n');
-        let compilation = compile_with(Input { name: &name, text: &text }, &[], &Disk);
+        let compilation = compile_with(Input { name: &name, text: &text }, &[], &Disk::of(Some(&args.file)));
         Ok(Self { compilation, added })
     }
 

@@ -58,7 +58,7 @@ pub struct Args {
     #[command(flatten)]
     how: How,
     /// Stop after this time, like `60s` or `500ms`: what is not decided then is open.
-    #[arg(long, value_name = "T", value_parser = quantity::time)]
+    #[arg(long, value_name = "T", value_parser = crate::quantity::time)]
     timeout: Option<Duration>,
     /// Tell each run that shows something, step by step.
     #[arg(long)]
@@ -102,7 +102,7 @@ pub struct How {
     #[arg(long, value_name = "N")]
     budget_states: Option<usize>,
     /// The most memory for them, like `2GB` or `500MB`.
-    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
+    #[arg(long, value_name = "SIZE", value_parser = crate::quantity::data)]
     budget_memory: Option<u64>,
 }
 
@@ -123,7 +123,7 @@ impl How {
             settings.budget.states = states;
         }
         if let Some(bytes) = self.budget_memory {
-            settings.budget.bytes = bytes;
+            settings.budget.bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
         }
         settings
     }

@@ -28,6 +28,7 @@ use crate::{
     installing::Installing,
     quantity,
     results_folder::ResultsFolder,
+    terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
@@ -173,10 +174,10 @@ fn prepared<'p>(
     cells.terminal = args.debug;
     cells.network = system.online;
     for gap in &cells.gaps {
-        eprintln!("note: {gap}");
+        terminal::say_line(format_args!("note: {gap}"));
     }
     for complaint in env.analyse(&dir, &system.coverage).map_err(|e| e.to_string())? {
-        eprintln!("warning: {}", complaint.trim_start_matches("hrdsl: "));
+        terminal::say_line(format_args!("warning: {}", complaint.trim_start_matches("hrdsl: ")));
     }
     Ok(Campaign {
         program,
@@ -254,7 +255,7 @@ fn stop_flag(debug: bool) -> Result<StopFlag, Fault> {
 }
 
 fn absolute(path: PathBuf) -> Result<PathBuf, Fault> {
-    std::path::absolute(&path).map_err(|e| format!("cannot find {}: {e}", path.display()))
+    std::path::absolute(&path).map_err(|e| format!("cannot find {}: {e}", terminal::shown(&path)))
 }
 
 /// Generates the suites, unless tests were given.
@@ -372,7 +373,6 @@ struct RunInfo<'a> {
     isolation: Isolation,
     /// What could not be kept apart.
     gaps: &'a [String],
-    jobs: usize,
     system: String,
 }
 
@@ -386,7 +386,6 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
         python: campaign.env.version(),
         isolation: campaign.cells.isolation,
         gaps: &campaign.cells.gaps,
-        jobs: campaign.jobs,
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     };
     input::write(&to.join("run.json"), &json(&info)?)?;
@@ -420,5 +419,5 @@ fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Durat
         String::new()
     };
     let page = out.join("report.html");
-    input::print(&format!("{summary}{ran}{again}report: {}\n", page.display()))
+    input::print(&format!("{summary}{ran}{again}report: {}\n", terminal::shown(&page)))
 }

@@ -31,7 +31,7 @@ use self::{
     survey::{Survey, survey},
     types::{Ty, Types},
 };
-use crate::{Imported, Loader, Note, Severity, Source, SyntaxError};
+use crate::{Imported, Loader, Note, Severity, Source, SyntaxError, too_large};
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
@@ -186,7 +186,8 @@ fn read(files: &[Source], loader: &dyn Loader, options: &Options) -> Result<Syst
     let mut reader = Reader::new(loader);
     let mut system = System::default();
     let mut named = options.name.clone();
-    for file in files {
+    reader.errors.extend(files.iter().filter_map(too_large));
+    for file in files.iter().filter(|f| too_large(f).is_none()) {
         if file.name.ends_with(".mas2j") {
             let name = read_project(&mut reader, file, &mut system);
             named = named.or(name);
@@ -197,6 +198,7 @@ fn read(files: &[Source], loader: &dyn Loader, options: &Options) -> Result<Syst
         }
     }
     let first = files.first().map(|f| stem(&f.name).to_owned());
+    reader.errors.extend(too_many(files, &system));
     system.name = named.or(first).unwrap_or_else(|| "imported".to_owned());
     system.files = std::mem::take(&mut reader.files);
     let mut errors = reader.errors;
@@ -221,6 +223,27 @@ fn push(system: &mut System, mut entry: Entry) {
         entry.name.push('_');
     }
     system.agents.push(entry);
+}
+
+/// The most beliefs, goals, rules and plans of all programs, and the most agents: names, types and what is never used are
+/// found by comparing them with each other.
+const MAX_ITEMS: usize = 3_000;
+const MAX_AGENTS: usize = 500;
+
+/// What is wrong with the number of things to import, if anything.
+fn too_many(files: &[Source], system: &System) -> Option<SyntaxError> {
+    let items: usize = system.programs.iter().map(|p| p.items.len()).sum();
+    let message = if items > MAX_ITEMS {
+        format!(
+            "the programs have {items} beliefs, goals, rules and plans; at most {MAX_ITEMS} are imported at once"
+        )
+    } else if system.agents.len() > MAX_AGENTS {
+        format!("there are more than {MAX_AGENTS} agents, as many as are imported at once")
+    } else {
+        return None;
+    };
+    let file = files.first().map(|f| f.name.clone()).unwrap_or_default();
+    Some(SyntaxError { file, line: 1, column: 1, message })
 }
 
 /// The file's name without its folder and ending.
@@ -250,7 +273,7 @@ fn read_project(reader: &mut Reader<'_>, file: &Source, system: &mut System) -> 
         }
         system.programs.push(program);
         let program = system.programs.len() - 1;
-        for n in 1..=entry.count {
+        for n in (1..=entry.count).take(MAX_AGENTS + 1) {
             let name = format!("{}{n}", entry.name);
             push(system, Entry { name, program, beliefs: beliefs.clone(), goals: goals.clone() });
         }

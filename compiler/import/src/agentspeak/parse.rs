@@ -9,7 +9,7 @@ use super::{
     ast::{Item, ItemKind, Literal, Plan, Program, Term, TermKind, Trigger, TriggerKind},
     lex::{Tok, Token, lex, lex_from},
 };
-use crate::{Loader, SyntaxError};
+use crate::{Loader, MAX_BYTES, SyntaxError};
 
 /// How deep terms, blocks and includes may be nested.
 const MAX_DEPTH: usize = 200;
@@ -30,11 +30,13 @@ pub struct Reader<'l> {
     pub errors: Vec<SyntaxError>,
     /// The names of the files that are being read, the outermost first.
     open: Vec<String>,
+    /// How much has been read, in bytes.
+    bytes: usize,
 }
 
 impl<'l> Reader<'l> {
     pub fn new(loader: &'l dyn Loader) -> Self {
-        Self { files: Files::default(), loader, errors: Vec::new(), open: Vec::new() }
+        Self { files: Files::default(), loader, errors: Vec::new(), open: Vec::new(), bytes: 0 }
     }
 
     /// Says what is wrong at a place.
@@ -69,6 +71,7 @@ impl<'l> Reader<'l> {
 
     /// A parser of a text that becomes one of the files.
     fn parser(&mut self, name: &str, text: &str) -> Parser {
+        self.bytes += text.len();
         let file = self.files.add(name, text);
         let (tokens, faults) = lex(file, text);
         for (span, message) in faults {
@@ -100,6 +103,10 @@ impl<'l> Reader<'l> {
             }
             Ok(_) if self.open.len() > MAX_DEPTH => {
                 self.error(span, "too many files include each other".to_owned())
+            }
+            Ok(source) if self.bytes + source.text.len() > MAX_BYTES => {
+                let most = MAX_BYTES >> 20;
+                self.error(span, format!("the programs with what they include are larger than {most} MiB"));
             }
             Ok(source) => self.read(&source.name, &source.text, program),
             Err(message) => self.error(span, message),

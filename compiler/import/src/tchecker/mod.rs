@@ -16,7 +16,7 @@ mod parse;
 mod term;
 mod write;
 
-use crate::{Imported, Note, Severity, Source, SyntaxError};
+use crate::{Imported, Note, Severity, Source, SyntaxError, too_large};
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +30,9 @@ pub struct Options {
 /// # Errors
 /// What cannot be read, or cannot be said in a scenario, and where.
 pub fn import(file: &Source, options: &Options) -> Result<Imported, Vec<SyntaxError>> {
+    if let Some(large) = too_large(file) {
+        return Err(vec![large]);
+    }
     let (mut model, faults) = parse::parse(&file.text);
     if let Some(name) = &options.name {
         model.name.clone_from(name);

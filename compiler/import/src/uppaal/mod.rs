@@ -31,7 +31,7 @@ use self::{
     process::Parsed,
     scope::{ChanSym, Names, Scope},
 };
-use crate::{Imported, Note, Severity, Source, SyntaxError};
+use crate::{Imported, Note, Severity, Source, SyntaxError, too_large};
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
@@ -130,6 +130,10 @@ pub fn import(
     questions: Option<&Source>,
     options: &Options,
 ) -> Result<Imported, Vec<SyntaxError>> {
+    let large: Vec<SyntaxError> = std::iter::once(model).chain(questions).filter_map(too_large).collect();
+    if !large.is_empty() {
+        return Err(large);
+    }
     let mut files = Files::default();
     let file = files.add(&model.name, &model.text);
     let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;

@@ -1,5 +1,7 @@
 //! The XML of a model: templates with their locations and transitions, and the pieces of text in them.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::{FileId, Span};
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -36,7 +38,6 @@ pub enum Kind {
 
 #[derive(Debug)]
 pub struct Location {
-    pub id: String,
     pub name: Option<String>,
     pub span: Span,
     pub kind: Kind,
@@ -63,13 +64,16 @@ pub struct QueryText {
 
 /// Reads a model.
 pub fn read(file: FileId, text: &str) -> Result<Model, Vec<Fault>> {
+    if let Some((at, message)) = refused(text) {
+        return Err(vec![Fault { span: Span::new(file, at, at), message }]);
+    }
     let options = ParsingOptions { allow_dtd: true, nodes_limit: 1_000_000, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| {
         let at = offset(text, e.pos());
         let message = format!("this is not XML as UPPAAL writes it: {}", without_place(&e.to_string()));
         vec![Fault { span: Span::new(file, at, at), message }]
     })?;
-    let mut reader = Reader { file, text, faults: Vec::new(), model: Model::default() };
+    let mut reader = Reader { file, text, faults: Vec::new(), model: Model::default(), ids: BTreeMap::new() };
     let root = document.root_element();
     if root.tag_name().name() == "nta" {
         reader.nta(root);
@@ -78,6 +82,54 @@ pub fn read(file: FileId, text: &str) -> Result<Model, Vec<Fault>> {
         reader.fault(root, message);
     }
     if reader.faults.is_empty() { Ok(reader.model) } else { Err(reader.faults) }
+}
+
+/// The most attributes of an element; UPPAAL writes a few.
+const ATTRIBUTES: usize = 100;
+
+/// What no model has and what takes the reader of XML without end: entities, and elements with many attributes.
+fn refused(text: &str) -> Option<(usize, String)> {
+    let mut at = 0;
+    while let Some(start) = text[at..].find('<').map(|i| at + i) {
+        let rest = &text[start..];
+        if rest.starts_with("<!ENTITY") {
+            return Some((
+                start,
+                "entities are not read: write what they stand for in their place".to_owned(),
+            ));
+        }
+        let skip = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        at = match skip.iter().find(|(begin, _)| rest.starts_with(begin)) {
+            Some((_, end)) => rest.find(end).map_or(text.len(), |i| start + i + end.len()),
+            None if rest.starts_with("<!") => start + 2,
+            None => {
+                let (end, attributes) = tag(rest);
+                if attributes > ATTRIBUTES {
+                    return Some((start, format!("this element has more than {ATTRIBUTES} attributes")));
+                }
+                start + end
+            }
+        };
+    }
+    None
+}
+
+/// Where a tag ends, and how many values in quotes it has.
+fn tag(text: &str) -> (usize, usize) {
+    let (mut quote, mut values) = (None, 0);
+    for (i, c) in text.bytes().enumerate().skip(1) {
+        match (quote, c) {
+            (Some(q), c) if q == c => quote = None,
+            (Some(_), _) => {}
+            (None, b'"' | b'\'') => {
+                quote = Some(c);
+                values += 1;
+            }
+            (None, b'>' | b'<') => return (i, values),
+            (None, _) => {}
+        }
+    }
+    (text.len(), values)
 }
 
 /// The byte of a place that is given as roxmltree does, in characters.
@@ -106,6 +158,8 @@ struct Reader<'t> {
     text: &'t str,
     faults: Vec<Fault>,
     model: Model,
+    /// The locations of the present template, by id.
+    ids: BTreeMap<String, usize>,
 }
 
 impl Reader<'_> {
@@ -151,6 +205,7 @@ impl Reader<'_> {
         let Some(name) = child("name").and_then(|n| n.text()).map(str::trim).filter(|n| !n.is_empty()) else {
             return self.fault(node, "this template has no name");
         };
+        self.ids.clear();
         let mut template = Template {
             name: name.to_owned(),
             parameters: child("parameter").map(|n| self.piece(n)).unwrap_or_default(),
@@ -181,8 +236,8 @@ impl Reader<'_> {
             return self.fault(node, format!("the template `{name}` has no initial location (`<init>`)"));
         };
         let id = init.attribute("ref").unwrap_or_default();
-        match template.locations.iter().position(|l| l.id == id) {
-            Some(at) => template.initial = at,
+        match self.ids.get(id) {
+            Some(at) => template.initial = *at,
             None => self.fault(init, format!("there is no location with the id `{id}`")),
         }
     }
@@ -190,7 +245,6 @@ impl Reader<'_> {
     fn location(&mut self, node: Node<'_, '_>, template: &mut Template) {
         let Some(id) = node.attribute("id") else { return self.fault(node, "this location has no id") };
         let mut location = Location {
-            id: id.to_owned(),
             name: None,
             span: self.span(node),
             kind: Kind::Normal,
@@ -210,6 +264,7 @@ impl Reader<'_> {
                 name => self.unknown(part, name),
             }
         }
+        self.ids.entry(id.to_owned()).or_insert(template.locations.len());
         template.locations.push(location);
     }
 
@@ -238,7 +293,7 @@ impl Reader<'_> {
                 return 0;
             };
             let id = part.attribute("ref").unwrap_or_default();
-            template.locations.iter().position(|l| l.id == id).unwrap_or_else(|| {
+            reader.ids.get(id).copied().unwrap_or_else(|| {
                 reader.fault(part, format!("there is no location with the id `{id}`"));
                 0
             })

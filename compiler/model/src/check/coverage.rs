@@ -247,7 +247,7 @@ mod tests {
             for bin in 0..12 {
                 dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let lo = (dice >> 33) as i64 % 40;
-                let hi = if dice % 7 == 0 { i64::MAX } else { lo + (dice >> 20) as i64 % 5 };
+                let hi = if dice.is_multiple_of(7) { i64::MAX } else { lo + (dice >> 20) as i64 % 5 };
                 let meets = |(l, h): &(i64, i64)| *l <= hi && lo <= *h;
                 match covered.add(lo, hi, bin) {
                     Some(met) => assert!(meets(&all[met]), "{lo}..{hi} and {:?} of {all:?}", all[met]),

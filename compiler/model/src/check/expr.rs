@@ -211,7 +211,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant amount of data, in bytes: at least one.
-    pub(super) fn data(&mut self, e: &ast::Expr, what: &str) -> Option<f64> {
+    pub(super) fn amount_of_data(&mut self, e: &ast::Expr, what: &str) -> Option<f64> {
         let bytes = self.quantity_of(e, Dim::DATA)?;
         if (1.0..=MAX_DATA).contains(&bytes) {
             return Some(bytes);

@@ -182,6 +182,24 @@ impl Checker<'_> {
         None
     }
 
+    /// That there is no world is one fault, however much needs one.
+    pub(super) fn say_without_world(&mut self) {
+        const PLACES: usize = 8;
+        let mut places = std::mem::take(&mut self.without_world);
+        places.sort();
+        places.dedup();
+        let Some(((span, name), others)) = places.split_first() else { return };
+        let message = match others.len() {
+            0 => format!("`{name}` needs a world, and the scenario has none"),
+            more => format!("`{name}` and {more} more need a world, and the scenario has none"),
+        };
+        let mut issue = names::missing(*span, message, "declare it: `world { … }`");
+        for (span, _) in others.iter().take(PLACES) {
+            issue = issue.label(*span, "and this");
+        }
+        self.report(issue);
+    }
+
     /// Something in the world by its dotted name, or a diagnostic at the first name that leads nowhere.
     pub(super) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
         let full = self.full_name(names, prefix)?;
@@ -194,8 +212,7 @@ impl Checker<'_> {
         }
         if !self.has_world && prefix.is_empty() {
             let span = names[0].span.to(names[names.len() - 1].span);
-            let message = format!("`{}` needs a world, and the scenario has none", text(names));
-            self.report(names::missing(span, message, "declare it: `world { … }`"));
+            self.without_world.push((span, text(names)));
             return None;
         }
         let mut base = prefix.to_owned();

@@ -116,6 +116,7 @@ pub fn resolve_part(
     checker.unread_members = false;
     checker.systems();
     checker.tests(tests);
+    checker.say_without_world();
     checker.places();
     (checker.s, distinct(checker.issues))
 }
@@ -238,6 +239,8 @@ pub(crate) struct Checker<'a> {
     /// The parts that are being taken apart, the outermost first.
     open_parts: Vec<&'a str>,
     in_world: world_parts::WorldNames,
+    /// What needs a world where the scenario has none: one cause, which is said once.
+    without_world: Vec<(Span, String)>,
     /// A module is missing, which may have the parts that are used.
     missing_modules: bool,
     /// The suite that is being checked names a player that does not exist.
@@ -273,6 +276,7 @@ impl<'a> Checker<'a> {
             records: Vec::new(),
             open_records: 0,
             templates: Map::default(),
+            without_world: Vec::new(),
             used_templates: BTreeSet::new(),
             used_types: BTreeSet::new(),
             broken_instances: BTreeSet::new(),

@@ -12,13 +12,19 @@ use super::{
 };
 use crate::{Arg, Context, Plan, Scenario, Value};
 
+/// So many plans for the same goal or event are compared with each that follows.
+const COMPARED: usize = 100;
+
 pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         for later in &facts.agent.plans {
             if never_runs(&facts, later) {
                 continue;
             }
-            let earlier = facts.plans(later.trigger).take_while(|earlier| !std::ptr::eq(*earlier, later));
+            let earlier = facts
+                .plans(later.trigger)
+                .take(COMPARED)
+                .take_while(|earlier| !std::ptr::eq(*earlier, later));
             let mut looked_at =
                 earlier.take_while(|earlier| facts.work(1 + literals(&earlier.context).len()));
             let earlier = looked_at.find(|earlier| shadows(earlier, later));

@@ -64,6 +64,8 @@ pub(super) struct View {
     covered: OwnedFd,
     /// The file system in memory that has the layers.
     layers: OwnedFd,
+    /// The program's own folders.
+    own: Vec<PathBuf>,
     /// The overlays: the folder, and its upper layer.
     overlays: Vec<(PathBuf, PathBuf)>,
     /// Folders over which no overlay could be made.
@@ -88,7 +90,8 @@ impl View {
         };
         memory(format!("size={size},mode=700"), Path::new(SCRATCH))?;
         let layers = open(SCRATCH, OFlags::PATH | OFlags::CLOEXEC, Mode::empty()).map_err(at(SCRATCH))?;
-        let mut view = Self { mounts, covered, layers, overlays: Vec::new(), read_only: Vec::new() };
+        let mut view =
+            Self { mounts, covered, layers, own: own.to_vec(), overlays: Vec::new(), read_only: Vec::new() };
         let root = root();
         fs::create_dir(&root).map_err(|e| (SCRATCH.to_owned(), e))?;
         memory("size=16m,mode=755".to_owned(), &root)?;
@@ -146,15 +149,31 @@ impl View {
             let (source, place) = (host.join(&name), target.join(&name));
             let Ok(kind) = entry.file_type() else { continue };
             if kind.is_symlink() {
-                fs::read_link(&source).and_then(|to| symlink(to, &place)).map_err(fail)?;
+                let Ok(to) = fs::read_link(&source) else { continue };
+                symlink(to, &place).map_err(fail)?;
             } else if kind.is_dir() {
-                self.folder(&path.join(&name))?;
+                match self.folder(&path.join(&name)) {
+                    // Others make and remove folders meanwhile, above all temporary ones.
+                    Err(_) if !source.exists() => {}
+                    result => result?,
+                }
             } else {
-                fs::write(&place, "").map_err(fail)?;
-                // A file that cannot be bound (another user's) is there, and empty.
-                let _ = mount_bind(&source, &place);
+                self.file(&path.join(&name), kind.is_file())?;
             }
         }
+        Ok(())
+    }
+
+    /// A file in a folder that was made anew: a copy in the program's own folders, elsewhere one that can be read. One that
+    /// cannot be either (another user's) is there, and empty.
+    fn file(&self, path: &Path, is_regular: bool) -> Result<(), ViewError> {
+        let (host, target) = (self.host(path), inside(path));
+        if is_regular && self.own.iter().any(|own| path.starts_with(own)) {
+            let _ = fs::copy(&host, &target);
+            return Ok(());
+        }
+        fs::write(&target, "").map_err(|e| (path.display().to_string(), e))?;
+        let _ = bind_read_only(&host, &target);
         Ok(())
     }
 
@@ -167,16 +186,17 @@ impl View {
             Ok(()) => Ok(()),
             Err(_) => {
                 self.read_only.push(path.to_owned());
-                mount_bind(&host, &target).map_err(|e| fail(e.into()))?;
-                mount_remount(&target, MountFlags::BIND | MountFlags::RDONLY | MountFlags::NOSUID, c"")
-                    .map_err(|e| fail(e.into()))
+                bind_read_only(&host, &target).map_err(|e| fail(e.into()))
             }
         }
     }
 
-    /// A folder that must be the cell's own.
+    /// A folder that must be the cell's own; one with mounts below was made anew already.
     fn own_layer(&mut self, path: &Path) -> Result<(), ViewError> {
-        if self.overlays.iter().any(|(at, _)| at == path) || !self.host(path).is_dir() {
+        if self.has_mounts_below(path)
+            || self.overlays.iter().any(|(at, _)| at == path)
+            || !self.host(path).is_dir()
+        {
             return Ok(());
         }
         let host = self.host(path);
@@ -258,6 +278,25 @@ impl View {
             Err(_) => path.to_owned(),
         }
     }
+}
+
+/// Binds a file or folder so that it can only be read. A remount must repeat what the kernel has locked of the mount that it
+/// comes from, which is not told: so it is tried.
+fn bind_read_only(source: &Path, target: &Path) -> Result<(), Errno> {
+    mount_bind(source, target)?;
+    let locked = [MountFlags::NOSUID, MountFlags::NODEV, MountFlags::NOEXEC];
+    let mut result = Ok(());
+    for which in 0..1 << locked.len() {
+        let some = locked.iter().enumerate().filter(|(k, _)| which >> k & 1 == 1).map(|(_, flag)| *flag);
+        let flags = some.fold(MountFlags::BIND | MountFlags::RDONLY, |all, flag| all | flag);
+        result = mount_remount(target, flags, c"");
+        if result.is_ok() {
+            return result;
+        }
+    }
+    // Rather not there than written to.
+    unmount(target, UnmountFlags::DETACH)?;
+    result
 }
 
 fn root() -> PathBuf {

@@ -1,0 +1,93 @@
+//! Which files a text may name (`use "…"`, what a program includes): regular ones below the project's folder. So a text from
+//! elsewhere, checked where others read what is said about it, shows nobody's other files.
+
+use std::{
+    fs,
+    path::{Component, Path, PathBuf},
+    sync::OnceLock,
+};
+
+use crate::{
+    input::{self, Fault},
+    terminal::shown,
+};
+
+static ALLOWED: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Settles what `--allow-path` opens, for the whole process.
+///
+/// # Errors
+/// A folder that is not there.
+pub fn allow(folders: &[PathBuf]) -> Result<(), Fault> {
+    let whole = |folder: &PathBuf| match folder.canonicalize() {
+        Ok(whole) if whole.is_dir() => Ok(whole),
+        Ok(_) | Err(_) => Err(format!("--allow-path: there is no folder {}", shown(folder))),
+    };
+    let folders = folders.iter().map(whole).collect::<Result<Vec<_>, _>>()?;
+    ALLOWED.get_or_init(|| folders);
+    Ok(())
+}
+
+/// The folders whose files a text may name.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    folders: Vec<PathBuf>,
+    /// How the names of such files end, of which a text is read.
+    endings: &'static [&'static str],
+}
+
+impl Reach {
+    /// Of a file that was named on the command line, or of standard input.
+    #[must_use]
+    pub fn of(file: Option<&Path>, endings: &'static [&'static str]) -> Self {
+        let folder = file.map_or_else(|| PathBuf::from("."), input::folder);
+        let own = folder.canonicalize().unwrap_or(folder);
+        let project = own.ancestors().find(|f| f.join(".git").exists()).map(Path::to_owned);
+        let allowed = ALLOWED.get().cloned().unwrap_or_default();
+        Self { folders: std::iter::once(project.unwrap_or(own)).chain(allowed).collect(), endings }
+    }
+
+    /// The file that a path means in the file called `from`, and its text.
+    ///
+    /// # Errors
+    /// Why it is not read, as the end of a sentence.
+    pub fn read(&self, from: &str, path: &str) -> Result<(PathBuf, String), String> {
+        let file = tidy(&input::folder(Path::new(from)).join(path));
+        let Ok(whole) = file.canonicalize() else { return Err(format!("there is no file {}", shown(&file))) };
+        if !self.folders.iter().any(|f| whole.starts_with(f)) {
+            return Err(format!(
+                "{} is outside of {}; `--allow-path DIR` opens another folder",
+                shown(&file),
+                shown(&self.folders[0])
+            ));
+        }
+        // What is no file may have no end, or wait for somebody to write.
+        if !fs::metadata(&whole).is_ok_and(|m| m.is_file()) {
+            return Err(format!("{} is no regular file", shown(&file)));
+        }
+        let ending = whole.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        if !self.endings.contains(&ending) {
+            let endings = self.endings.iter().map(|e| format!("`.{e}`")).collect::<Vec<_>>().join(" or ");
+            return Err(format!("the name of {} does not end in {endings}", shown(&file)));
+        }
+        let text = input::read(&file)?;
+        Ok((file, text))
+    }
+}
+
+/// The same path without `.` and, where a folder can be taken back, without `..`: one file has one name.
+fn tidy(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            Component::ParentDir | Component::Normal(_) | Component::RootDir | Component::Prefix(_) => {
+                tidy.push(part);
+            }
+        }
+    }
+    tidy
+}
