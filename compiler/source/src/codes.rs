@@ -128,6 +128,7 @@ codes! {
     IMPURE = 523 "a change where a value is only looked at",
     BAD_PATTERN = 601 "a requirement that says nothing",
     NEVER_TRIGGERED = 602 "a requirement that can never be triggered",
+    CONTRADICTING_REQUIREMENTS = 603 "requirements that contradict each other",
     OVERLAPPING_BINS = 701 "bins that overlap",
     BAD_SUITE = 702 "a suite that cannot make tests",
     EMPTY_BIN = 703 "a bin that contradicts itself",

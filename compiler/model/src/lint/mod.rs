@@ -24,6 +24,7 @@ mod plan_terms;
 mod query_reads;
 mod recursion_without_time;
 mod removes_nothing;
+mod requirements;
 mod shadowed_plan;
 mod simple;
 mod time_stops;
@@ -59,6 +60,7 @@ const RULES: &[Rule] = &[
     committed_cycle::check,
     channels::check,
     never_triggered::check,
+    requirements::contradicting,
     cross_bins::empty,
     cross_bins::equal,
     nothing_carries::check,
