@@ -262,3 +262,73 @@ fn a_search_reaches_what_it_is_asked_for_and_keeps_few_tests() {
         assert_eq!(fates(&all), fates(&other), "{args}");
     }
 }
+
+/// A robot that gives up while somebody is still reaching, which takes no time in the model.
+const HELD: &str = "\
+scenario reach
+
+actor person : environment
+actor robot  : system
+
+event started  from person to robot
+event finished from person to robot
+event gave_up  from robot
+event rang     from robot
+
+stimulus reach by person { emit started; hold 2 s; emit finished }
+stimulus leave by person { emit finished; hold 2 s }
+
+automaton Person plays person {
+  clock x
+  init location idle
+  location reaching { invariant x <= 5 s }
+  idle     -> reaching do reach; x = 0
+  reaching -> idle     when x >= 5 s do leave; x = 0
+}
+
+automaton Robot plays robot {
+  clock x
+  init location ready
+  location busy
+  location late
+  location never
+  ready -> busy  on started do x = 0
+  busy  -> ready on finished
+  busy  -> late  when x >= 1 s do gave_up
+  late  -> never when x <= 1 s && x >= 3 s do rang
+}
+
+network table = Person | Robot
+
+require R1 functional gave_up causes finished within 5 s
+require R2 functional rang causes finished within 5 s
+
+query late  of table = E<> Robot.late
+query never of table = E<> Robot.never
+
+suite found by search of table {
+  reach each location
+  reach trigger of R1
+}
+";
+
+#[test]
+fn what_only_a_hold_keeps_from_happening_is_said() {
+    let folder = folder(&[("reach.hri", HELD)]);
+    let run =
+        |args: &str| stdout(&hrdsl_in(folder.path(), args)).split_whitespace().collect::<Vec<_>>().join(" ");
+    let why = "a `hold` takes no time in automata: it would be reached if the holds of `reach` did; \
+               without that, the nearest is Person doing `reach`, Robot in `busy`";
+    let proved = run("prove reach.hri");
+    // R1 and `late`, but neither R2 nor `never`.
+    assert_eq!(proved.matches(why).count(), 2, "{proved}");
+    let generated = run("gen reach.hri");
+    assert!(generated.contains(&format!("location Robot.late: proved: none of the 5 symbolic states that the model can reach meets it; {why}")), "{generated}");
+    assert!(
+        generated.contains(&format!(
+            "trigger of R1: proved: none of the 5 symbolic states that the model can reach meets it; {why}"
+        )),
+        "{generated}"
+    );
+    assert_eq!(generated.matches(why).count(), 2, "{generated}");
+}

@@ -18,6 +18,18 @@ pub struct World {
     pub currents: Vec<Current>,
     pub signals: Vec<Signal>,
     pub rules: Vec<Rule>,
+    /// The parts that are put into it; what they are made of is in the lists above.
+    #[serde(skip)]
+    pub parts: Vec<Instance>,
+    pub span: Span,
+}
+
+/// A part that is put somewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// `left.hand`
+    pub name: String,
+    pub frame: Frame,
     pub span: Span,
 }
 

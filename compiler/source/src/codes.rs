@@ -128,11 +128,13 @@ codes! {
     IMPURE = 523 "a change where a value is only looked at",
     BAD_PATTERN = 601 "a requirement that says nothing",
     NEVER_TRIGGERED = 602 "a requirement that can never be triggered",
+    CONTRADICTING_REQUIREMENTS = 603 "requirements that contradict each other",
     OVERLAPPING_BINS = 701 "bins that overlap",
     BAD_SUITE = 702 "a suite that cannot make tests",
     EMPTY_BIN = 703 "a bin that contradicts itself",
     EQUAL_BINS = 704 "bins that are the same",
     BAD_WORLD = 801 "a world that cannot be built",
+    NOTHING_CARRIES = 802 "a body that nothing carries",
     BAD_TEST = 901 "a test that cannot run",
 }
 

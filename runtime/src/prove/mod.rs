@@ -11,6 +11,7 @@
 //! counts. Only if neither decides are they added as automata of their own ([`Observed::restrict`]).
 
 mod goals;
+pub(crate) mod held;
 mod matching;
 mod observer;
 mod query;
@@ -23,6 +24,8 @@ use hrdsl_monitor::Checker;
 pub use hrdsl_ta::Story;
 use hrdsl_ta::{Error, Witness};
 use hrdsl_trace::{Observer as _, Trace, What};
+
+use held::Held;
 
 pub use goals::{Decided, Fate, decide, of_formula};
 pub use observer::{Observed, Verdicts};
@@ -37,6 +40,8 @@ pub struct Proof {
     pub status: Status,
     /// Symbolic states stored, of all searches that it took.
     pub states: usize,
+    /// Why nothing triggers it, if that is known.
+    pub note: Option<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -89,7 +94,7 @@ pub fn prove(
     let mut observed = Observed::new(program, network);
     let verdicts = match observed.add(requirement) {
         Ok(verdicts) => verdicts,
-        Err(why) => return Ok(Proof { monitor, status: Status::NotOnTheModel(why), states: 0 }),
+        Err(why) => return Ok(Proof { monitor, status: Status::NotOnTheModel(why), states: 0, note: None }),
     };
     let formulas: Vec<_> = verdicts.violated.iter().chain([&verdicts.triggered]).collect();
     let questions: Vec<_> = formulas.into_iter().map(goals::of_formula).collect();
@@ -98,7 +103,7 @@ pub fn prove(
         Err(Error::Model { error, witness }) => {
             let what = error.to_string();
             let run = witness.map(|witness| Box::new(Run { observed, witness: *witness }));
-            return Ok(Proof { monitor, status: Status::Fault { what, run }, states: 0 });
+            return Ok(Proof { monitor, status: Status::Fault { what, run }, states: 0, note: None });
         }
         Err(Error::Internal(what)) => return Err(format!("requirement `{}`: {what}", requirement.name)),
     };
@@ -119,7 +124,37 @@ pub fn prove(
         Some(Fate::Open(why)) => Status::Open(why),
         None => Status::Open("it was not searched".to_owned()),
     };
-    Ok(Proof { monitor, status, states })
+    let note = match status {
+        Status::Holds { triggered: Some(false) } => {
+            held_back(program, network, requirement, settings, states, watch)
+        }
+        Status::Holds { .. }
+        | Status::Violated(_)
+        | Status::Open(_)
+        | Status::NotOnTheModel(_)
+        | Status::Fault { .. } => None,
+    };
+    Ok(Proof { monitor, status, states, note })
+}
+
+/// Why nothing triggers a requirement, if it is that holds take no time.
+fn held_back(
+    program: &Program,
+    network: &Network,
+    requirement: &Monitor,
+    settings: &Settings,
+    states: usize,
+    watch: &Watch,
+) -> Option<String> {
+    let held = Held::of(program, network)?;
+    let mut observed = Observed::new(&held.program, network);
+    let triggered = observed.add(requirement).ok()?.triggered;
+    let (goal, settings) = (of_formula(&triggered), Held::settings(settings, states));
+    let decided = decide(&held.program, &observed, &[goal], &[], &settings, watch).ok()?;
+    match decided.fates.first()? {
+        Fate::Reached(run) => held.because(&run.witness),
+        Fate::Unreachable | Fate::Open(_) => None,
+    }
 }
 
 /// The monitor itself must see the violation.

@@ -9,6 +9,7 @@ use hrdsl_ta::{Answer, Error, Extremum, Goal, Manner, Outcome, Quantity, Reach, 
 use super::{
     Observed, Run, Settings, Watch,
     goals::{exhausted, of_formula},
+    held::Held,
     settings::search,
 };
 
@@ -164,7 +165,38 @@ fn by_search(
         };
         Answered { query: *query, found, run, notes: notes.clone(), states }
     });
-    Ok(answered.collect())
+    let mut answered: Vec<Answered> = answered.collect();
+    note_holds(plain, &goals, &mut answered, settings, watch);
+    Ok(answered)
+}
+
+/// Notes of what is not possible if it is so only because holds take no time.
+fn note_holds(
+    plain: &Observed,
+    goals: &[Goal],
+    answered: &mut [Answered],
+    settings: &Settings,
+    watch: &Watch,
+) {
+    let impossible = |i: &usize| {
+        let query = plain.program.queries.get(answered[*i].query);
+        answered[*i].found == Found::NotSatisfied && query.is_some_and(|q| matches!(q.ask, Ask::Possibly(_)))
+    };
+    let open: Vec<usize> = (0..answered.len()).filter(impossible).collect();
+    if open.is_empty() {
+        return;
+    }
+    let Some(held) = Held::of(&plain.program, &plain.network) else { return };
+    let goals: Vec<Goal> = open.iter().map(|i| goals[*i].clone()).collect();
+    let states = open.iter().filter_map(|i| answered[*i].states).max().unwrap_or(0);
+    let settings = Held::settings(settings, states);
+    let observed = Observed::new(&held.program, &plain.network);
+    let Ok(report) = search(&observed, &goals, &[], &[], &settings, watch) else { return };
+    for (i, outcome) in open.into_iter().zip(report.goals) {
+        if let Outcome::Reached(witness) = outcome {
+            answered[i].notes.extend(held.because(&witness));
+        }
+    }
 }
 
 fn in_general(

@@ -16,7 +16,7 @@ use super::{
     expand::{Named, counters, goals},
     extract,
 };
-use crate::prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, of_formula};
+use crate::prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, held::Held, of_formula};
 
 /// Decides all goals and takes the environment's part of each witness.
 ///
@@ -35,12 +35,17 @@ pub fn harvest(
         .ok_or_else(|| format!("suite `{}` names no network", suite.name))?;
     let named = goals(program, network, asked);
     let mut harvest = Harvest::default();
-    let (fates, states) = fates(program, network, &named, settings, &mut harvest.notes)
+    let all: Vec<&Named> = named.iter().collect();
+    let (fates, states) = fates(program, network, &all, settings, &mut harvest.notes)
         .map_err(|e| format!("network `{}`: {e}", network.name))?;
+    let held_back = held_back(program, network, &named, &fates, settings, states);
     let players: Vec<PlayerRef> = network.automata.iter().map(|a| PlayerRef::Automaton(*a)).collect();
     let awaits = extract::Awaits::of(program, &players);
-    for (named, fate) in named.iter().zip(&fates) {
-        let (status, reason) = said(fate, states);
+    for ((named, fate), held_back) in named.iter().zip(&fates).zip(held_back) {
+        let (status, mut reason) = said(fate, states);
+        if let Some(why) = held_back {
+            reason = format!("{reason}; {why}");
+        }
         if let Fate::Reached(run) = fate {
             harvest.tests.push(test(program, suite, &awaits, named, run));
         }
@@ -87,6 +92,36 @@ fn note_reached(
     }
 }
 
+/// For each goal: why nothing reaches it, if it is that holds take no time.
+fn held_back(
+    program: &Program,
+    network: &Network,
+    named: &[Named],
+    decided: &[Fate],
+    settings: &Settings,
+    states: usize,
+) -> Vec<Option<String>> {
+    let mut reasons = vec![None; named.len()];
+    let open: Vec<usize> =
+        (0..named.len()).filter(|goal| matches!(decided[*goal], Fate::Unreachable)).collect();
+    if open.is_empty() {
+        return reasons;
+    }
+    let Some(held) = Held::of(program, network) else { return reasons };
+    let questions: Vec<&Named> = open.iter().map(|goal| &named[*goal]).collect();
+    let settings = Held::settings(settings, states);
+    // A fault of this network is none of the model's.
+    let Ok((fates, _)) = fates(&held.program, network, &questions, &settings, &mut Vec::new()) else {
+        return reasons;
+    };
+    for (goal, fate) in open.into_iter().zip(fates) {
+        if let Fate::Reached(run) = fate {
+            reasons[goal] = held.because(&run.witness);
+        }
+    }
+    reasons
+}
+
 fn said(fate: &Fate, states: usize) -> (GoalStatus, String) {
     match fate {
         Fate::Reached(run) => (GoalStatus::Reached, format!("in {} steps", run.witness.steps.len())),
@@ -121,7 +156,7 @@ fn needs(goal: &Goal) -> Needs {
 fn fates(
     program: &Program,
     network: &Network,
-    named: &[Named],
+    named: &[&Named],
     settings: &Settings,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<Fate>, usize), Error> {

@@ -181,7 +181,7 @@ impl Job {
                 let monitor = *monitor;
                 let work =
                     move |watch: &Watch| prove::prove(&of, &of.networks[network], monitor, &settings, watch);
-                let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0 };
+                let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0, note: None };
                 let proof = clock.watched(&program.monitors[monitor].name, work)?;
                 vec![Row::of_proof(program, &proof.unwrap_or_else(late))]
             }

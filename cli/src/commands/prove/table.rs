@@ -80,7 +80,7 @@ impl Row {
         let monitor = &program.monitors[proof.monitor];
         let (verdict, remark, run) = match &proof.status {
             Status::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
-            Status::Holds { triggered } => (Verdict::Holds, untriggered(*triggered), None),
+            Status::Holds { triggered } => (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None),
             Status::Open(why) => (Verdict::Open, Some(why.clone()), None),
             Status::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
             Status::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
@@ -133,10 +133,13 @@ impl Row {
     }
 }
 
-fn untriggered(triggered: Option<bool>) -> Option<String> {
+fn untriggered(triggered: Option<bool>, why: Option<&str>) -> Option<String> {
     match triggered {
         Some(true) => None,
-        Some(false) => Some("it is never triggered".to_owned()),
+        Some(false) => Some(match why {
+            Some(why) => format!("it is never triggered; {why}"),
+            None => "it is never triggered".to_owned(),
+        }),
         None => Some("whether it is ever triggered is open".to_owned()),
     }
 }

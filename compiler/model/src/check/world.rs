@@ -47,6 +47,7 @@ impl<'a> Checker<'a> {
             currents: Vec::new(),
             signals: Vec::new(),
             rules: Vec::new(),
+            parts: Vec::new(),
             span,
         });
         let placed = self.flatten(members, "", Frame::default(), None);
@@ -103,7 +104,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn world_mut(&mut self) -> &mut World {
+    pub(super) fn world_mut(&mut self) -> &mut World {
         self.s.world.as_mut().expect("`build` has made it")
     }
 

@@ -10,7 +10,7 @@ use crate::{
     BodyId, CurrentId, Dim, Kind,
     noun::Noun,
     report::{types, world::bad_world},
-    world::{BodyRef, Frame},
+    world::{BodyRef, Frame, Instance},
 };
 
 /// The most members of the world, those of its parts included each time that they are used.
@@ -126,6 +126,8 @@ impl<'a> Checker<'a> {
                     };
                     if new {
                         let frame = compose(frame, inner);
+                        let placed = Instance { name: full.clone(), frame, span: member.span };
+                        self.world_mut().parts.push(placed);
                         let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
                         let here = Name { text: full.clone(), span: name.span };
                         let instance = given.is_some().then(|| (here, name.span.to(end)));

@@ -44,7 +44,7 @@ impl Wanted {
         Self { event, args: args.map(|v| v.map(key)).collect() }
     }
 
-    fn of(pattern: &EventPattern) -> Self {
+    pub fn of(pattern: &EventPattern) -> Self {
         Self::new(pattern.event, pattern.args.iter().copied())
     }
 }

@@ -374,7 +374,7 @@ impl<'a> Env<'a> {
 }
 
 /// Whether two expressions are written alike, wherever they stand.
-fn same(a: &Expr, b: &Expr) -> bool {
+pub(super) fn same(a: &Expr, b: &Expr) -> bool {
     match (&a.kind, &b.kind) {
         (ExprKind::Const(a), ExprKind::Const(b)) => a == b,
         (ExprKind::Leaf(a), ExprKind::Leaf(b)) => a == b,

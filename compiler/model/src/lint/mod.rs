@@ -18,11 +18,13 @@ mod flow;
 mod interval;
 mod never_triggered;
 mod no_failure_plan;
+mod nothing_carries;
 mod overflow;
 mod plan_terms;
 mod query_reads;
 mod recursion_without_time;
 mod removes_nothing;
+mod requirements;
 mod shadowed_plan;
 mod simple;
 mod time_stops;
@@ -58,8 +60,10 @@ const RULES: &[Rule] = &[
     committed_cycle::check,
     channels::check,
     never_triggered::check,
+    requirements::contradicting,
     cross_bins::empty,
     cross_bins::equal,
+    nothing_carries::check,
 ];
 
 /// Looks for what cannot be meant in a scenario that has no errors.

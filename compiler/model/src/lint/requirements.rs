@@ -1,0 +1,179 @@
+//! HR0603: two requirements that no run can meet both.
+
+use hrdsl_source::{Code, Diagnostic};
+use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
+
+use super::{
+    facts::{Facts, Wanted},
+    interval::same,
+};
+use crate::{EventPattern, Expr, ExprKind, Pattern, Scenario};
+
+/// Beyond so many pairs nothing is said.
+const PAIRS: usize = 1 << 16;
+
+pub(crate) fn contradicting<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+    let all = &scenario.requirements;
+    if all.len().saturating_mul(all.len()) > PAIRS {
+        return;
+    }
+    for (i, later) in all.iter().enumerate() {
+        // What nothing triggers is said already.
+        let vain = |i: usize| facts.triggers.get(i).is_some_and(|t| facts.in_vain(t));
+        let clash = all[..i].iter().enumerate().find_map(|(j, earlier)| {
+            let clash = clash(facts, &earlier.pattern, &later.pattern)?;
+            (!vain(i) && !vain(j)).then_some((earlier, clash))
+        });
+        let Some((earlier, clash)) = clash else { continue };
+        let message =
+            format!("the requirements `{}` and `{}` contradict each other", earlier.name, later.name);
+        let issue = Diagnostic::warning(Code::CONTRADICTING_REQUIREMENTS, later.text, message);
+        let (here, there) = clash.told();
+        issues.push(
+            issue.here(here).label(earlier.text, there).help("change one of them: no run can meet both"),
+        );
+    }
+}
+
+/// How two requirements contradict each other.
+#[derive(Clone, Copy)]
+enum Clash {
+    /// The first wants what the second forbids.
+    WantedFirst,
+    ForbiddenFirst,
+    Conditions,
+}
+
+impl Clash {
+    /// What is said at the second, and at the first.
+    fn told(self) -> (&'static str, &'static str) {
+        let (wants, forbids) = ("this wants an event", "this forbids it");
+        match self {
+            Clash::WantedFirst => (forbids, wants),
+            Clash::ForbiddenFirst => (wants, forbids),
+            Clash::Conditions => ("never true together with the other", "this condition"),
+        }
+    }
+}
+
+fn clash(facts: &Facts<'_>, first: &Pattern, second: &Pattern) -> Option<Clash> {
+    if let (Pattern::Globally(a), Pattern::Globally(b)) = (first, second) {
+        return exclude(a, b).then_some(Clash::Conditions);
+    }
+    if forbids(facts, first, second) {
+        return Some(Clash::WantedFirst);
+    }
+    forbids(facts, second, first).then_some(Clash::ForbiddenFirst)
+}
+
+/// Whether every answer that `wants` asks for is forbidden by `ban` from its trigger on, in whatever run triggers both.
+fn forbids(facts: &Facts<'_>, wants: &Pattern, ban: &Pattern) -> bool {
+    let Pattern::Causes { trigger, response, .. } = wants else { return false };
+    match ban {
+        Pattern::NeverWhile { events, condition: None } => covers(events, response),
+        Pattern::Forbids { trigger: from, forbidden, until } => {
+            // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
+            let lifts = |p: &&EventPattern| {
+                !facts.in_vain(&[Wanted::of(p)]) && !covers(forbidden, std::slice::from_ref(p))
+            };
+            let lifted = until.iter().any(|p| lifts(&p));
+            !lifted && covers(forbidden, response) && (covers(from, trigger) || covers(trigger, from))
+        }
+        Pattern::NeverWhile { .. } | Pattern::Causes { .. } | Pattern::Globally(_) => false,
+    }
+}
+
+/// Whether each event that fits one of `some` fits one of `all`.
+fn covers(all: &[EventPattern], some: &[EventPattern]) -> bool {
+    let within = |p: &EventPattern, q: &EventPattern| {
+        p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| p.is_none() || p == q)
+    };
+    some.iter().all(|q| all.iter().any(|p| within(p, q)))
+}
+
+// ── conditions ──
+
+/// Whether two conditions that must hold always are never true together.
+fn exclude(a: &Expr, b: &Expr) -> bool {
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    conjuncts(a, &mut ours);
+    conjuncts(b, &mut theirs);
+    ours.iter().any(|a| theirs.iter().any(|b| opposite(a, b) || opposite(b, a) || apart(a, b)))
+}
+
+fn conjuncts<'a>(e: &'a Expr, all: &mut Vec<&'a Expr>) {
+    match &e.kind {
+        ExprKind::Binary(BinaryOp::And, a, b) => {
+            conjuncts(a, all);
+            conjuncts(b, all);
+        }
+        ExprKind::Const(_)
+        | ExprKind::Leaf(_)
+        | ExprKind::Term(_)
+        | ExprKind::Unary(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..)
+        | ExprKind::Call(..)
+        | ExprKind::List(..)
+        | ExprKind::Element(_)
+        | ExprKind::Apply(..)
+        | ExprKind::Error => all.push(e),
+    }
+}
+
+/// `not a` and `a`.
+fn opposite(a: &Expr, b: &Expr) -> bool {
+    matches!(&a.kind, ExprKind::Unary(UnaryOp::Not, inner) if same(inner, b))
+}
+
+/// Whether two comparisons of the same value with constants leave it no number.
+fn apart(a: &Expr, b: &Expr) -> bool {
+    let (Some((x, ours)), Some((y, theirs))) = (bounds(a), bounds(b)) else { return false };
+    same(x, y) && (ours.is_below(&theirs) || theirs.is_below(&ours))
+}
+
+/// Numbers between two, each with whether it is left out.
+struct Bounds {
+    lo: (f64, bool),
+    hi: (f64, bool),
+}
+
+impl Bounds {
+    fn is_below(&self, other: &Bounds) -> bool {
+        let ((hi, open), (lo, other_open)) = (self.hi, other.lo);
+        hi < lo || (hi == lo && (open || other_open))
+    }
+}
+
+/// `x < 5` as x and its bounds.
+fn bounds(e: &Expr) -> Option<(&Expr, Bounds)> {
+    let ExprKind::Binary(op, a, b) = &e.kind else { return None };
+    let number = |e: &Expr| e.constant().and_then(|v| v.number());
+    let (x, limit, turned) = match (number(a), number(b)) {
+        (None, Some(limit)) => (a, limit, false),
+        (Some(limit), None) => (b, limit, true),
+        (None, None) | (Some(_), Some(_)) => return None,
+    };
+    let none = f64::INFINITY;
+    let up_to = |open| Bounds { lo: (-none, false), hi: (limit, open) };
+    let down_to = |open| Bounds { lo: (limit, open), hi: (none, false) };
+    let bounds = match (op, turned) {
+        (BinaryOp::Lt, false) | (BinaryOp::Gt, true) => up_to(true),
+        (BinaryOp::Le, false) | (BinaryOp::Ge, true) => up_to(false),
+        (BinaryOp::Gt, false) | (BinaryOp::Lt, true) => down_to(true),
+        (BinaryOp::Ge, false) | (BinaryOp::Le, true) => down_to(false),
+        (BinaryOp::Eq, _) => Bounds { lo: (limit, false), hi: (limit, false) },
+        (
+            BinaryOp::Ne
+            | BinaryOp::And
+            | BinaryOp::Or
+            | BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::Div
+            | BinaryOp::Rem,
+            _,
+        ) => return None,
+    };
+    Some((x, bounds))
+}
