@@ -62,20 +62,29 @@ pub fn read(path: &Path) -> Result<String, Fault> {
 }
 
 /// The files that `use "…"` names, relative to the file that uses them.
-pub struct Disk(Reach);
+pub struct Disk {
+    reach: Reach,
+    /// That of the file; `None`: standard input has none.
+    folder: Option<PathBuf>,
+}
 
 impl Disk {
     /// For a file that was named on the command line, or for standard input.
     #[must_use]
     pub fn of(file: Option<&Path>) -> Self {
-        Self(Reach::of(file, &["hri"]))
+        let folder = file.and_then(Path::parent).map(Path::to_path_buf);
+        Self { reach: Reach::of(file, &["hri"]), folder }
     }
 }
 
 impl Loader for Disk {
     fn load(&self, from: &str, path: &str) -> Result<Source, String> {
-        let (file, text) = self.0.read(from, path)?;
+        let (file, text) = self.reach.read(from, path)?;
         Ok(Source { name: file.display().to_string(), text })
+    }
+
+    fn is_file(&self, path: &str) -> Option<bool> {
+        self.folder.as_ref().map(|folder| folder.join(path).is_file())
     }
 }
 

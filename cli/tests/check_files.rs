@@ -218,3 +218,27 @@ fn a_mended_file_keeps_its_rights_and_its_links() {
     assert!(fs::read_to_string(&real).unwrap().contains("N <= 1"));
     assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
 }
+
+#[test]
+fn files_that_are_to_be_covered_are_there() {
+    let system = "system robot { run \"python3 robot.py\"; coverage \"robot.py\", \"lib/move.py\", \"lib\", \"gone.py\" }\n";
+    let text = format!("{}{system}", scenario("a", "ask"));
+    let folder =
+        folder(&[("a/scenario.hri", &text), ("a/robot.py", ""), ("a/lib/move.py", ""), ("gone.py", "")]);
+    let out = hrdsl_in(folder.path(), "check a/scenario.hri");
+    expect_code(&out, 0);
+    let said = stderr(&out);
+    let line = text.lines().count();
+    for name in ["lib", "gone.py"] {
+        let column = system.rfind(&format!("\"{name}\"")).unwrap() + 1;
+        assert!(said.contains(&format!("a/scenario.hri:{line}:{column}")), "{name}: {said}");
+    }
+    assert!(said.contains("HR0803") && said.contains("2 warnings"), "{said}");
+    // From the scenario's folder, whatever the present one is; a plain name has that.
+    let out = hrdsl_in(&folder.path().join("a"), "check scenario.hri");
+    assert!(stderr(&out).contains("2 warnings"), "{}", stderr(&out));
+    expect_code(&hrdsl_in(folder.path(), "check a/scenario.hri --deny HR0803"), 1);
+    // Standard input has no folder.
+    let out = hrdsl_reading(folder.path(), "check -", &text);
+    assert!(!stderr(&out).contains("HR0803"), "{}", stderr(&out));
+}

@@ -10,6 +10,7 @@
 //! [`compile`] does them all.
 
 mod allow;
+mod beside;
 pub mod lower;
 pub mod modules;
 pub mod pages;
@@ -98,6 +99,7 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));
         spoken::doubt(&files, &ast, &mut diagnostics);
+        diagnostics.extend(beside::missing(&ast[0], loader));
     }
     allow::apply(&ast, &mut diagnostics);
     diagnostics.sort_by_key(|d| (d.span(), d.code));

@@ -21,6 +21,11 @@ pub trait Loader {
     /// # Errors
     /// Why it cannot be read, as the end of a sentence: "there is no such file".
     fn load(&self, from: &str, path: &str) -> Result<Source, String>;
+
+    /// Whether `path` is a file, from the scenario's folder; `None`: nobody knows.
+    fn is_file(&self, _path: &str) -> Option<bool> {
+        None
+    }
 }
 
 /// Where there are no files: only modules of the library can be used.

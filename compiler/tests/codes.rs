@@ -32,6 +32,10 @@ impl Loader for Example {
     fn load(&self, _from: &str, path: &str) -> Result<Source, String> {
         self.files.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
     }
+
+    fn is_file(&self, path: &str) -> Option<bool> {
+        (!self.files.is_empty()).then(|| self.files.iter().any(|f| f.name == path))
+    }
 }
 
 /// The examples: a block `hri,file=NAME` is a file that the next example uses.

@@ -135,6 +135,7 @@ codes! {
     EQUAL_BINS = 704 "bins that are the same",
     BAD_WORLD = 801 "a world that cannot be built",
     NOTHING_CARRIES = 802 "a body that nothing carries",
+    NO_SUCH_FILE = 803 "a file that does not exist",
     BAD_TEST = 901 "a test that cannot run",
 }
 

@@ -7,7 +7,7 @@
 //! | `hri,then` | a part of the page's scenario: all of them together compile without a warning |
 //! | `hri,item` | declarations, which are put after the standard scenario of `spec/README.md` |
 //! | `hri,standard` | that scenario |
-//! | `hri,file=NAME` | a module that the next block uses |
+//! | `hri,file=NAME` | a module, or another file, that the next block uses |
 //! | `hri,piece` | a part of a scenario that another test puts together: that of the standard library |
 //!
 //! After it may stand `fails=HRnnnn` or `warns=HRnnnn`, each perhaps with `="text"`: the text at the place of the fault.
@@ -66,6 +66,11 @@ struct Modules(Vec<Source>);
 impl Loader for Modules {
     fn load(&self, _from: &str, path: &str) -> Result<Source, String> {
         self.0.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
+    }
+
+    /// A page that shows no files says nothing about which there are.
+    fn is_file(&self, path: &str) -> Option<bool> {
+        (!self.0.is_empty()).then(|| self.0.iter().any(|f| f.name == path))
     }
 }
 

@@ -170,6 +170,10 @@ impl Loader for Changed<'_> {
         let is_it = source.name == self.name;
         Ok(if is_it { Source { text: self.text.to_owned(), ..source } } else { source })
     }
+
+    fn is_file(&self, path: &str) -> Option<bool> {
+        self.disk.is_file(path)
+    }
 }
 
 #[cfg(test)]

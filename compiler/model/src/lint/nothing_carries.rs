@@ -103,7 +103,7 @@ impl Placed<'_> {
     }
 
     fn carries(&self, other: &Placed) -> bool {
-        !self.body.ghost && !(self.palm && other.body.graspable)
+        !(self.body.ghost || self.palm && other.body.graspable)
     }
 }
 

@@ -1,0 +1,33 @@
+//! HR0803: files that a scenario names, and that are not there.
+
+use hrdsl_source::{Code, Diagnostic};
+use hrdsl_syntax::ast::{File, ItemKind, SystemMemberKind as Member};
+
+use crate::Loader;
+
+/// The files whose coverage is to be measured, and that are no files beside the scenario.
+pub(crate) fn missing(file: &File, loader: &dyn Loader) -> Vec<Diagnostic> {
+    let systems =
+        file.items.iter().filter_map(|i| if let ItemKind::System(s) = &i.kind { Some(s) } else { None });
+    let named = systems.flat_map(|s| &s.members).filter_map(|m| match &m.kind {
+        Member::Coverage(files) => Some(files),
+        Member::Run(_)
+        | Member::Limit(_)
+        | Member::Budget(_)
+        | Member::Cpu(_)
+        | Member::Wall(_)
+        | Member::Memory(_)
+        | Member::Output(_)
+        | Member::Env(_)
+        | Member::Online
+        | Member::Error => None,
+    });
+    let missing = named.flatten().filter(|f| loader.is_file(&f.text) == Some(false));
+    missing
+        .map(|f| {
+            let message = format!("there is no file `{}`, so no coverage is measured of it", f.text);
+            Diagnostic::warning(Code::NO_SUCH_FILE, f.span, message)
+                .help("name a file of the program, from the scenario's folder")
+        })
+        .collect()
+}
