@@ -4,6 +4,8 @@
 
 mod support;
 
+use tempfile::TempDir;
+
 use support::{command, expect_code, folder, hrdsl_in, scenario, stderr, stdout};
 
 const SECRET: &str = "s3cret: hunter2\n";
@@ -173,4 +175,69 @@ fn more_tests_than_can_be_held_are_refused() {
     let out = gen_.args(["gen", "a.hri", "-n", "1000000000"]).current_dir(here.path()).output().unwrap();
     expect_code(&out, 2);
     assert!(stderr(&out).contains("at most 20000"), "{}", stderr(&out));
+}
+
+/// A scenario whose agent takes up ever more.
+fn growing(body: &str) -> TempDir {
+    let listens = "agent Robot plays robot { belief heard(n: int) }";
+    let text = format!(
+        "scenario g\nactor human : environment\nactor robot : environment\nactor arm : system\n\
+         agent Human plays human {{\n{body}\n}}\n{listens}\n\
+         suite all by agents Human, Robot {{ explore exhaustive horizon 300 s }}\n"
+    );
+    folder(&[("g.hri", &text)])
+}
+
+/// What an agent does, and what is said of it.
+const GROWING: [(&str, &str); 6] = [
+    (
+        "goal !g
+         plan @grow +!g { !!h; !!g }
+         plan @idle +!h { wait 1 h }",
+        "100000 intentions at once: most of them of the plan `idle`",
+    ),
+    (
+        "goal !g
+         plan @grow +!g { !!h; wait 1 ms; !g }
+         plan @idle +!h { wait 1 h }",
+        "100000 intentions at once: most of them of the plan `idle`",
+    ),
+    (
+        "goal !g
+         plan @grow +!g { fork { wait 1 h } and { !g } }",
+        "100000 intentions at once: most of them of the plan `grow`",
+    ),
+    (
+        "belief b(n: int)
+         goal !g(0)
+         plan @grow +!g(N) { +b(N); !g(N + 1) }",
+        "100000 facts at once: most of them of the belief `b`; the last step was of the plan `grow`",
+    ),
+    (
+        "goal !g(0)
+         plan @grow +!g(N) { .send(Robot, tell, heard(N)); !g(N + 1) }",
+        "100000 messages at once: the last step was of the plan `grow`",
+    ),
+    (
+        "belief b(n: int)
+         goal !g(0)
+         plan +!g(N) when N < 3000 { +b(N); !g(N + 1) }
+         plan @pairs +!g(N) { for b(X) && b(Y) { .print(X) } }",
+        "5000000 values on its stacks at once: most of them of the plan `pairs`",
+    ),
+];
+
+#[test]
+fn an_agent_that_holds_ever_more_ends_its_run() {
+    for (body, what) in GROWING {
+        let here = growing(body);
+        let out = hrdsl_in(here.path(), "gen g.hri");
+        expect_code(&out, 2);
+        let said = stderr(&out);
+        assert!(said.contains("agent `Human`: holds more than ") && said.contains(what), "{body}: {said}");
+        let out = hrdsl_in(here.path(), "inspect g.hri all --from 299");
+        expect_code(&out, 1);
+        let said = stdout(&out);
+        assert!(said.contains("holding bound") && said.contains(what), "{body}: {}", stderr(&out));
+    }
 }

@@ -22,6 +22,8 @@ const INDEXED: usize = 32;
 pub(crate) struct Rows {
     arity: usize,
     live: usize,
+    /// Annotations of all facts.
+    held: usize,
     values: Vec<Value>,
     /// By row; a dead one has none.
     annotations: Vec<Annotations>,
@@ -91,6 +93,11 @@ impl Rows {
         self.live
     }
 
+    /// How many annotations its facts have, each at least one.
+    pub fn held(&self) -> usize {
+        self.held
+    }
+
     /// From the oldest row; if the first argument is known, perhaps only rows that have it.
     pub fn cursor(&self, first: Option<Value>) -> Cursor {
         match (&self.index, first) {
@@ -150,6 +157,7 @@ impl Rows {
             }
             let row = self.annotations.len() as u32;
             self.values.extend_from_slice(fact);
+            self.held += annotations.len();
             self.annotations.push(annotations.clone());
             self.live += 1;
             if let (Some(index), Some(first)) = (&mut self.index, fact.first()) {
@@ -167,6 +175,7 @@ impl Rows {
                 new.push((what, value));
             }
         }
+        self.held += new.len();
         new
     }
 
@@ -182,6 +191,7 @@ impl Rows {
             return Withdrawn::Fact(self.remove(row));
         }
         held.retain(|a| !is_it(a));
+        self.held -= 1;
         Withdrawn::Source
     }
 
@@ -189,6 +199,7 @@ impl Rows {
     pub fn remove(&mut self, row: usize) -> Annotations {
         let had = std::mem::take(&mut self.annotations[row]);
         self.live -= 1;
+        self.held -= had.len();
         while self.start < self.annotations.len() && self.annotations[self.start].is_empty() {
             self.start += 1;
         }
@@ -229,12 +240,14 @@ impl Rows {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BeliefBase {
     rows: Vec<Rows>,
+    /// Annotations of all facts.
+    held: usize,
 }
 
 impl BeliefBase {
     pub fn new(agent: &Agent) -> Self {
         let rows = agent.beliefs.iter();
-        Self { rows: rows.map(|b| Rows { arity: b.params.len(), ..Rows::default() }).collect() }
+        Self { rows: rows.map(|b| Rows { arity: b.params.len(), ..Rows::default() }).collect(), held: 0 }
     }
 
     /// The facts of this name; the id must be one of the agent's.
@@ -242,8 +255,32 @@ impl BeliefBase {
         &self.rows[belief.0 as usize]
     }
 
-    pub fn of_mut(&mut self, belief: BeliefId) -> &mut Rows {
-        &mut self.rows[belief.0 as usize]
+    /// See [`Rows::insert`].
+    pub fn insert(&mut self, belief: BeliefId, fact: &[Value], annotations: Annotations) -> Annotations {
+        self.change(belief, |rows| rows.insert(fact, annotations))
+    }
+
+    /// See [`Rows::remove`].
+    pub fn remove(&mut self, belief: BeliefId, row: usize) -> Annotations {
+        self.change(belief, |rows| rows.remove(row))
+    }
+
+    /// See [`Rows::withdraw`].
+    pub fn withdraw(&mut self, belief: BeliefId, row: usize, source: Value) -> Withdrawn {
+        self.change(belief, |rows| rows.withdraw(row, source))
+    }
+
+    fn change<T>(&mut self, belief: BeliefId, how: impl FnOnce(&mut Rows) -> T) -> T {
+        let rows = &mut self.rows[belief.0 as usize];
+        let before = rows.held;
+        let done = how(rows);
+        self.held = self.held - before + rows.held;
+        done
+    }
+
+    /// How many annotations all facts have, each at least one.
+    pub fn held(&self) -> usize {
+        self.held
     }
 
     pub fn all(&self) -> &[Rows] {

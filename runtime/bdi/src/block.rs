@@ -4,7 +4,7 @@ use hrdsl_ir::bdi::Context;
 use smallvec::SmallVec;
 
 use crate::{
-    Cause, Outcome,
+    Cause, Holding, Outcome,
     code::settle,
     cycle::Machine,
     intention::{Loop, State},
@@ -43,7 +43,7 @@ impl<'p> Machine<'p> {
         let open = variables.iter().copied().filter(|v| intention.vars()[usize::from(*v)].is_none());
         let open: SmallVec<[u16; 4]> = open.collect();
         let height = intention.frames.len() as u32;
-        intention.loops.push(Loop { height, open, answers, used: 0 });
+        self.mind.pool.enter(place, Loop { height, open, answers, used: 0 });
     }
 
     /// Opens the loop's variables.
@@ -57,7 +57,7 @@ impl<'p> Machine<'p> {
     pub fn again(&mut self, here: Here, condition: &'p Context, end: u16) -> Result<Flow, Cause> {
         self.reopen(here.place);
         if !self.decide(here, condition)? {
-            self.mind.pool.at(here.place).loops.pop();
+            self.mind.pool.leave_loop(here.place);
             self.jump(here.place, end);
         }
         Ok(Flow::Next)
@@ -75,14 +75,12 @@ impl<'p> Machine<'p> {
             variables.iter().copied().filter(|v| vars[usize::from(*v)].is_none()).collect();
         let found = self.all_answers(condition, &open);
         self.done(here, found.as_ref().map_or(Outcome::Faulty, |(count, _)| Outcome::Answers(*count)));
-        let (count, answers) = found?;
-        self.enter_loop(here.place, variables, answers);
-        if let Some(l) = self.mind.pool.at(here.place).loops.last_mut()
-            && l.open.is_empty()
-        {
+        let (count, mut answers) = found?;
+        if open.is_empty() {
             // Nothing is bound: only the number of answers matters.
-            l.answers = vec![None; count];
+            answers = vec![None; count];
         }
+        self.enter_loop(here.place, variables, answers);
         Ok(Flow::Next)
     }
 
@@ -94,6 +92,11 @@ impl<'p> Machine<'p> {
         while found {
             answers.extend(open.iter().map(|v| self.solver.slots[usize::from(*v)]));
             count += 1;
+            // Too many end the run after this cycle, whether they are used or not.
+            self.found = self.found.max(count * open.len().max(1));
+            if self.found > Holding::Values.most() {
+                break;
+            }
             // A condition that is only tested is answered without a search.
             found = !matches!(condition, Context::True | Context::Test(_))
                 && self.solver.again(&self.mind, &mut self.dice)?;
@@ -108,7 +111,7 @@ impl<'p> Machine<'p> {
         let Some(l) = intention.loops.last_mut() else { return false };
         let width = l.open.len().max(1);
         if l.used * width >= l.answers.len() {
-            intention.loops.pop();
+            self.mind.pool.leave_loop(place);
             return false;
         }
         let from = l.used * width;
@@ -130,8 +133,8 @@ impl<'p> Machine<'p> {
             let child = self.mind.pool.adopt();
             children.push(child);
             let first = settle(self.mind.library.code(frame.plan), *start);
+            self.mind.pool.push(child, frame.plan, first, &args, &vars);
             let intention = self.mind.pool.at(child);
-            intention.push(frame.plan, first, &args, &vars);
             (intention.frames[0].branch, intention.frames[0].under) = (true, frame.under);
             (intention.frames[0].told, intention.atomic) = (frame.told, u32::from(atomic));
             intention.parent = Some(here.place);

@@ -12,12 +12,12 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Action, ActionToken, Cause, Detail, LogEntry, Logged, Malformed, Measured,
+    Action, ActionToken, Cause, Detail, Holding, LogEntry, Logged, Malformed, Measured,
     belief::{Annotations, Withdrawn, from, sourced, typed},
     check,
     dice::Dice,
     event::{Args, Event, Ground, Incoming, Mail, Speech},
-    intention::{State, Timer},
+    intention::{NO_PLAN, State, Timer},
     log::Log,
     mind::{Me, Mind, Peers},
     query::Solver,
@@ -43,6 +43,8 @@ pub enum Status {
     Livelock,
     /// It did not come to rest within the bounded number of cycles at one instant.
     Endless,
+    /// It held more of this at once than [an agent may](Holding::most).
+    Overfull(Holding),
     /// The program cannot be run.
     Malformed,
 }
@@ -71,6 +73,10 @@ pub(crate) struct Machine<'p> {
     /// The intention whose step changes goals, and how often such steps ended what they were part of.
     pub acting: Option<u32>,
     pub touched: u64,
+    /// The plan of the last step.
+    pub working: u16,
+    /// Values of the answers that one `for` found.
+    pub found: usize,
     /// It will never run again.
     pub halted: Option<Status>,
     pub fault: Option<Malformed>,
@@ -110,6 +116,8 @@ impl<'p> Machine<'p> {
             repetition: Repetition::default(),
             acting: None,
             touched: 0,
+            working: NO_PLAN,
+            found: 0,
             halted: None,
             fault: None,
         };
@@ -161,7 +169,7 @@ impl<'p> Machine<'p> {
     pub fn settle(&mut self) {
         self.repetition.forget();
         let mut done = 0;
-        while self.halted.is_none() {
+        while self.halted.is_none() && !self.is_overfull() {
             if self.mind.events.is_empty() && self.ready.is_empty() {
                 let Some(incoming) = self.inbox.pop_front() else { return };
                 self.take_in(incoming);
@@ -361,8 +369,8 @@ impl<'p> Machine<'p> {
         let first = crate::code::settle(self.mind.library.code(plan), 0);
         let vars = &self.solver.slots[..selected.vars.len()];
         let fresh = self.mind.pool.count(place);
+        self.mind.pool.push(place, plan, first, &event.args, vars);
         let intention = self.mind.pool.at(place);
-        intention.push(plan, first, &event.args, vars);
         intention.atomic += u32::from(selected.atomic);
         let number = intention.number;
         if let Some(top) = intention.frames.last_mut() {
@@ -370,7 +378,7 @@ impl<'p> Machine<'p> {
             top.told = event.told;
         }
         if let Some(measured) = &mut self.measured {
-            let under = intention.frames.last().map_or([crate::intention::NO_PLAN; 2], |f| f.under);
+            let under = intention.frames.last().map_or([NO_PLAN; 2], |f| f.under);
             measured.begin(plan, event.by, under);
         }
         if self.log.detail >= Detail::Steps {
@@ -417,7 +425,7 @@ impl<'p> Machine<'p> {
 
     /// Adds a belief.
     pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: Annotations) {
-        let new = self.mind.beliefs.of_mut(belief).insert(args, annotations);
+        let new = self.mind.beliefs.insert(belief, args, annotations);
         if new.is_empty() {
             return;
         }
@@ -428,7 +436,7 @@ impl<'p> Machine<'p> {
     /// A belief leaves the base.
     pub fn remove(&mut self, belief: BeliefId, row: usize) {
         let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
-        let had = self.mind.beliefs.of_mut(belief).remove(row);
+        let had = self.mind.beliefs.remove(belief, row);
         self.left(belief, &fact, had);
     }
 
@@ -440,7 +448,7 @@ impl<'p> Machine<'p> {
     /// Takes a source away from a fact, if it has it.
     pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
         let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
-        match self.mind.beliefs.of_mut(belief).withdraw(row, source) {
+        match self.mind.beliefs.withdraw(belief, row, source) {
             Withdrawn::Nothing => {}
             Withdrawn::Source => {
                 self.entry(0, || Logged::Taken { belief, args: fact.to_vec(), source });
@@ -465,7 +473,7 @@ impl<'p> Machine<'p> {
 
     pub fn enter(&mut self, intention: u32, what: Logged) {
         let is_full = self.log.most.is_some_and(|most| self.log.entries.len() >= most);
-        if is_full && !matches!(what, Logged::Livelock | Logged::Endless) {
+        if is_full && !matches!(what, Logged::Livelock | Logged::Endless | Logged::Overfull(_)) {
             self.log.left_out += 1;
             return;
         }

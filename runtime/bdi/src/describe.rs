@@ -100,6 +100,7 @@ impl Names<'_, '_> {
             Logged::Printed(text) => format!("prints {text}"),
             Logged::Livelock => "livelock".to_owned(),
             Logged::Endless => "cycle bound".to_owned(),
+            Logged::Overfull(what) => format!("more than {} {what}", what.most()),
         }
     }
 

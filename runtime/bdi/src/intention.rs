@@ -102,7 +102,7 @@ pub(crate) struct Intention<'p> {
 impl Intention<'_> {
     /// Puts a plan on top.
     #[inline]
-    pub fn push(&mut self, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
+    fn push(&mut self, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
         let start = self.slots.len() as u32;
         let vars_at = start + args.len() as u32;
         let below = self.frames.last();
@@ -121,15 +121,28 @@ impl Intention<'_> {
         self.slots.extend_from_slice(vars);
     }
 
-    /// Takes the top plan off, with its slots, loops and what they hold.
+    /// Takes the top plan off, with its slots and loops; also gives how many answers these held.
     #[inline]
-    pub fn pop(&mut self) -> Option<Frame> {
+    fn pop(&mut self) -> Option<(Frame, usize)> {
         let frame = self.frames.pop()?;
         self.slots.truncate(frame.args as usize);
-        while self.loops.last().is_some_and(|l| l.height as usize > self.frames.len()) {
-            self.loops.pop();
+        let mut answers = 0;
+        while let Some(over) = self.loops.pop_if(|l| l.height as usize > self.frames.len()) {
+            answers += over.answers.len();
         }
-        Some(frame)
+        self.spare();
+        Some((frame, answers))
+    }
+
+    /// Many intentions that were high once must not keep the memory of that.
+    #[inline]
+    fn spare(&mut self) {
+        if self.frames.capacity() > SPARE && self.frames.len() < self.frames.capacity() / 4 {
+            self.frames.shrink_to(self.frames.capacity() / 2);
+        }
+        if self.slots.capacity() > SPARE && self.slots.len() < self.slots.capacity() / 4 {
+            self.slots.shrink_to(self.slots.capacity() / 2);
+        }
     }
 
     /// The arguments of a frame's trigger.
@@ -147,6 +160,14 @@ impl Intention<'_> {
         let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);
         &mut self.slots[start..]
     }
+
+    /// How many values each frame holds, with its plan.
+    pub fn values_by_plan(&self) -> impl Iterator<Item = (u16, usize)> {
+        let ends = self.frames.iter().skip(1).map(|f| f.args as usize).chain([self.slots.len()]);
+        let stacked = self.frames.iter().zip(ends).map(|(f, end)| (f.plan, end - f.args as usize));
+        let plan = |l: &Loop| self.frames.get(l.height as usize - 1).map_or(NO_PLAN, |f| f.plan);
+        stacked.chain(self.loops.iter().map(move |l| (plan(l), l.answers.len())))
+    }
 }
 
 /// All intentions; places are used again, with the memory they have.
@@ -155,7 +176,14 @@ pub(crate) struct Pool<'p> {
     all: Vec<Intention<'p>>,
     free: Vec<u32>,
     adopted: u32,
+    /// On all stacks.
+    plans: usize,
+    /// On all stacks, and in all loops.
+    values: usize,
 }
+
+/// A stack that was larger than this gives memory back.
+const SPARE: usize = 1024;
 
 impl<'p> Pool<'p> {
     /// A place for a new intention.
@@ -193,7 +221,42 @@ impl<'p> Pool<'p> {
         fresh
     }
 
+    /// Puts a plan on top of an intention.
+    #[inline]
+    pub fn push(&mut self, place: u32, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
+        self.plans += 1;
+        self.values += args.len() + vars.len();
+        self.at(place).push(plan, next, args, vars);
+    }
+
+    /// Takes an intention's top plan off.
+    #[inline]
+    pub fn pop(&mut self, place: u32) -> Option<Frame> {
+        let intention = self.at(place);
+        let before = intention.slots.len();
+        let (frame, answers) = intention.pop()?;
+        let gone = before - intention.slots.len() + answers;
+        self.plans -= 1;
+        self.values -= gone;
+        Some(frame)
+    }
+
+    /// The intention's top plan begins a loop.
+    pub fn enter(&mut self, place: u32, begun: Loop) {
+        self.values += begun.answers.len();
+        self.at(place).loops.push(begun);
+    }
+
+    /// Its innermost loop is over.
+    pub fn leave_loop(&mut self, place: u32) {
+        let over = self.at(place).loops.pop();
+        self.values -= over.map_or(0, |l| l.answers.len());
+    }
+
     pub fn release(&mut self, place: u32) {
+        let intention = &self.all[place as usize];
+        self.plans -= intention.frames.len();
+        self.values -= intention.slots.len() + intention.loops.iter().map(|l| l.answers.len()).sum::<usize>();
         let intention = self.at(place);
         (intention.state, intention.suspended, intention.atomic) = (State::Free, false, 0);
         intention.frames.clear();
@@ -201,6 +264,8 @@ impl<'p> Pool<'p> {
         intention.loops.clear();
         intention.deadlines.clear();
         intention.children.clear();
+        intention.frames.shrink_to(SPARE);
+        intention.slots.shrink_to(SPARE);
         (intention.parent, intention.reply) = (None, None);
         self.free.push(place);
     }
@@ -237,6 +302,14 @@ impl<'p> Pool<'p> {
 
     pub fn in_use(&self) -> usize {
         self.all.len() - self.free.len()
+    }
+
+    pub fn plans(&self) -> usize {
+        self.plans
+    }
+
+    pub fn values(&self) -> usize {
+        self.values
     }
 
     /// The height of the highest stack.

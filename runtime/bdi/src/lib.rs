@@ -17,11 +17,12 @@
 //!
 //! `society` (rounds, messages delivered) → `cycle` (one agent: inbox, events, ready intentions) → `select` (a plan for an
 //! event) → `query` (answers of a formula in `belief`s and rules, with `unify`) → `step` (a line of `code`; `block`, `control`,
-//! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks; `log`, `describe`, `show` and
+//! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks, `bounds` agents that hold too much; `log`, `describe`, `show` and
 //! `measure` tell.
 
 mod belief;
 mod block;
+mod bounds;
 mod check;
 pub mod choose;
 mod code;
@@ -48,6 +49,7 @@ mod step;
 mod unify;
 
 pub use belief::Annotations;
+pub use bounds::Holding;
 pub use check::Malformed;
 pub use cycle::{CYCLE_LIMIT, Status};
 pub use event::{Action, ActionToken, Args};

@@ -8,7 +8,7 @@ use hrdsl_ir::{
     expr::EvalError,
 };
 
-use crate::{belief::Annotations, event::Args, query::Fault, unify::Slot};
+use crate::{Holding, belief::Annotations, event::Args, query::Fault, unify::Slot};
 
 /// Index into the agent's plan library.
 pub type PlanIndex = u16;
@@ -141,6 +141,8 @@ pub enum Logged {
     Livelock,
     /// Too many cycles at one instant.
     Endless,
+    /// Too much of this held at once.
+    Overfull(Holding),
 }
 
 impl Logged {
@@ -163,6 +165,7 @@ impl Logged {
             Logged::Printed(_) => "printed",
             Logged::Livelock => "livelock",
             Logged::Endless => "cycle_bound",
+            Logged::Overfull(_) => "holding_bound",
         }
     }
 }

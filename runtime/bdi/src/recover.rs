@@ -73,8 +73,8 @@ impl<'p> Machine<'p> {
     /// Takes the top plan off, and what is bound to it.
     #[inline]
     pub fn leave(&mut self, place: u32) -> Option<Frame> {
+        let frame = self.mind.pool.pop(place)?;
         let intention = self.mind.pool.at(place);
-        let frame = intention.pop()?;
         if intention.atomic > 0 && !frame.branch {
             intention.atomic -= u32::from(self.mind.library.plan(frame.plan).atomic);
         }

@@ -102,7 +102,9 @@ impl Repeats for Machine<'_> {
         let mut out = Vec::new();
         let order = self.mind.pool.in_order();
         // Intentions are known by their rank: numbers and places differ from time to time.
-        let rank = |place: u32| order.iter().position(|p| *p == place).map_or(0, |at| at as u64 + 1);
+        let mut ranks = vec![0; order.iter().max().map_or(0, |last| *last as usize + 1)];
+        (1..).zip(&order).for_each(|(rank, place)| ranks[*place as usize] = rank);
+        let rank = |place: u32| ranks.get(place as usize).copied().unwrap_or(0);
         for rows in self.mind.beliefs.all() {
             out.push(rows.len() as u64);
             for row in rows.iter() {

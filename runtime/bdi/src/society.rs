@@ -295,19 +295,20 @@ impl<'p> Society<'p> {
         self.machines.iter().filter_map(Machine::next_wake).min()
     }
 
-    /// How the agents stand together: the first of malformed, livelock, endless, ready, waiting, idle that one of them is.
+    /// How the agents stand together: the first of malformed, overfull, livelock, endless, ready, waiting, idle that one of them is.
     #[must_use]
     pub fn status(&self) -> Status {
-        let all: Vec<Status> = self.machines.iter().map(Machine::status).chain(self.halted).collect();
-        let order = [
-            Status::Malformed,
-            Status::Livelock,
-            Status::Endless,
-            Status::Ready,
-            Status::Waiting,
-            Status::Idle,
-        ];
-        order.into_iter().find(|s| all.contains(s)).unwrap_or(Status::Idle)
+        let order = |status: &Status| match status {
+            Status::Malformed => 0,
+            Status::Overfull(_) => 1,
+            Status::Livelock => 2,
+            Status::Endless => 3,
+            Status::Ready => 4,
+            Status::Waiting => 5,
+            Status::Idle => 6,
+        };
+        let all = self.machines.iter().map(Machine::status).chain(self.halted);
+        all.min_by_key(order).unwrap_or(Status::Idle)
     }
 
     /// The agents that did not come to rest, or cannot be run, by name.
@@ -320,6 +321,15 @@ impl<'p> Society<'p> {
             return own;
         }
         self.active.iter().map(|place| name(&self.machines[usize::from(*place)])).collect()
+    }
+
+    /// What an agent holds too much of, and which plans make it so.
+    #[must_use]
+    pub fn overfull(&self) -> Option<String> {
+        self.machines.iter().find_map(|m| {
+            let Some(Status::Overfull(what)) = m.halted else { return None };
+            Some(m.overfull(what))
+        })
     }
 
     /// Why a program cannot be run.

@@ -1,12 +1,13 @@
 //! How an agent stands: what it intends, what each intention waits for, what it believes.
 
+use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::{
     LogEntry, Logged,
     belief::Annotations,
     cycle::Machine,
-    event::Args,
+    event::{Args, Event},
     intention::{Intention, NO_LINE, State, Timer},
     show::{self, call},
 };
@@ -37,16 +38,20 @@ impl Machine<'_> {
     /// What it intends, in the order of adoption.
     pub fn standing(&self) -> Vec<Standing> {
         let places = self.mind.pool.in_order();
-        places.into_iter().map(|place| self.stands(place, self.mind.pool.see(place))).collect()
+        let posted: FxHashMap<u32, &Event> =
+            self.mind.events.iter().filter_map(|e| Some((e.of?, e))).collect();
+        let stands = |place| self.stands(self.mind.pool.see(place), posted.get(&place).copied());
+        places.into_iter().map(stands).collect()
     }
 
-    fn stands(&self, place: u32, intention: &Intention) -> Standing {
+    /// With the event whose plan it waits for.
+    fn stands(&self, intention: &Intention, posted: Option<&Event>) -> Standing {
         let plan = |frame: &crate::intention::Frame| {
             let label = &self.mind.library.plan(frame.plan).label;
             let args = intention.args(*frame).iter();
             call(label, args.map(|a| a.map_or_else(|| "_".to_owned(), |v| v.to_string())))
         };
-        let mut waits = self.waits(place, intention);
+        let mut waits = self.waits(intention, posted);
         if let Some(due) = intention.deadlines.iter().map(|d| d.timer.due).min() {
             waits += &format!(", deadline {}", show::time(due));
         }
@@ -58,13 +63,13 @@ impl Machine<'_> {
         }
     }
 
-    fn waits(&self, place: u32, intention: &Intention) -> String {
+    fn waits(&self, intention: &Intention, posted: Option<&Event>) -> String {
         let until = |timer: Option<Timer>| {
             timer.map_or_else(String::new, |t| format!(", until {}", show::time(t.due)))
         };
         match intention.state {
             State::Free | State::Ready | State::Held => "for its turn".to_owned(),
-            State::Posted => match self.posted(place) {
+            State::Posted => match posted.and_then(|e| Some(self.names()?.on(e.on, &e.args))) {
                 Some(event) => format!("for a plan for {event}"),
                 None => "for a plan".to_owned(),
             },
@@ -78,11 +83,6 @@ impl Machine<'_> {
                 format!("for {which} of its branches ({left} not finished)")
             }
         }
-    }
-
-    fn posted(&self, place: u32) -> Option<String> {
-        let event = self.mind.events.iter().find(|e| e.of == Some(place))?;
-        Some(self.names()?.on(event.on, &event.args))
     }
 
     /// The step that the top plan is at.

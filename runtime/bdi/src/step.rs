@@ -64,6 +64,7 @@ impl<'p> Machine<'p> {
             let code = self.mind.library.code(top.plan);
             let Some(line) = code.get(usize::from(top.next)) else { return Ok(Flow::Next) };
             let here = Here { place, plan: top.plan, line: top.next, site: line.site };
+            self.working = top.plan;
             let after = line.after;
             // A copy of the little that the line has, so that the machine is free to change.
             match &line.op {

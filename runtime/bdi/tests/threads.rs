@@ -36,7 +36,9 @@ fn played(program: &Program, parallel: bool) -> String {
         }
         let next = acting.iter().map(|(due, ..)| *due).chain(society.next_wake()).min();
         match (society.status(), next) {
-            (Status::Livelock | Status::Endless | Status::Malformed, _) | (_, None) => break,
+            (Status::Livelock | Status::Endless | Status::Overfull(_) | Status::Malformed, _) | (_, None) => {
+                break;
+            }
             (Status::Ready, _) => {}
             (_, Some(next)) => now = next.max(now),
         }

@@ -20,7 +20,52 @@ pub struct Company<'p> {
     /// The delivery that they have all heard.
     heard: u64,
     /// If it is wanted: how they stand at the end of each instant at which they reasoned.
-    pub snapshots: Option<Vec<Snapshot>>,
+    pub snapshots: Option<Snapshots>,
+}
+
+/// So many intentions are noted in all snapshots of a run; after that only how the agents stand in the end.
+const NOTED: usize = 200_000;
+
+/// How the agents stand from instant to instant.
+#[derive(Default)]
+pub struct Snapshots {
+    all: Vec<Snapshot>,
+    noted: usize,
+    /// At which there was no room for another.
+    missed: Option<Nanos>,
+}
+
+impl Snapshots {
+    /// How they stand at the end of this instant.
+    fn note(&mut self, time: Nanos, society: &Society<'_>) {
+        if self.noted >= NOTED {
+            self.missed = Some(time);
+            return;
+        }
+        if let Some(same) = self.all.pop_if(|s| s.time == time) {
+            self.noted -= same.agents.iter().map(Vec::len).sum::<usize>();
+        }
+        let snapshot = Snapshot::of(time, society);
+        self.noted += snapshot.agents.iter().map(Vec::len).sum::<usize>();
+        self.all.push(snapshot);
+    }
+
+    /// All of them, the last one as the agents stand now.
+    #[must_use]
+    pub fn finish(mut self, society: &Society<'_>) -> Vec<Snapshot> {
+        if let Some(time) = self.missed {
+            self.all.pop_if(|s| s.time == time);
+            self.all.push(Snapshot::of(time, society));
+        }
+        self.all
+    }
+}
+
+impl Snapshot {
+    fn of(time: Nanos, society: &Society<'_>) -> Self {
+        let count = society.agents().count();
+        Self { time, agents: (0..count).map(|agent| society.standing(agent)).collect() }
+    }
 }
 
 /// What the agents intend at the end of an instant.
@@ -67,11 +112,7 @@ impl<'p> Company<'p> {
     fn reason(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
         let done = self.reason_in_rounds(cx);
         let Some(snapshots) = &mut self.snapshots else { return done };
-        if snapshots.last().is_some_and(|s| s.time == cx.now) {
-            snapshots.pop();
-        }
-        let agents = (0..self.members.len()).map(|agent| self.society.standing(agent)).collect();
-        snapshots.push(Snapshot { time: cx.now, agents });
+        snapshots.note(cx.now, &self.society);
         done
     }
 
@@ -103,6 +144,7 @@ impl<'p> Company<'p> {
                 "cycle bound: more than {} cycles at one instant, without coming to rest",
                 self.society.cycle_limit()
             ),
+            Status::Overfull(_) => self.society.overfull().unwrap_or_default(),
             Status::Malformed => {
                 self.society.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
             }

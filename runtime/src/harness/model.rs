@@ -10,7 +10,7 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::Trace;
 
-use super::{AgentPlayer, AutomatonPlayer, Company, Ended, Harness, Player, Run, Snapshot};
+use super::{AgentPlayer, AutomatonPlayer, Company, Ended, Harness, Player, Run, Snapshot, agent::Snapshots};
 
 /// Entries of each agent's log that an inspection keeps.
 const KEPT: usize = 200_000;
@@ -106,6 +106,7 @@ pub fn inspect(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact
     let snapshots = company.snapshots.take().unwrap_or_default();
     let run = told(&company, run, how.detail);
     let society = &company.society;
+    let snapshots = snapshots.finish(society);
     let agents: Vec<String> = society.names().map(str::to_owned).collect();
     Inspection {
         run,
@@ -143,7 +144,7 @@ impl<'p> Cast<'p, '_> {
             society.keep_log(KEPT);
         }
         let company = Company::new(program, society);
-        company.borrow_mut().snapshots = watch.then(Vec::new);
+        company.borrow_mut().snapshots = watch.then(Snapshots::default);
         let mut members = AgentPlayer::all(&company).into_iter();
         let play = |player: &PlayerRef| -> Option<Box<dyn Player + 'p>> {
             match player {

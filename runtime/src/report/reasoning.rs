@@ -50,7 +50,7 @@ impl Picked<'_> {
 pub struct End {
     /// In nanoseconds.
     pub time: Nanos,
-    /// `quiescent`, `horizon`, `livelock`, `cycle bound` or `fault`.
+    /// `quiescent`, `horizon`, `livelock`, `cycle bound`, `holding bound` or `fault`.
     pub how: &'static str,
     /// What that means; of a fault, which.
     pub why: String,
@@ -76,6 +76,7 @@ impl End {
             (Ended::Limit, _) => ("horizon", "the time of the suite's model runs is over".to_owned()),
             (Ended::Fault(fault), Status::Livelock) => ("livelock", reason(fault)),
             (Ended::Fault(fault), Status::Endless) => ("cycle bound", reason(fault)),
+            (Ended::Fault(fault), Status::Overfull(_)) => ("holding bound", reason(fault)),
             (Ended::Fault(fault), Status::Ready | Status::Waiting | Status::Idle | Status::Malformed) => {
                 ("fault", fault.to_string())
             }

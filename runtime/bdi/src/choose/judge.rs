@@ -135,7 +135,7 @@ fn believe(mind: &mut Mind<'_>, fact: &Fact) {
     let declared = mind.agent.and_then(|a| a.beliefs.get(usize::from(fact.belief.0)));
     if let Some(args) = declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
         let annotations = sourced(Annotations::from_slice(&fact.annotations));
-        mind.beliefs.of_mut(fact.belief).insert(&args, annotations);
+        mind.beliefs.insert(fact.belief, &args, annotations);
     }
 }
 
