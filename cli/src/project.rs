@@ -1,6 +1,7 @@
 //! The files that `hrdsl check` is given: what each of them is, and which tests belong to which scenario.
 
 use std::{
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
@@ -123,10 +124,11 @@ impl Source {
 pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
+    let mut written = BTreeSet::new();
     while let Some(folder) = folders.pop() {
-        // What hrdsl wrote itself is searched only if it is named.
-        if folder != root && folder.join(results_folder::MARKER).exists() {
-            continue;
+        // What hrdsl wrote itself is looked at only if its folder is named; what somebody else put beside it, always.
+        if folder != root {
+            written.extend(results_folder::written(&folder));
         }
         let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(&folder));
         for entry in fs::read_dir(&folder).map_err(fault)? {
@@ -137,7 +139,7 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
                 if !name.starts_with('.') && !SKIPPED.contains(&&*name) {
                     folders.push(path);
                 }
-            } else if path.extension().is_some_and(|e| e == "hri") && path.is_file() {
+            } else if path.extension().is_some_and(|e| e == "hri") && path.is_file() && !written.contains(&path) {
                 files.push(path.strip_prefix(".").map(Path::to_owned).unwrap_or(path));
             }
         }

@@ -7,7 +7,7 @@
 use std::{
     fs::{self, File, TryLockError},
     io::{Read, Seek, Write},
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
 };
 
 use crate::{
@@ -15,11 +15,29 @@ use crate::{
     terminal::shown,
 };
 
-/// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips folders that have it.
+/// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips what it lists.
 pub const MARKER: &str = ".hrdsl-results";
 /// Where results are collected until the run is over.
 const STAGING: &str = ".hrdsl-partial";
 const FIRST_LINE: &str = "hrdsl results 1";
+
+/// The files in and below a folder that hrdsl has written, by its list.
+#[must_use]
+pub fn written(dir: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(dir.join(MARKER)).unwrap_or_default();
+    listed(&text).unwrap_or_default().iter().map(|path| dir.join(path)).collect()
+}
+
+/// What a marker lists; `None` if it is of another version.
+fn listed(marker: &str) -> Option<Vec<PathBuf>> {
+    let mut lines = marker.lines();
+    if !matches!(lines.next(), None | Some(FIRST_LINE)) {
+        return None;
+    }
+    // A path that leads out of the folder is none of ours, whoever wrote it there.
+    let is_inside = |p: &PathBuf| p.components().all(|c| matches!(c, Component::Normal(_)));
+    Some(lines.map(PathBuf::from).filter(is_inside).collect())
+}
 
 /// A folder that hrdsl writes to; nobody else can write to it meanwhile.
 pub struct ResultsFolder {
@@ -239,13 +257,10 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
     }
     let mut text = String::new();
     file.read_to_string(&mut text).map_err(fault)?;
-    let mut lines = text.lines();
-    if !matches!(lines.next(), None | Some(FIRST_LINE)) {
-        return Err(format!("{} is of another version of hrdsl; name another folder with -o", shown(&path)));
+    match listed(&text) {
+        Some(listed) => Ok((file, listed)),
+        None => Err(format!("{} is of another version of hrdsl; name another folder with -o", shown(&path))),
     }
-    // A path that leads out of the folder is none of ours, whoever wrote it there.
-    let is_inside = |p: &PathBuf| p.components().all(|c| matches!(c, std::path::Component::Normal(_)));
-    Ok((file, lines.map(PathBuf::from).filter(is_inside).collect()))
 }
 
 /// All files in and below a folder, relative to it, in order.

@@ -159,12 +159,14 @@ fn results_are_not_searched_unless_they_are_named() {
         folder(&[("scenario.hri", &(scenario("a", "wave") + random)), ("own/t.hri", "test a.t { wave }\n")]);
     expect_code(&hrdsl_in(here.path(), "gen scenario.hri -o made"), 0);
     assert!(here.path().join("made/.hrdsl-results").exists());
-    std::fs::write(here.path().join("made/broken.hri"), "scenario\n").unwrap();
+    std::fs::write(here.path().join("made/some.hri"), "test some.t { no_longer_there }\n").unwrap();
     expect_code(&hrdsl_in(here.path(), "check ."), 0);
     expect_code(&hrdsl_in(here.path(), "check made scenario.hri"), 1);
-    // A folder with files of one's own is none of results.
+    // One's own files beside them are searched.
     expect_code(&hrdsl_in(here.path(), "gen scenario.hri -o own"), 0);
-    assert!(!here.path().join("own/.hrdsl-results").exists());
+    expect_code(&hrdsl_in(here.path(), "check ."), 0);
+    std::fs::write(here.path().join("own/t.hri"), "test a.t { not_there }\n").unwrap();
+    expect_code(&hrdsl_in(here.path(), "check ."), 1);
 }
 
 #[test]

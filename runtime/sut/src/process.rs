@@ -61,6 +61,8 @@ pub struct Process {
     time: Nanos,
     /// Whether it has made a request.
     spoke: bool,
+    /// Whether it has gone over a limit.
+    overran: bool,
     coverage: Option<(File, Vec<String>)>,
 }
 
@@ -190,6 +192,7 @@ impl Process {
             asked: Instant::now(),
             time: 0,
             spoke: false,
+            overran: false,
             coverage: memory.map(|file| (file, launch.coverage.clone())),
         })
     }
@@ -259,13 +262,14 @@ impl Process {
         Ok(())
     }
 
-    /// Ends the program: it gets `grace` (of processor time or sleep) to end by itself, then half a second to write its
-    /// coverage on SIGTERM, then it is killed. Whatever it started is killed in any case.
+    /// Ends the program: it gets `grace` (of processor time or sleep) to end by itself, unless it has had its time already,
+    /// then half a second to write its coverage on SIGTERM, then it is killed. Whatever it started is killed in any case.
     #[must_use]
     pub fn finish(mut self, grace: Duration) -> Finished {
         // A program that still waits for a reply learns that there is none.
         self.replies = None;
         let mut killed = false;
+        let grace = if self.overran { Duration::ZERO } else { grace };
         if !self.wait_for_end(grace) {
             killed = true;
             self.cell.ask(CellRequest::Terminate);
@@ -353,7 +357,10 @@ impl Process {
             return Ok(Found::Ended);
         }
         match self.watch(what, patience) {
-            Some(overrun) => Err(self.overrun(what, overrun)),
+            Some(overrun) => {
+                self.overran = true;
+                Err(self.overrun(what, overrun))
+            }
             None if self.stop.is_set() => Err(SutError::Stopped { output: Box::new(self.output()) }),
             None => Ok(Found::Something),
         }

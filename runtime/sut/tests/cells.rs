@@ -36,7 +36,8 @@ fn what_a_program_writes_is_its_own() {
         let file = elsewhere.path().join("file.txt");
         let words = ["python3", "files.py", file.to_str().unwrap()];
         let mut launch = launch_in(place.path(), isolation, &words);
-        launch.cells.hidden = vec![launch.dir.join("hidden")];
+        launch.cells.hidden =
+            ["hidden/deep", "hidden", "hidden", "not/there"].map(|folder| launch.dir.join(folder)).into();
         let before = tree(&launch.dir);
         let text = || run(&launch).1.output.stdout.text();
         let (first, second) = (text(), text());
@@ -98,6 +99,38 @@ fn nothing_outlives_a_cell() {
         }
         assert_eq!(marked(&mark), Vec::<String>::new(), "{isolation:?}");
     }
+}
+
+#[test]
+fn a_program_does_not_escape_by_its_supervisor() {
+    for signal in ["SIGKILL", "SIGTERM", "SIGSTOP"] {
+        let place = tempfile::tempdir().unwrap();
+        let mark = format!("hrdsl-mark-{}-{signal}", std::process::id());
+        fs::write(place.path().join(&mark), "").unwrap();
+        let words = ["python3", "reaches.py", "parent", &mark, signal];
+        let mut launch = launch_in(place.path(), Isolation::Copies, &words);
+        launch.limits.budget = Duration::from_secs(1);
+        let mut process = Process::spawn(&launch).unwrap();
+        assert!(matches!(process.next().unwrap(), Request::Hello { .. }));
+        reply(&mut process, 0, Answer::Ok);
+        let error = process.next().unwrap_err();
+        // One that is stopped goes on at once, and watches the budget.
+        let stopped = matches!(error, SutError::Overrun { overrun: Overrun::Budget(_), .. });
+        assert!(
+            matches!(error, SutError::Exited { .. }) || signal == "SIGSTOP" && stopped,
+            "{signal}: {error}"
+        );
+        let _ = process.finish(Duration::ZERO);
+        assert_eq!(marked(&mark), Vec::<String>::new(), "{signal}");
+        assert_eq!(leftovers(&mark), Vec::<PathBuf>::new(), "{signal}");
+    }
+}
+
+#[test]
+fn nothing_beyond_the_cell_is_within_reach() {
+    let place = tempfile::tempdir().unwrap();
+    let launch = launch_in(place.path(), Isolation::Namespaces, &["python3", "reaches.py", "beyond"]);
+    assert_eq!(run(&launch).1.output.stdout.text(), "[False, False, False, False]\n");
 }
 
 /// The supervisor sees the harness's death by its socket: so it does here, where the harness is a process that is killed.

@@ -1,23 +1,68 @@
 //! The fallback where namespaces are refused: the program runs in a copy of the project's folder.
 
 use std::{
-    fs::{self, File, FileTimes},
+    fs::{self, File, FileTimes, Permissions},
     io,
-    os::unix::fs::symlink,
+    os::unix::fs::{PermissionsExt, symlink},
     path::{Path, PathBuf},
 };
 
-/// A cell's folder, with the copy in it; removed when dropped.
+/// A folder for a cell, removed when dropped, whatever the program has made of it.
+pub(super) struct CellFolder(tempfile::TempDir);
+
+impl CellFolder {
+    pub(super) fn make() -> io::Result<Self> {
+        let temporary = std::env::temp_dir().canonicalize()?;
+        Ok(Self(tempfile::Builder::new().prefix("hrdsl-cell-").tempdir_in(temporary)?))
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Drop for CellFolder {
+    fn drop(&mut self) {
+        empty(self.path());
+    }
+}
+
+/// Removes all that is in a folder: also what lies deeper than a path can say or files can be open at once, and what its
+/// owner has locked. Each folder is moved to the top before it is looked into.
+fn empty(top: &Path) {
+    let unlock = |folder: &Path| fs::set_permissions(folder, Permissions::from_mode(0o700));
+    let mut open = vec![top.to_owned()];
+    let mut moved = 0_u64;
+    while let Some(folder) = open.pop() {
+        let _ = unlock(&folder);
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        for entry in entries.filter_map(Result::ok).collect::<Vec<_>>() {
+            let path = entry.path();
+            if !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                let _ = fs::remove_file(path);
+                continue;
+            }
+            let _ = unlock(&path);
+            moved += 1;
+            let to = top.join(format!(".removed-{moved}"));
+            open.push(if fs::rename(&path, &to).is_ok() { to } else { path });
+        }
+        if folder != top {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// A copy of the project's folder, in the folder of a cell.
 pub(super) struct Copy {
-    folder: tempfile::TempDir,
+    folder: PathBuf,
     original: PathBuf,
 }
 
 impl Copy {
-    /// Copies the folder, but for what is `hidden`. Virtual environments are linked to: programs do not write into them,
-    /// and they are large.
-    pub(super) fn make(original: &Path, hidden: &[PathBuf]) -> io::Result<Self> {
-        let folder = tempfile::Builder::new().prefix("hrdsl-cell-").tempdir()?;
+    /// Copies the project's folder into `folder`, but for what is `hidden`. Virtual environments are linked to: programs do
+    /// not write into them, and they are large.
+    pub(super) fn make(folder: PathBuf, original: &Path, hidden: &[PathBuf]) -> io::Result<Self> {
         let copy = Self { folder, original: original.to_owned() };
         copy_folder(original, &copy.project(), hidden)?;
         fs::create_dir(copy.home())?;
@@ -26,15 +71,15 @@ impl Copy {
     }
 
     pub(super) fn project(&self) -> PathBuf {
-        self.folder.path().join("project")
+        self.folder.join("project")
     }
 
     pub(super) fn home(&self) -> PathBuf {
-        self.folder.path().join("home")
+        self.folder.join("home")
     }
 
     pub(super) fn temporary(&self) -> PathBuf {
-        self.folder.path().join("tmp")
+        self.folder.join("tmp")
     }
 
     /// A word of the command: a path into the project's folder leads into the copy.
@@ -95,4 +140,31 @@ fn copy_file(from: &Path, to: &Path) -> io::Result<()> {
     let times = FileTimes::new().set_accessed(is.accessed()?).set_modified(is.modified()?);
     // A file that may not be written may not be opened for writing either; its times can be set all the same.
     File::open(to)?.set_times(times)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_deep_or_locked_is_removed_all_the_same() {
+        let folder = CellFolder::make().unwrap();
+        let top = folder.path().to_owned();
+        // Folders around one another, since no path leads so deep.
+        let (inner, outer) = (top.join("inner"), top.join("outer"));
+        fs::create_dir(&inner).unwrap();
+        for _ in 0..3000 {
+            fs::create_dir(&outer).unwrap();
+            fs::rename(&inner, outer.join("inner")).unwrap();
+            fs::rename(&outer, &inner).unwrap();
+        }
+        fs::create_dir_all(top.join("locked/in")).unwrap();
+        fs::write(top.join("locked/in/file"), "").unwrap();
+        symlink("/", top.join("locked/link")).unwrap();
+        for path in ["locked/in", "locked"] {
+            fs::set_permissions(top.join(path), Permissions::from_mode(0o000)).unwrap();
+        }
+        drop(folder);
+        assert!(!top.exists());
+    }
 }

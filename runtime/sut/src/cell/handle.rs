@@ -106,6 +106,8 @@ impl Cell {
         });
         command.arg(if order.network { "network" } else { "loopback" });
         command.stdin(Stdio::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped()).env_clear();
+        // Where copies are made.
+        command.envs(std::env::var_os("TMPDIR").map(|folder| ("TMPDIR", folder)));
         if !order.terminal {
             // An interrupt from the terminal is for the harness alone.
             std::os::unix::process::CommandExt::process_group(&mut command, 0);

@@ -6,8 +6,9 @@
 //!    with the program's descriptors.
 //! 2. The supervisor makes the cell. With [`Isolation::Namespaces`] it enters namespaces of its own
 //!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`Isolation::Copies`] it copies the
-//!    project's folder (`copies.rs`).
-//! 3. It starts the program under its limits, and answers [`CellRequest`]s with [`CellReport`]s; processor time and
+//!    project's folder (`copies.rs`). Either way it has a process outside, to which the program is no child, and which
+//!    cleans up whatever the program does to its parent.
+//! 3. It starts the program under its limits and without rights over the machine (`rights.rs`), and answers [`CellRequest`]s with [`CellReport`]s; processor time and
 //!    sleep of everything that runs in the cell are read from the kernel's process tree (`descendants.rs`).
 //! 4. When the program ends, when it is told to, or when the harness is gone, it kills every process of the cell, keeps the
 //!    changed files if they were asked for (`keep.rs`), and ends.
@@ -22,6 +23,7 @@ mod keep;
 mod limits;
 mod message;
 mod namespaces;
+mod rights;
 mod supervisor;
 mod view;
 

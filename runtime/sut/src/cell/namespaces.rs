@@ -9,6 +9,8 @@ use rustix::{
     process::{getgid, getuid},
 };
 
+use super::rights;
+
 /// Enters new namespaces; the processes started from here on are in them, the first of them as their first process.
 ///
 /// # Errors
@@ -28,7 +30,8 @@ pub(super) fn enter(network: bool) -> Result<(), (&'static str, io::Error)> {
     let write = |file: &str, text: &str| fs::write(format!("/proc/self/{file}"), text);
     write("setgroups", "deny").map_err(|e| ("a namespace of users without groups", e))?;
     write("uid_map", &map(user.as_raw())).map_err(|e| ("a map of users", e))?;
-    write("gid_map", &map(group.as_raw())).map_err(|e| ("a map of groups", e))
+    write("gid_map", &map(group.as_raw())).map_err(|e| ("a map of groups", e))?;
+    rights::keep().map_err(|e| ("its rights in new namespaces", e.into()))
 }
 
 /// Switches on the loopback interface of a new network namespace, in which it is down at first: servers and clients of one

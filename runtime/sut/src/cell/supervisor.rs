@@ -1,7 +1,8 @@
 //! The supervisor's own process: makes the cell, starts the program, waits, and ends everything.
 //!
-//! With namespaces there are two of it: the one that the harness starts enters them and waits; its child is the first
-//! process in them, and does the rest.
+//! There are two of it: the one that the harness starts waits; its child does the rest. With namespaces, the first enters them
+//! and the child is the first process in them. With copies, the first has the cell's folder, and cleans up if the program
+//! kills its parent.
 
 use std::{
     ffi::OsString,
@@ -15,26 +16,37 @@ use std::{
     process::{Child, Command, ExitCode, Stdio},
 };
 
-use nix::sys::{
-    signal::{SigSet, SigmaskHow, Signal},
-    signalfd::{SfdFlags, SignalFd},
-    wait::{Id, WaitPidFlag, WaitStatus, waitid},
+use nix::{
+    sys::{
+        signal::{SigSet, SigmaskHow, Signal, kill},
+        signalfd::{SfdFlags, SignalFd},
+        wait::{Id, WaitPidFlag, WaitStatus, waitid},
+    },
+    unistd::Pid,
 };
 use rustix::{
     event::{PollFd, PollFlags, poll},
     fs::{Mode, OFlags, open},
     io::Errno,
     net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg},
-    process::{set_child_subreaper, set_parent_process_death_signal},
+    process::{
+        DumpableBehavior, set_child_subreaper, set_dumpable_behavior, set_parent_process_death_signal,
+    },
 };
 
 use super::{
-    CELL_FOLDER, CellEnding, CellOrder, CellReport, Isolation, KeptFiles, copies::Copy, descendants,
-    keep::keep, limits, message::CellRequest, namespaces, view::View,
+    CELL_FOLDER, CellEnding, CellOrder, CellReport, Isolation, KeptFiles,
+    copies::{CellFolder, Copy},
+    descendants,
+    keep::keep,
+    limits,
+    message::CellRequest,
+    namespaces, rights,
+    view::View,
 };
 use crate::Exit;
 
-/// The word with which the supervisor starts itself again, inside the namespaces.
+/// The word with which the supervisor starts itself again, inside the cell.
 const INSIDE: &str = "inside";
 
 /// Runs a cell; what [`Supervisor`](super::Supervisor) starts must call this, with its remaining arguments, before anything
@@ -50,7 +62,8 @@ pub fn supervise(args: &[OsString]) -> ExitCode {
     let result = match words[..] {
         ["namespaces", "network"] => enter_and_wait(true, args),
         ["namespaces", _] => enter_and_wait(false, args),
-        ["copies", _] => run(&mut control, false),
+        ["copies", _] => adopt_and_wait(args),
+        ["copies", _, INSIDE] => run(&mut control, false),
         ["namespaces", _, INSIDE] => run(&mut control, true),
         _ => Err(Refusal::of("the supervisor", io::ErrorKind::InvalidInput.into())),
     };
@@ -78,16 +91,47 @@ impl Refusal {
 
 fn enter_and_wait(network: bool, args: &[OsString]) -> Result<(), Refusal> {
     namespaces::enter(network).map_err(|(what, why)| Refusal::of(what, why))?;
-    let own = std::env::current_exe().map_err(|e| Refusal::of("the supervisor's own file", e))?;
+    // It reports; nothing is left to say here.
+    let _ = again(args).spawn().map_err(|e| Refusal::of("the first process of the namespaces", e))?.wait();
+    Ok(())
+}
+
+/// Has the folder of a cell without namespaces, in which the other supervisor works. What is left of the program when that one
+/// has ended, however it has, comes to this process and ends.
+fn adopt_and_wait(args: &[OsString]) -> Result<(), Refusal> {
+    adopt()?;
+    let folder = CellFolder::make().map_err(|e| Refusal::of("a folder for copies", e))?;
+    let other = again(args).env("TMPDIR", folder.path()).spawn();
+    let other = Pid::from_raw(other.map_err(|e| Refusal::of("the other supervisor", e))?.id().cast_signed());
+    loop {
+        match waitid(Id::Pid(other), WaitPidFlag::WEXITED | WaitPidFlag::WSTOPPED) {
+            // The program must not keep its supervisor from watching it.
+            Ok(WaitStatus::Stopped(..)) => drop(kill(other, Signal::SIGCONT)),
+            Err(nix::errno::Errno::EINTR) => {}
+            Ok(_) | Err(_) => break,
+        }
+    }
+    descendants::end_all(false);
+    Ok(())
+}
+
+/// Makes this process the parent of all below it that lose theirs.
+fn adopt() -> Result<(), Refusal> {
+    set_child_subreaper(Some(rustix::process::getpid()))
+        .map_err(|e| Refusal::of("adoption of processes", e.into()))
+}
+
+/// The command that starts this program once more, inside the cell.
+fn again(args: &[OsString]) -> Command {
+    let own = std::env::current_exe();
     // The link of the process, since the file may have been replaced by a newer one meanwhile.
-    let own = if Path::new("/proc/self/exe").exists() { PathBuf::from("/proc/self/exe") } else { own };
+    let link = PathBuf::from("/proc/self/exe");
+    let own = if link.exists() { link } else { own.unwrap_or(link) };
     let before: Vec<OsString> = std::env::args_os().skip(1).collect();
     debug_assert!(before.ends_with(args));
-    let child = Command::new(own).args(before).arg(INSIDE).spawn();
-    let mut child = child.map_err(|e| Refusal::of("the first process of the namespaces", e))?;
-    // It reports; nothing is left to say here.
-    let _ = child.wait();
-    Ok(())
+    let mut command = Command::new(own);
+    command.args(before).arg(INSIDE);
+    command
 }
 
 /// The supervisor's end of the connection.
@@ -169,8 +213,7 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
         set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
             .map_err(|e| Refusal::of("its end", e.into()))?;
     } else {
-        set_child_subreaper(Some(rustix::process::getpid()))
-            .map_err(|e| Refusal::of("adoption of processes", e.into()))?;
+        adopt()?;
     }
     let Some((order, descriptors)) = control.order().map_err(|e| Refusal::of("the order", e))? else {
         return Ok(());
@@ -189,6 +232,10 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     let place = make(&order)?;
     let fixed_addresses = limits::fix_addresses();
     limits::limit_resources(order.memory);
+    // What this process has open (folders of the machine among them) is not for the program to find in /proc.
+    set_dumpable_behavior(DumpableBehavior::NotDumpable)
+        .map_err(|e| Refusal::of("a supervisor of its own", e.into()))?;
+    rights::give_up().map_err(|e| Refusal::of("the program's rights", e.into()))?;
     let child = if order.command.is_empty() { None } else { Some(start(&order, &place, &descriptors)?) };
     drop(descriptors);
     control.report(&started(fixed_addresses, &place, &order));
@@ -198,7 +245,7 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     let usage = descendants::usage();
     watch.others |= descendants::end_all(alone);
     if there {
-        let kept = keep_to.as_ref().map(|to| keep_files(&place, Path::new(&order.dir), to));
+        let kept = keep_to.as_ref().map(|to| keep_files(&place, &order, to));
         let ending = CellEnding {
             exit: watch.main.unwrap_or(Exit::Killed),
             others: watch.others,
@@ -229,7 +276,7 @@ fn make(order: &CellOrder) -> Result<Place, Refusal> {
             Ok(Place::Namespaces(view))
         }
         Isolation::Copies => {
-            let copy = Copy::make(&dir, &hidden)
+            let copy = Copy::make(std::env::temp_dir(), &dir, &hidden)
                 .map_err(|e| Refusal::of(format!("a copy of {}", dir.display()), e))?;
             Ok(Place::Copy(copy))
         }
@@ -359,18 +406,19 @@ impl Watch<'_> {
 
 /// Copies out what the program wrote. `to` was opened before the root changed: the harness's folder is not the one of the
 /// same path in here.
-fn keep_files(place: &Place, dir: &Path, to: &OwnedFd) -> KeptFiles {
+fn keep_files(place: &Place, order: &CellOrder, to: &OwnedFd) -> KeptFiles {
+    let dir = Path::new(&order.dir);
     let to = PathBuf::from(format!("/proc/self/fd/{}", to.as_raw_fd()));
     let own = Path::new(CELL_FOLDER);
     match place {
-        Place::Namespaces(view) => keep(&view.written(), dir, &to, &|_| true),
+        Place::Namespaces(view) => keep(&view.written(), dir, &to, order.memory, &|_| true),
         Place::Copy(copy) => {
             let folders = [
                 (dir.to_owned(), copy.project()),
                 (own.join("home"), copy.home()),
                 (own.join("tmp"), copy.temporary()),
             ];
-            keep(&folders, dir, &to, &|path| !copy.is_unchanged(path))
+            keep(&folders, dir, &to, order.memory, &|path| !copy.is_unchanged(path))
         }
     }
 }

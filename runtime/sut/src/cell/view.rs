@@ -53,6 +53,12 @@ const KERNEL: [&str; 16] = [
     "tracefs",
 ];
 
+/// Of those, the ones in which programs make entries of their own as a matter of course: terminals, queues.
+const USED_BY_NAME: [&str; 2] = ["devpts", "mqueue"];
+
+/// In `/proc`, what is no process: settings of the kernel, which are those of the whole machine.
+const SETTINGS: [&str; 5] = ["sys", "sysrq-trigger", "irq", "bus", "fs"];
+
 /// What went wrong, and where.
 pub(super) type ViewError = (String, io::Error);
 
@@ -99,7 +105,11 @@ impl View {
         for folder in own {
             view.own_layer(folder)?;
         }
-        for folder in hidden {
+        // What is below a hidden folder is hidden with it.
+        let mut hidden = hidden.to_vec();
+        hidden.sort();
+        hidden.dedup_by(|next, first| next.starts_with(first));
+        for folder in &hidden {
             view.hide(folder).map_err(|e| (folder.display().to_string(), e))?;
         }
         Ok(view)
@@ -229,6 +239,12 @@ impl View {
         let target = inside(path);
         fs::create_dir_all(&target).map_err(fail)?;
         mount_bind_recursive(self.host(path), &target).map_err(|e| fail(e.into()))?;
+        let settings =
+            |(at, kind): &&(PathBuf, String)| at.starts_with(path) && !USED_BY_NAME.contains(&kind.as_str());
+        for (at, _) in self.mounts.iter().filter(settings) {
+            // Refused only where all of it belongs to another user, whose files cannot be written to anyway.
+            let _ = read_only(&inside(at));
+        }
         let shared = target.join("shm");
         if path == Path::new("/dev") && shared.is_dir() {
             mount("hrdsl", &shared, "tmpfs", MountFlags::NOSUID | MountFlags::NODEV, c"size=1g,mode=1777")
@@ -243,7 +259,12 @@ impl View {
         fs::create_dir_all(&target).map_err(|e| (path.display().to_string(), e))?;
         let flags = MountFlags::NOSUID | MountFlags::NODEV | MountFlags::NOEXEC;
         match mount("hrdsl", &target, "proc", flags, None) {
-            Ok(()) => Ok(()),
+            Ok(()) => {
+                for settings in SETTINGS.map(|name| target.join(name)) {
+                    let _ = bind_read_only(&settings, &settings);
+                }
+                Ok(())
+            }
             Err(_) => self.window(path),
         }
     }
@@ -280,10 +301,20 @@ impl View {
     }
 }
 
-/// Binds a file or folder so that it can only be read. A remount must repeat what the kernel has locked of the mount that it
+/// Binds a file or folder so that it can only be read. A remount (below) must repeat what the kernel has locked of the mount that it
 /// comes from, which is not told: so it is tried.
 fn bind_read_only(source: &Path, target: &Path) -> Result<(), Errno> {
     mount_bind(source, target)?;
+    let result = read_only(target);
+    if result.is_err() {
+        // Rather not there than written to.
+        unmount(target, UnmountFlags::DETACH)?;
+    }
+    result
+}
+
+/// Makes a mount one that can only be read.
+fn read_only(target: &Path) -> Result<(), Errno> {
     let locked = [MountFlags::NOSUID, MountFlags::NODEV, MountFlags::NOEXEC];
     let mut result = Ok(());
     for which in 0..1 << locked.len() {
@@ -291,11 +322,9 @@ fn bind_read_only(source: &Path, target: &Path) -> Result<(), Errno> {
         let flags = some.fold(MountFlags::BIND | MountFlags::RDONLY, |all, flag| all | flag);
         result = mount_remount(target, flags, c"");
         if result.is_ok() {
-            return result;
+            break;
         }
     }
-    // Rather not there than written to.
-    unmount(target, UnmountFlags::DETACH)?;
     result
 }
 
