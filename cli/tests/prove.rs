@@ -146,7 +146,7 @@ fn names_that_do_not_exist_are_said() {
         ("--query what", "no query `what`; the scenario has: waits"),
         ("--network home", "no network `home`; the scenario has: house"),
         ("--timeout 3parsecs", "no unit of time"),
-        ("--budget-memory 2lots", "no unit of memory"),
+        ("--budget-memory 2lots", "no unit of data"),
     ] {
         let out = hrdsl_in(folder.path(), &format!("prove door.hri {args}"));
         expect_code(&out, 2);

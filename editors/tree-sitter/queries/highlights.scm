@@ -33,7 +33,7 @@
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
   "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"
-  "stop" "minimise" "channel" "query" "witness" "delays"
+  "cpu" "wall" "memory" "output" "env" "online" "stop" "minimise" "channel" "query" "witness" "delays"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return
