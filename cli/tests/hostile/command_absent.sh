@@ -1,0 +1,4 @@
+#!/bin/bash
+# A command that does not exist.
+# expect: error "not found"
+# run: no-such-program-at-all

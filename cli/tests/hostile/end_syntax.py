@@ -1,0 +1,3 @@
+# Is no Python.
+# expect: error "SyntaxError"
+def (:

@@ -1,0 +1,11 @@
+# Leaves a daemon that floods.
+# expect: any
+import os
+import hrdsl
+node = hrdsl.Node('robot')
+if os.fork() == 0:
+    os.setsid()
+    while True:
+        os.write(1, b'x' * 4096)
+node.wait_for('asked')
+node.emit('said', n=1)

@@ -1,0 +1,6 @@
+# Floods standard output.
+# expect: error "bytes of output"
+import hrdsl
+node = hrdsl.Node('robot')
+while True:
+    print('x' * 1000)

@@ -1,0 +1,13 @@
+# A chain of processes that fork and end, so that none is there for long; it answers.
+# expect: pass
+# needs: namespaces
+import os, time
+import hrdsl
+node = hrdsl.Node('robot')
+if os.fork() == 0:
+    for _ in range(3000):
+        if os.fork():
+            os._exit(0)
+    os._exit(0)
+node.wait_for('asked')
+node.emit('said', n=1)

@@ -1,0 +1,12 @@
+# Nests an unknown member half a million times.
+# expect: any
+import os
+import hrdsl
+node = hrdsl.Node('robot')
+out = node._link._out
+text = b'{"request":"now","x":' + b'[' * 400_000 + b']' * 400_000 + b'}\n'
+while text:
+    text = text[os.write(out, text):]
+node._link._in.readline()
+node.wait_for('asked')
+node.emit('said', n=1)

@@ -1,0 +1,4 @@
+#!/bin/bash
+# A shell that floods.
+# expect: error "bytes of output"
+yes

@@ -1,0 +1,11 @@
+# Says that it is done and sleeps, deaf to SIGTERM.
+# expect: pass
+import select, signal
+import hrdsl
+node = hrdsl.Node('robot')
+node.wait_for('asked')
+node.emit('said', n=1)
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+node._link.done()
+while True:
+    select.select([], [], [], 1000)

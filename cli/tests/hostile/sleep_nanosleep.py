@@ -1,0 +1,7 @@
+# Waits for the C library's own sleep, where no simulated time passes.
+# expect: error "it slept for 1 s of wall time"
+import ctypes
+import hrdsl
+node = hrdsl.Node('robot')
+while True:
+    ctypes.CDLL(None).usleep(900000)
