@@ -139,7 +139,10 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
                 if !name.starts_with('.') && !SKIPPED.contains(&&*name) {
                     folders.push(path);
                 }
-            } else if path.extension().is_some_and(|e| e == "hri") && path.is_file() && !written.contains(&path) {
+            } else if path.extension().is_some_and(|e| e == "hri")
+                && path.is_file()
+                && !written.contains(&path)
+            {
                 files.push(path.strip_prefix(".").map(Path::to_owned).unwrap_or(path));
             }
         }

@@ -80,7 +80,9 @@ impl Row {
         let monitor = &program.monitors[proof.monitor];
         let (verdict, remark, run) = match &proof.status {
             Status::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
-            Status::Holds { triggered } => (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None),
+            Status::Holds { triggered } => {
+                (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None)
+            }
             Status::Open(why) => (Verdict::Open, Some(why.clone()), None),
             Status::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
             Status::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
