@@ -1,5 +1,5 @@
 # Asks for what nobody knows, for ever, and listens.
-# expect: error "did not make a request"
+# expect: error "1000 requests were refused"
 import os
 import hrdsl
 node = hrdsl.Node('robot')

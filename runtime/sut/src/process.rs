@@ -31,6 +31,9 @@ use crate::{
 /// A request longer than this is rubbish.
 const LONGEST_LINE: usize = 1 << 20;
 
+/// More malformed requests one after the other come from no program that reads its replies.
+const MOST_REFUSED: usize = 1_000;
+
 /// How long a program may work on its coverage after it was asked to terminate.
 const LAST_WORDS: Duration = Duration::from_millis(500);
 
@@ -206,6 +209,7 @@ impl Process {
     #[allow(clippy::should_implement_trait)] // not an iterator: each request must be answered first
     pub fn next(&mut self) -> Result<Request, SutError> {
         let mut patience = Patience::new(self.limits.budget);
+        let mut refused = 0_usize;
         loop {
             if let Some(line) = self.take_line()? {
                 match protocol::parse(&line) {
@@ -216,8 +220,15 @@ impl Process {
                     Line::Rubbish(why) => return Err(self.rubbish(&line, why)),
                     Line::Refused(error) => {
                         self.spoke = true;
+                        refused += 1;
+                        if refused > MOST_REFUSED {
+                            let why = format!("{MOST_REFUSED} requests were refused, the last since {error}");
+                            return Err(self.rubbish(&line, why));
+                        }
                         let answer = Answer::Error { error, help: Some("see spec/protocol.md".to_owned()) };
                         self.reply(&Reply { time: self.time, answer })?;
+                        // It has asked: the wait for its next request begins.
+                        patience = Patience::new(self.limits.budget);
                         continue;
                     }
                 }
