@@ -36,6 +36,7 @@ const GRACE: Duration = Duration::from_secs(5);
 const LAST_LINES: usize = 20;
 
 /// What a campaign runs with.
+#[derive(Clone)]
 pub struct Campaign<'a> {
     pub program: &'a Program,
     /// The scenario's folder: where the program under test is started.

@@ -20,6 +20,7 @@ mod error;
 mod launch;
 mod limits;
 mod output;
+mod patience;
 mod process;
 mod protocol;
 

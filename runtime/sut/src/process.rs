@@ -22,9 +22,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Answer, FileCoverage, Launch, Output, Overrun, ProgramLimits, Reply, Request, StopFlag, SutError,
-    cell::{Cell, CellRequest, CellUsage, KeptFiles},
+    cell::{CellHandle, CellRequest, KeptFiles},
     coverage,
     output::Capture,
+    patience::{LOOK, Patience},
     protocol::{self, Line},
 };
 
@@ -37,13 +38,10 @@ const MOST_REFUSED: usize = 1_000;
 /// How long a program may work on its coverage after it was asked to terminate.
 const LAST_WORDS: Duration = Duration::from_millis(500);
 
-/// Between looks at what the program uses.
-const LOOK: Duration = Duration::from_millis(100);
-
 /// A program under test, running. Dropping it kills it and whatever it started.
 #[derive(Debug)]
 pub struct Process {
-    cell: Cell,
+    cell: CellHandle,
     /// `None` once every writer has closed it.
     requests: Option<OwnedFd>,
     /// `None` once the program was told to finish.
@@ -122,42 +120,6 @@ enum Found {
     Ended,
 }
 
-/// How long a wait has lasted, as the program experiences it: load on the machine does not count.
-struct Patience {
-    /// Of processor time, or of sleep.
-    budget: Duration,
-    /// The cell's processor time when the wait began, and when it was last looked at.
-    cpu: Option<(Duration, Duration)>,
-    looked: Instant,
-    /// How long all of the cell was asleep.
-    asleep: Duration,
-}
-
-impl Patience {
-    fn new(budget: Duration) -> Self {
-        Self { budget, cpu: None, looked: Instant::now(), asleep: Duration::ZERO }
-    }
-
-    /// Takes in what the cell has used, and says whether the wait has been too long.
-    fn look(&mut self, usage: CellUsage) -> Option<Overrun> {
-        // A wait between two looks that was longer than planned was a wait of our own.
-        let passed = self.looked.elapsed().min(2 * LOOK);
-        self.looked = Instant::now();
-        let (first, last) = self.cpu.unwrap_or((usage.cpu, usage.cpu));
-        self.cpu = Some((first, usage.cpu));
-        if usage.asleep && last == usage.cpu {
-            self.asleep += passed;
-        }
-        if usage.cpu.saturating_sub(first) >= self.budget {
-            Some(Overrun::Budget(self.budget))
-        } else if self.asleep >= self.budget {
-            Some(Overrun::Asleep(self.budget))
-        } else {
-            None
-        }
-    }
-}
-
 impl Process {
     /// Starts the program of a launch in a cell.
     ///
@@ -176,7 +138,7 @@ impl Process {
             names.push("HRDSL_COVERAGE_FD");
         }
         let order = launch.order(names.into_iter().map(str::to_owned).collect())?;
-        let mut cell = Cell::start(&launch.cells.supervisor, &order, &descriptors)?;
+        let mut cell = CellHandle::start(&launch.cells.supervisor, &order, &descriptors)?;
         let stdout = Stream::new(cell.stdout.take(), launch.output_kept);
         let stderr = Stream::new(cell.stderr.take(), launch.output_kept);
         Ok(Self {

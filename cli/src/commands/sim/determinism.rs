@@ -31,17 +31,7 @@ pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<
     bar.set_message("again, to compare");
     let found: Mutex<BTreeMap<usize, (String, String)>> = Mutex::default();
     // The second run keeps no files: those of the first are the results.
-    let again = Campaign {
-        keep: None,
-        program: campaign.program,
-        dir: campaign.dir.clone(),
-        env: campaign.env.clone(),
-        cells: campaign.cells.clone(),
-        limits: campaign.limits,
-        variables: campaign.variables.clone(),
-        jobs: campaign.jobs,
-        stop: campaign.stop.clone(),
-    };
+    let again = Campaign { keep: None, ..campaign.clone() };
     let outcome = again.run(&backwards, |done| {
         let stem = done.result.file_stem();
         let before = input::read(&recording(first, &stem))?;

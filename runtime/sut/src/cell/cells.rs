@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Cell, CellOrder, Isolation, Supervisor};
+use super::{CellHandle, CellOrder, Isolation, Supervisor};
 use crate::{ProgramLimits, SutError};
 
 /// What all cells of a campaign have in common.
@@ -53,7 +53,7 @@ impl Cells {
         Ok(cells)
     }
 
-    fn empty_cell(&self, project: &Path) -> Result<Cell, SutError> {
+    fn empty_cell(&self, project: &Path) -> Result<CellHandle, SutError> {
         let dir =
             project.canonicalize().map_err(SutError::io(format!("cannot find {}", project.display())))?;
         let order = CellOrder {
@@ -68,10 +68,10 @@ impl Cells {
             network: self.network,
             terminal: self.terminal,
         };
-        Ok(Cell::start(&self.supervisor, &order, &[])?)
+        Ok(CellHandle::start(&self.supervisor, &order, &[])?)
     }
 
-    fn gaps_of(&self, cell: &Cell) -> Vec<String> {
+    fn gaps_of(&self, cell: &CellHandle) -> Vec<String> {
         let mut gaps = Vec::new();
         if self.isolation == Isolation::Copies {
             gaps.push(

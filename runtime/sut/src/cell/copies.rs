@@ -54,12 +54,12 @@ fn empty(top: &Path) {
 }
 
 /// A copy of the project's folder, in the folder of a cell.
-pub(super) struct Copy {
+pub(super) struct ProjectCopy {
     folder: PathBuf,
     original: PathBuf,
 }
 
-impl Copy {
+impl ProjectCopy {
     /// Copies the project's folder into `folder`, but for what is `hidden`. Virtual environments are linked to: programs do
     /// not write into them, and they are large.
     pub(super) fn make(folder: PathBuf, original: &Path, hidden: &[PathBuf]) -> io::Result<Self> {

@@ -49,7 +49,7 @@ impl Supervisor {
 
 /// A cell with a running program. When it is dropped, everything in it is killed.
 #[derive(Debug)]
-pub struct Cell {
+pub struct CellHandle {
     supervisor: Child,
     /// Does not block. `None` once the supervisor is gone.
     control: Option<OwnedFd>,
@@ -88,7 +88,7 @@ impl From<CellRefusal> for SutError {
     }
 }
 
-impl Cell {
+impl CellHandle {
     /// Starts a cell and the program in it, which inherits the descriptors.
     pub(crate) fn start(
         supervisor: &Supervisor,
@@ -274,7 +274,7 @@ impl Cell {
     }
 }
 
-impl Drop for Cell {
+impl Drop for CellHandle {
     fn drop(&mut self) {
         self.ask(CellRequest::Kill);
         let _ = self.await_end(PATIENCE);

@@ -2,7 +2,7 @@
 //!
 //! # Steps
 //!
-//! 1. [`Cell::start`] starts a *supervisor* (this program, or another that calls [`supervise`]) and hands it a [`CellOrder`]
+//! 1. [`CellHandle::start`] starts a *supervisor* (this program, or another that calls [`supervise`]) and hands it a [`CellOrder`]
 //!    with the program's descriptors.
 //! 2. The supervisor makes the cell. With [`Isolation::Namespaces`] it enters namespaces of its own
 //!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`Isolation::Copies`] it copies the
@@ -28,7 +28,7 @@ mod supervisor;
 mod view;
 
 pub use cells::Cells;
-pub(crate) use handle::Cell;
+pub(crate) use handle::CellHandle;
 pub use handle::Supervisor;
 pub use message::{CellEnding, CellUsage, Isolation, KeptFiles};
 pub use supervisor::supervise;

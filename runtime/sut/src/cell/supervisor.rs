@@ -36,13 +36,13 @@ use rustix::{
 
 use super::{
     CELL_FOLDER, CellEnding, CellOrder, CellReport, Isolation, KeptFiles,
-    copies::{CellFolder, Copy},
+    copies::{CellFolder, ProjectCopy},
     descendants,
     keep::keep,
     limits,
     message::CellRequest,
     namespaces, rights,
-    view::View,
+    view::PrivateView,
 };
 use crate::Exit;
 
@@ -201,9 +201,9 @@ impl Control {
 }
 
 /// Where the program runs, and what is left of it.
-enum Place {
-    Namespaces(View),
-    Copy(Copy),
+enum CellPlace {
+    Namespaces(PrivateView),
+    Copy(ProjectCopy),
 }
 
 /// Makes the cell, runs the program in it, and ends it.
@@ -240,7 +240,7 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     drop(descriptors);
     control.report(&started(fixed_addresses, &place, &order));
     let Some(child) = child else { return Ok(()) };
-    let mut watch = Watch { control, ended, others: false, main: None };
+    let mut watch = ProgramWatch { control, ended, others: false, main: None };
     let there = watch.wait(&child);
     let usage = descendants::usage();
     watch.others |= descendants::end_all(alone);
@@ -257,7 +257,7 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn make(order: &CellOrder) -> Result<Place, Refusal> {
+fn make(order: &CellOrder) -> Result<CellPlace, Refusal> {
     let dir = PathBuf::from(&order.dir);
     let hidden: Vec<PathBuf> = order.hidden.iter().map(PathBuf::from).collect();
     match order.isolation {
@@ -267,28 +267,28 @@ fn make(order: &CellOrder) -> Result<Place, Refusal> {
             }
             let own = [dir, "/tmp".into(), "/var/tmp".into()];
             let refusal = |(what, why)| Refusal::of(format!("a private view of {what}"), why);
-            let view = View::assemble(order.memory, &own, &hidden).map_err(refusal)?;
+            let view = PrivateView::assemble(order.memory, &own, &hidden).map_err(refusal)?;
             view.enter().map_err(refusal)?;
             for folder in ["home", "tmp"] {
                 let folder = Path::new(CELL_FOLDER).join(folder);
                 std::fs::create_dir_all(folder).map_err(|e| Refusal::of(CELL_FOLDER, e))?;
             }
-            Ok(Place::Namespaces(view))
+            Ok(CellPlace::Namespaces(view))
         }
         Isolation::Copies => {
-            let copy = Copy::make(std::env::temp_dir(), &dir, &hidden)
+            let copy = ProjectCopy::make(std::env::temp_dir(), &dir, &hidden)
                 .map_err(|e| Refusal::of(format!("a copy of {}", dir.display()), e))?;
-            Ok(Place::Copy(copy))
+            Ok(CellPlace::Copy(copy))
         }
     }
 }
 
-fn started(fixed_addresses: bool, place: &Place, order: &CellOrder) -> CellReport {
+fn started(fixed_addresses: bool, place: &CellPlace, order: &CellOrder) -> CellReport {
     let (moved, read_only) = match place {
-        Place::Namespaces(view) => {
+        CellPlace::Namespaces(view) => {
             (Vec::new(), view.read_only.iter().map(|p| p.clone().into_os_string()).collect())
         }
-        Place::Copy(copy) => {
+        CellPlace::Copy(copy) => {
             let own = Path::new(CELL_FOLDER);
             let moved = [
                 (copy.project(), PathBuf::from(&order.dir)),
@@ -301,17 +301,17 @@ fn started(fixed_addresses: bool, place: &Place, order: &CellOrder) -> CellRepor
     CellReport::Started { fixed_addresses, moved, read_only }
 }
 
-fn start(order: &CellOrder, place: &Place, descriptors: &[OwnedFd]) -> Result<Child, Refusal> {
+fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Result<Child, Refusal> {
     let (dir, home, temporary) = match place {
-        Place::Namespaces(_) => {
+        CellPlace::Namespaces(_) => {
             let own = Path::new(CELL_FOLDER);
             (PathBuf::from(&order.dir), own.join("home"), own.join("tmp"))
         }
-        Place::Copy(copy) => (copy.project(), copy.home(), copy.temporary()),
+        CellPlace::Copy(copy) => (copy.project(), copy.home(), copy.temporary()),
     };
     let word = |w: &OsString| match place {
-        Place::Namespaces(_) => w.clone(),
-        Place::Copy(copy) => copy.moved(Path::new(w)).into_os_string(),
+        CellPlace::Namespaces(_) => w.clone(),
+        CellPlace::Copy(copy) => copy.moved(Path::new(w)).into_os_string(),
     };
     let words: Vec<OsString> = order.command.iter().map(word).collect();
     let mut command = Command::new(&words[0]);
@@ -339,7 +339,7 @@ fn start(order: &CellOrder, place: &Place, descriptors: &[OwnedFd]) -> Result<Ch
 }
 
 /// Waits for the program's end and for what the harness asks.
-struct Watch<'c> {
+struct ProgramWatch<'c> {
     control: &'c mut Control,
     ended: SignalFd,
     /// Whether there was ever another process.
@@ -348,7 +348,7 @@ struct Watch<'c> {
     main: Option<Exit>,
 }
 
-impl Watch<'_> {
+impl ProgramWatch<'_> {
     /// Returns when the program has ended or is to end; whether the harness is still there.
     fn wait(&mut self, child: &Child) -> bool {
         loop {
@@ -406,13 +406,13 @@ impl Watch<'_> {
 
 /// Copies out what the program wrote. `to` was opened before the root changed: the harness's folder is not the one of the
 /// same path in here.
-fn keep_files(place: &Place, order: &CellOrder, to: &OwnedFd) -> KeptFiles {
+fn keep_files(place: &CellPlace, order: &CellOrder, to: &OwnedFd) -> KeptFiles {
     let dir = Path::new(&order.dir);
     let to = PathBuf::from(format!("/proc/self/fd/{}", to.as_raw_fd()));
     let own = Path::new(CELL_FOLDER);
     match place {
-        Place::Namespaces(view) => keep(&view.written(), dir, &to, order.memory, &|_| true),
-        Place::Copy(copy) => {
+        CellPlace::Namespaces(view) => keep(&view.written(), dir, &to, order.memory, &|_| true),
+        CellPlace::Copy(copy) => {
             let folders = [
                 (dir.to_owned(), copy.project()),
                 (own.join("home"), copy.home()),

@@ -63,7 +63,7 @@ const SETTINGS: [&str; 5] = ["sys", "sysrq-trigger", "irq", "bus", "fs"];
 pub(super) type ViewError = (String, io::Error);
 
 /// The view of one cell.
-pub(super) struct View {
+pub(super) struct PrivateView {
     /// Mount points of the machine with their kinds of file systems; a later one covers an earlier one.
     mounts: Vec<(PathBuf, String)>,
     /// The machine's folder that the layers cover.
@@ -78,7 +78,7 @@ pub(super) struct View {
     pub read_only: Vec<PathBuf>,
 }
 
-impl View {
+impl PrivateView {
     /// Puts the new root together, with layers of at most `size` bytes. Folders of `own` are layers of their own, so that
     /// they can be written to whoever owns the folders above them; what is `hidden` is not there.
     pub(super) fn assemble(size: u64, own: &[PathBuf], hidden: &[PathBuf]) -> Result<Self, ViewError> {

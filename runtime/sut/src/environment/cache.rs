@@ -33,7 +33,7 @@ pub(super) struct Cache<'a> {
 }
 
 /// A folder of the cache.
-pub(super) struct Part<'a> {
+pub(super) struct CachePart<'a> {
     pub kind: &'a str,
     /// Made from all that the folder is made from.
     pub key: String,
@@ -42,7 +42,7 @@ pub(super) struct Part<'a> {
 }
 
 /// Where a part is made.
-pub(super) struct Making {
+pub(super) struct MakingPart {
     /// What becomes the part.
     pub folder: PathBuf,
     /// For everything that is needed on the way.
@@ -79,8 +79,8 @@ impl<'a> Cache<'a> {
     /// The folder of the part; if it is not there, or damaged, it is filled beside and moved into its place.
     pub(super) fn made(
         &self,
-        part: &Part<'_>,
-        fill: impl FnOnce(&Making) -> Result<(), SutError>,
+        part: &CachePart<'_>,
+        fill: impl FnOnce(&MakingPart) -> Result<(), SutError>,
     ) -> Result<PathBuf, SutError> {
         let name = format!("{}-{}", part.kind, part.key);
         let place = self.dir.join(&name);
@@ -107,10 +107,10 @@ impl<'a> Cache<'a> {
         &self,
         temporary: &TempDir,
         place: &Path,
-        fill: impl FnOnce(&Making) -> Result<(), SutError>,
+        fill: impl FnOnce(&MakingPart) -> Result<(), SutError>,
     ) -> Result<(), SutError> {
         let at = |name: &str| temporary.path().join(name);
-        let making = Making { folder: at("made"), scratch: at("scratch") };
+        let making = MakingPart { folder: at("made"), scratch: at("scratch") };
         fs::create_dir(&making.folder).map_err(self.fault())?;
         fs::create_dir(&making.scratch).map_err(self.fault())?;
         fill(&making)?;
@@ -214,11 +214,11 @@ mod tests {
 
     use super::*;
 
-    fn part() -> Part<'static> {
-        Part { kind: "x", key: "1".to_owned(), what: "x" }
+    fn part() -> CachePart<'static> {
+        CachePart { kind: "x", key: "1".to_owned(), what: "x" }
     }
 
-    fn fill(making: &Making) -> Result<(), SutError> {
+    fn fill(making: &MakingPart) -> Result<(), SutError> {
         fs::write(making.folder.join("all"), "12").map_err(SutError::io("write"))
     }
 

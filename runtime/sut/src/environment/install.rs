@@ -9,12 +9,12 @@ use std::{
 };
 
 use super::{
-    cache::{Listener, Making},
+    cache::{Listener, MakingPart},
     local,
     named::{self, LocalKind},
     preparation::Preparation,
-    requirements::{Line, Requirements},
-    watch::{Said, watch},
+    requirements::{RequirementLine, Requirements},
+    watch::{PipSaid, watch},
 };
 use crate::SutError;
 
@@ -23,7 +23,7 @@ const LAST_LINES: usize = 16;
 const LONGEST_LINE: usize = 240;
 
 /// What is installed, and how.
-pub(super) struct Order<'a> {
+pub(super) struct PipOrder<'a> {
     pub python: &'a Path,
     pub requirements: &'a Requirements,
     /// In words.
@@ -34,8 +34,8 @@ pub(super) struct Order<'a> {
 }
 
 /// Installs by the interpreter's own pip or, if it has none, by that of a virtual environment made for this.
-pub(super) fn install(order: &Order<'_>, making: &Making) -> Result<(), SutError> {
-    let written = Written::new(order.requirements, &making.scratch)?;
+pub(super) fn install(order: &PipOrder<'_>, making: &MakingPart) -> Result<(), SutError> {
+    let written = WrittenList::new(order.requirements, &making.scratch)?;
     let mut said = pip(order, order.python, &written, making)?;
     if said.stderr.last().is_some_and(|line| line.ends_with("No module named pip")) {
         let python = virtual_environment(order.python, &making.scratch.join("venv"))?;
@@ -59,7 +59,12 @@ fn virtual_environment(python: &Path, place: &Path) -> Result<PathBuf, SutError>
     Ok(place.join("bin").join("python"))
 }
 
-fn pip(order: &Order<'_>, python: &Path, written: &Written, making: &Making) -> Result<Said, SutError> {
+fn pip(
+    order: &PipOrder<'_>,
+    python: &Path,
+    written: &WrittenList,
+    making: &MakingPart,
+) -> Result<PipSaid, SutError> {
     // Without modules of the folder in which it runs.
     let mut command = command(python);
     command.args(["-I", "-m", "pip", "install", "--no-input", "--disable-pip-version-check"]);
@@ -87,7 +92,7 @@ fn pip(order: &Order<'_>, python: &Path, written: &Written, making: &Making) -> 
     })
 }
 
-fn failure(order: &Order<'_>, written: &Written, said: &Said) -> SutError {
+fn failure(order: &PipOrder<'_>, written: &WrittenList, said: &PipSaid) -> SutError {
     let lines = if said.stderr.is_empty() { &said.stdout } else { &said.stderr };
     let last = lines[lines.len().saturating_sub(LAST_LINES)..].iter();
     let mut text = written.original(&last.map(|line| shortened(line)).collect::<Vec<_>>().join("\n"));
@@ -107,7 +112,7 @@ fn failure(order: &Order<'_>, written: &Written, said: &Said) -> SutError {
 
 /// The requirements that pip's errors name, a line for each.
 fn blamed(requirements: &Requirements, text: &str) -> String {
-    let blamed = |line: &&Line| line.name.is_some() && is_blamed(line, text);
+    let blamed = |line: &&RequirementLine| line.name.is_some() && is_blamed(line, text);
     let lines = requirements.all_lines().filter(blamed);
     lines.map(|line| format!("required at {}: {}\n", line.origin, line.text)).collect()
 }
@@ -121,7 +126,7 @@ fn shortened(line: &str) -> String {
 }
 
 /// Whether pip's errors name a requirement: its path, or its project as a word.
-fn is_blamed(line: &Line, text: &str) -> bool {
+fn is_blamed(line: &RequirementLine, text: &str) -> bool {
     if let Some(local) = &line.local {
         return text.contains(&*local.path.to_string_lossy());
     }
@@ -140,14 +145,14 @@ pub(super) fn normal(name: &str) -> String {
 }
 
 /// The files that pip reads, and the copies that they name.
-struct Written {
+struct WrittenList {
     requirements: PathBuf,
     constraints: PathBuf,
     /// What pip may say, and what is meant.
     instead: Vec<(String, String)>,
 }
 
-impl Written {
+impl WrittenList {
     fn new(requirements: &Requirements, scratch: &Path) -> Result<Self, SutError> {
         let at = |name: &str| scratch.join(name);
         let mut written = Self {
@@ -173,7 +178,7 @@ impl Written {
         Ok(written)
     }
 
-    fn line(&mut self, line: &Line, scratch: &Path) -> Result<String, SutError> {
+    fn line(&mut self, line: &RequirementLine, scratch: &Path) -> Result<String, SutError> {
         let Some(local) = &line.local else { return Ok(line.text.clone()) };
         match local.kind {
             LocalKind::File | LocalKind::Repository => Ok(line.text.clone()),
@@ -224,12 +229,12 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         let made = run(command("python3").args(["-m", "venv", "--without-pip"]).arg(at("bare"))).unwrap();
         assert!(made.status.success());
-        let making = Making { folder: at("made"), scratch: at("scratch") };
+        let making = MakingPart { folder: at("made"), scratch: at("scratch") };
         fs::create_dir(&making.scratch).unwrap();
         let requirements = Requirements::built_in("--no-index", folder.path());
         let python = &at("bare/bin/python");
         let order =
-            Order { python, requirements: &requirements, what: "nothing", afresh: false, listen: &|_| {} };
+            PipOrder { python, requirements: &requirements, what: "nothing", afresh: false, listen: &|_| {} };
         install(&order, &making).unwrap();
         assert!(at("scratch/venv").is_dir());
     }

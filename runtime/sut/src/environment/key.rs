@@ -7,28 +7,28 @@ use std::{
 
 use super::{
     digest::Fingerprint,
-    named::{self, Local, LocalKind},
+    named::{self, LocalKind, LocalRequirement},
     probe::Probe,
-    requirements::{Line, Requirements, Variables},
+    requirements::{RequirementLine, Requirements, Variables},
 };
 use crate::SutError;
 
 /// A name for all that an installation depends on.
-pub(super) struct Key {
+pub(super) struct PackagesKey {
     pub name: String,
     /// Whether archives of sources are among it: what pip built of one it keeps under its file's name, whatever is
     /// in the file by now.
     pub has_sources: bool,
 }
 
-impl Key {
+impl PackagesKey {
     pub(super) fn new(
         probe: &Probe,
         requirements: &Requirements,
         variables: Variables<'_>,
     ) -> Result<Self, SutError> {
         let mut maker =
-            Maker { print: Fingerprint::of(&[&probe.tag, &probe.base]), has_sources: false, variables };
+            KeyMaker { print: Fingerprint::of(&[&probe.tag, &probe.base]), has_sources: false, variables };
         maker.requirements(requirements)?;
         for (section, name, value) in &probe.pip {
             maker.option(section, name, value, &requirements.folder)?;
@@ -37,13 +37,13 @@ impl Key {
     }
 }
 
-struct Maker<'a> {
+struct KeyMaker<'a> {
     print: Fingerprint,
     has_sources: bool,
     variables: Variables<'a>,
 }
 
-impl Maker<'_> {
+impl KeyMaker<'_> {
     fn requirements(&mut self, requirements: &Requirements) -> Result<(), SutError> {
         for lines in [&requirements.lines, &requirements.constraints] {
             self.print.part(&(lines.len() as u64).to_le_bytes());
@@ -52,7 +52,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn line(&mut self, line: &Line) -> Result<(), SutError> {
+    fn line(&mut self, line: &RequirementLine) -> Result<(), SutError> {
         let Some(local) = &line.local else {
             self.print.part(line.expanded.as_bytes());
             return Ok(());
@@ -63,7 +63,7 @@ impl Maker<'_> {
         self.local(local).map_err(|e| line.origin.error(e, "pip could not read it either"))
     }
 
-    fn local(&mut self, local: &Local) -> Result<(), SutError> {
+    fn local(&mut self, local: &LocalRequirement) -> Result<(), SutError> {
         match local.kind {
             LocalKind::Folder => {
                 self.print.part(b"folder");

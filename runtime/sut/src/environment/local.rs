@@ -11,7 +11,7 @@ use walkdir::{DirEntry, WalkDir};
 use crate::SutError;
 
 /// A file of a folder's contents.
-pub(super) struct Content {
+pub(super) struct LocalContent {
     pub relative: PathBuf,
     /// Where its bytes are.
     pub path: PathBuf,
@@ -19,7 +19,7 @@ pub(super) struct Content {
 }
 
 /// The files that belong to what is built from a folder, sorted; links are followed.
-pub(super) fn contents(folder: &Path) -> Result<Vec<Content>, SutError> {
+pub(super) fn contents(folder: &Path) -> Result<Vec<LocalContent>, SutError> {
     let walk = WalkDir::new(folder).follow_links(true).sort_by_file_name().into_iter();
     let mut contents = Vec::new();
     for entry in walk.filter_entry(|entry| !is_left_out(entry)) {
@@ -35,7 +35,7 @@ pub(super) fn contents(folder: &Path) -> Result<Vec<Content>, SutError> {
         let read = || SutError::io(format!("cannot read {}", entry.path().display()));
         let mode = entry.metadata().map_err(|e| read()(e.into()))?.permissions().mode();
         let relative = entry.path().strip_prefix(folder).map_err(|e| read()(io::Error::other(e)))?;
-        contents.push(Content {
+        contents.push(LocalContent {
             relative: relative.to_owned(),
             path: entry.path().to_owned(),
             executable: mode & 0o111 != 0,

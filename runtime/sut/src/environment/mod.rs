@@ -20,10 +20,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cache::{Cache, Listener, Making, Part};
+use cache::{Cache, CachePart, Listener, MakingPart};
 use digest::Fingerprint;
-use install::{Order, command, install, normal, run};
-use key::Key;
+use install::{PipOrder, command, install, normal, run};
+use key::PackagesKey;
 use probe::Probe;
 use requirements::Requirements;
 
@@ -180,7 +180,7 @@ fn say_hooked(probe: &Probe, requirements: Option<&Requirements>, listen: Listen
 fn sdk(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
     let made_from: Vec<&str> =
         [probe.tag.as_str()].into_iter().chain(SDK.iter().flat_map(|&(name, text)| [name, text])).collect();
-    let part = Part { kind: "sdk", key: Fingerprint::of(&made_from).finish(), what: "the SDK" };
+    let part = CachePart { kind: "sdk", key: Fingerprint::of(&made_from).finish(), what: "the SDK" };
     cache.silent().made(&part, |making| write_sdk(&probe.executable, &making.folder))
 }
 
@@ -196,7 +196,7 @@ fn write_sdk(python: &Path, dir: &Path) -> Result<(), SutError> {
 }
 
 fn coverage(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
-    let part = Part {
+    let part = CachePart {
         kind: "coverage",
         key: Fingerprint::of(&[&probe.tag, COVERAGE]).finish(),
         what: "coverage.py",
@@ -205,7 +205,7 @@ fn coverage(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
         let requirements = Requirements::built_in(COVERAGE, &making.scratch);
         let python = &probe.executable;
         let listen = cache.listen;
-        let order = Order { python, requirements: &requirements, what: part.what, afresh: false, listen };
+        let order = PipOrder { python, requirements: &requirements, what: part.what, afresh: false, listen };
         install(&order, making)
     })
 }
@@ -217,13 +217,13 @@ fn packages(
     requirements: &Requirements,
     list: Option<&Path>,
 ) -> Result<PathBuf, SutError> {
-    let key = || Key::new(probe, requirements, &variable);
-    let Key { name, has_sources } = key()?;
+    let key = || PackagesKey::new(probe, requirements, &variable);
+    let PackagesKey { name, has_sources } = key()?;
     let what = summary(requirements);
-    let part = Part { kind: "packages", key: name.clone(), what: &what };
-    cache.made(&part, |making: &Making| {
+    let part = CachePart { kind: "packages", key: name.clone(), what: &what };
+    cache.made(&part, |making: &MakingPart| {
         let (python, listen) = (&probe.executable, cache.listen);
-        install(&Order { python, requirements, what: &what, afresh: has_sources, listen }, making)?;
+        install(&PipOrder { python, requirements, what: &what, afresh: has_sources, listen }, making)?;
         if key()?.name == name {
             return Ok(());
         }

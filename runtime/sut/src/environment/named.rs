@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
-use super::{options::quoted, requirements::Origin};
+use super::{options::quoted, requirements::LineOrigin};
 use crate::SutError;
 
 /// Something local, with the text around it on its line.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Local {
+pub(super) struct LocalRequirement {
     pub kind: LocalKind,
     pub path: PathBuf,
     before: String,
     after: String,
-    form: Form,
+    form: RequirementForm,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub(super) enum LocalKind {
 
 /// How a path is written on its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
+enum RequirementForm {
     Path,
     Url,
     Option,
@@ -43,7 +43,7 @@ const ARCHIVES: &[&str] =
 const IN_URL: &AsciiSet =
     &NON_ALPHANUMERIC.remove(b'/').remove(b'-').remove(b'_').remove(b'.').remove(b'~').remove(b'+');
 
-impl Local {
+impl LocalRequirement {
     pub(super) fn followed_by(mut self, more: &str) -> Self {
         if !more.is_empty() {
             self.after = format!("{} {more}", self.after);
@@ -60,9 +60,9 @@ impl Local {
     pub(super) fn with(&self, path: &Path) -> String {
         let path = path.to_string_lossy();
         let path = match self.form {
-            Form::Path => path.into_owned(),
-            Form::Url => format!("file://{}", utf8_percent_encode(&path, IN_URL)),
-            Form::Option => quoted(&path),
+            RequirementForm::Path => path.into_owned(),
+            RequirementForm::Url => format!("file://{}", utf8_percent_encode(&path, IN_URL)),
+            RequirementForm::Option => quoted(&path),
         };
         format!("{}{path}{}", self.before, self.after)
     }
@@ -82,7 +82,11 @@ pub(super) fn is_archive_of_sources(path: &Path) -> bool {
 ///
 /// # Errors
 /// It is meant to be local, and pip could not install it.
-pub(super) fn local(text: &str, folder: &Path, origin: &Origin) -> Result<Option<Local>, SutError> {
+pub(super) fn local(
+    text: &str,
+    folder: &Path,
+    origin: &LineOrigin,
+) -> Result<Option<LocalRequirement>, SutError> {
     let at_url = split_at_url(text).or_else(|| is_url(text).then_some(("", text)));
     let found = match at_url {
         Some((before, url)) => by_url(before, url, folder),
@@ -114,7 +118,7 @@ fn is_url(text: &str) -> bool {
     matches!(&*scheme, "file" | "http" | "https" | "ftp" | "ssh") || scheme.contains('+')
 }
 
-fn by_url(before: &str, url: &str, folder: &Path) -> Option<Local> {
+fn by_url(before: &str, url: &str, folder: &Path) -> Option<LocalRequirement> {
     let end = url.find(char::is_whitespace).unwrap_or(url.len());
     let address = url[..end].split('#').next().unwrap_or(url);
     let repository = address.split_once('+').filter(|(system, _)| !system.contains(':'));
@@ -130,19 +134,19 @@ fn by_url(before: &str, url: &str, folder: &Path) -> Option<Local> {
         None => return None, // pip says so, with the URL
     };
     let after = url[address.len()..].to_owned();
-    Some(Local { kind, path, before: before.to_owned(), after, form: Form::Url })
+    Some(LocalRequirement { kind, path, before: before.to_owned(), after, form: RequirementForm::Url })
 }
 
 /// A revision may follow the path; the whole line tells which.
-fn repository_at(path: PathBuf, before: &str, url: &str) -> Local {
+fn repository_at(path: PathBuf, before: &str, url: &str) -> LocalRequirement {
     let text = path.to_string_lossy();
     let without = text.rsplit_once('@').map(|(path, _)| PathBuf::from(path));
     let path = without.filter(|_| !path.exists()).unwrap_or(path);
     let (before, kind) = (format!("{before}{url}"), LocalKind::Repository);
-    Local { kind, path, before, after: String::new(), form: Form::Url }
+    LocalRequirement { kind, path, before, after: String::new(), form: RequirementForm::Url }
 }
 
-fn by_path(text: &str, folder: &Path, origin: &Origin) -> Result<Option<Local>, SutError> {
+fn by_path(text: &str, folder: &Path, origin: &LineOrigin) -> Result<Option<LocalRequirement>, SutError> {
     let (requirement, marker) = text.split_at(text.find(';').unwrap_or(text.len()));
     let name = requirement.trim();
     let bare = without_extras(name);
@@ -163,7 +167,7 @@ fn by_path(text: &str, folder: &Path, origin: &Origin) -> Result<Option<Local>, 
     };
     let extras = &name[bare.len()..];
     let after = if marker.is_empty() { extras.to_owned() } else { format!("{extras} {marker}") };
-    Ok(Some(Local { kind, path, before: String::new(), after, form: Form::Path }))
+    Ok(Some(LocalRequirement { kind, path, before: String::new(), after, form: RequirementForm::Path }))
 }
 
 /// Without `.` between, so that it reads well.
@@ -179,13 +183,19 @@ fn without_extras(text: &str) -> &str {
 }
 
 /// The place of `--find-links`, if it is local: beside the file that names it, else as pip sees it.
-pub(super) fn links(value: &str, origin: &Origin, folder: &Path) -> Option<Local> {
+pub(super) fn links(value: &str, origin: &LineOrigin, folder: &Path) -> Option<LocalRequirement> {
     let path = path_of(value)?;
     let beside = origin.file.parent().unwrap_or(Path::new(".")).join(&path);
     let path = if beside.exists() { beside } else { folder.join(path) };
     let before = "--find-links ".to_owned();
     let kind = LocalKind::Links;
-    path.exists().then_some(Local { kind, path, before, after: String::new(), form: Form::Option })
+    path.exists().then_some(LocalRequirement {
+        kind,
+        path,
+        before,
+        after: String::new(),
+        form: RequirementForm::Option,
+    })
 }
 
 /// The path that a value of an option is: it may be written as a URL.
@@ -205,7 +215,7 @@ pub(super) fn is_folder(text: &str, folder: &Path) -> bool {
 
 /// What a requirement is called: its project, or the last part of a path or an address, which may hold a password
 /// before.
-pub(super) fn title(text: &str, local: Option<&Local>) -> String {
+pub(super) fn title(text: &str, local: Option<&LocalRequirement>) -> String {
     let named = project(text).map(str::to_owned);
     let file = || Some(local?.path.file_name()?.to_string_lossy().into_owned());
     let address = || text.split(['#', '?', ' ']).next().unwrap_or(text).trim_end_matches('/');

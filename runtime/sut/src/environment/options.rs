@@ -2,7 +2,7 @@
 
 /// An option, by its full name; one that is not known here is a word as it was written.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Choice {
+pub(super) struct OptionKind {
     pub option: String,
     pub value: Option<String>,
 }
@@ -38,7 +38,7 @@ pub(super) fn split(line: &str) -> (&str, &str) {
 
 /// # Errors
 /// A quote that does not end.
-pub(super) fn parse(text: &str) -> Result<Vec<Choice>, String> {
+pub(super) fn parse(text: &str) -> Result<Vec<OptionKind>, String> {
     let words = shlex::split(text).ok_or_else(|| format!("a quote in `{text}` does not end"))?;
     let mut choices = Vec::new();
     let mut words = words.into_iter();
@@ -48,7 +48,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<Choice>, String> {
             Some(_) => attached.or_else(|| words.next()),
             None => None,
         };
-        choices.push(Choice { option: option.map_or(word, str::to_owned), value });
+        choices.push(OptionKind { option: option.map_or(word, str::to_owned), value });
     }
     Ok(choices)
 }
@@ -74,7 +74,7 @@ fn recognised(word: &str) -> (Option<&'static str>, Option<String>) {
 }
 
 /// The text of the options but one. Words that belong to no option are left out, as pip does.
-pub(super) fn join_without(choices: &[Choice], option: &str) -> String {
+pub(super) fn join_without(choices: &[OptionKind], option: &str) -> String {
     let mut text = String::new();
     for choice in choices.iter().filter(|c| c.option != option && c.option.starts_with('-')) {
         text.push_str(&choice.option);

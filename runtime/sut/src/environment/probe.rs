@@ -28,13 +28,13 @@ pub(super) struct Probe {
     pub tag: String,
     /// Where it searches for modules.
     pub path: Vec<String>,
-    hooked: Vec<Hook>,
+    hooked: Vec<EditableHook>,
     /// Of pip's configuration the options that decide what is installed: section, name, value.
     pub pip: Vec<(String, String, String)>,
 }
 
 #[derive(Deserialize)]
-struct Hook {
+struct EditableHook {
     package: String,
     url: String,
 }
@@ -45,7 +45,8 @@ impl Probe {
             let path = url.strip_prefix("file://")?;
             Some(percent_decode_str(path).decode_utf8_lossy().into_owned())
         };
-        let hooked = |hook: &Hook| Hooked { package: hook.package.clone(), folder: folder(&hook.url) };
+        let hooked =
+            |hook: &EditableHook| Hooked { package: hook.package.clone(), folder: folder(&hook.url) };
         self.hooked.iter().map(hooked).collect()
     }
 }

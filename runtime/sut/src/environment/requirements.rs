@@ -10,8 +10,8 @@ use std::{
 };
 
 use super::{
-    named::{self, Local},
-    options::{self, Choice},
+    named::{self, LocalRequirement},
+    options::{self, OptionKind},
 };
 use crate::SutError;
 
@@ -20,38 +20,38 @@ use crate::SutError;
 pub(super) struct Requirements {
     /// Where pip runs: paths in requirements are relative to it, wherever the requirement stands.
     pub folder: PathBuf,
-    pub lines: Vec<Line>,
+    pub lines: Vec<RequirementLine>,
     /// Those of the files that are given as constraints.
-    pub constraints: Vec<Line>,
+    pub constraints: Vec<RequirementLine>,
 }
 
 /// A line, or several that `\` joins; without its comment.
 #[derive(Debug)]
-pub(super) struct Line {
-    pub origin: Origin,
+pub(super) struct RequirementLine {
+    pub origin: LineOrigin,
     /// As it was written.
     pub text: String,
     /// With the values of variables; it may hold passwords.
     pub expanded: String,
     /// `None` for a line of options.
     pub name: Option<String>,
-    pub local: Option<Local>,
+    pub local: Option<LocalRequirement>,
 }
 
 /// Where a line stands.
 #[derive(Clone, Debug)]
-pub(super) struct Origin {
+pub(super) struct LineOrigin {
     pub file: PathBuf,
     pub line: usize,
 }
 
-impl fmt::Display for Origin {
+impl fmt::Display for LineOrigin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.file.display(), self.line)
     }
 }
 
-impl Origin {
+impl LineOrigin {
     pub(super) fn error(&self, what: impl fmt::Display, detail: impl Into<String>) -> SutError {
         SutError::Environment { what: format!("{self}: {what}"), detail: detail.into() }
     }
@@ -63,7 +63,7 @@ pub(super) type Variables<'a> = &'a dyn Fn(&str) -> Option<String>;
 impl Requirements {
     /// Reads a file and all that it includes.
     pub(super) fn read(list: &Path, variables: Variables<'_>) -> Result<Self, SutError> {
-        Self::read_as(Role::Requirements, list, list.parent().unwrap_or(Path::new(".")), variables)
+        Self::read_as(FileRole::Requirements, list, list.parent().unwrap_or(Path::new(".")), variables)
     }
 
     /// Reads a file of constraints for a pip that runs in `folder`.
@@ -72,20 +72,25 @@ impl Requirements {
         folder: &Path,
         variables: Variables<'_>,
     ) -> Result<Self, SutError> {
-        Self::read_as(Role::Constraints, list, folder, variables)
+        Self::read_as(FileRole::Constraints, list, folder, variables)
     }
 
-    fn read_as(role: Role, list: &Path, folder: &Path, variables: Variables<'_>) -> Result<Self, SutError> {
+    fn read_as(
+        role: FileRole,
+        list: &Path,
+        folder: &Path,
+        variables: Variables<'_>,
+    ) -> Result<Self, SutError> {
         let found = Self { folder: folder.to_owned(), lines: Vec::new(), constraints: Vec::new() };
-        let mut reader = Reader { found, variables, open: Vec::new() };
+        let mut reader = RequirementsReader { found, variables, open: Vec::new() };
         reader.file(list, role, None)?;
         Ok(reader.found)
     }
 
     /// Requirements that are no user's.
     pub(super) fn built_in(text: &str, folder: &Path) -> Self {
-        let line = |(at, text): (usize, &str)| Line {
-            origin: Origin { file: PathBuf::from("built in"), line: at + 1 },
+        let line = |(at, text): (usize, &str)| RequirementLine {
+            origin: LineOrigin { file: PathBuf::from("built in"), line: at + 1 },
             text: text.to_owned(),
             expanded: text.to_owned(),
             name: Some(named::title(text, None)),
@@ -100,26 +105,26 @@ impl Requirements {
         self.lines.iter().filter_map(|line| line.name.as_deref())
     }
 
-    pub(super) fn all_lines(&self) -> impl Iterator<Item = &Line> {
+    pub(super) fn all_lines(&self) -> impl Iterator<Item = &RequirementLine> {
         self.lines.iter().chain(&self.constraints)
     }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum FileRole {
     Requirements,
     Constraints,
 }
 
-struct Reader<'a> {
+struct RequirementsReader<'a> {
     found: Requirements,
     variables: Variables<'a>,
     /// The files that are being read, each included by the one before.
     open: Vec<PathBuf>,
 }
 
-impl Reader<'_> {
-    fn file(&mut self, file: &Path, role: Role, from: Option<&Origin>) -> Result<(), SutError> {
+impl RequirementsReader<'_> {
+    fn file(&mut self, file: &Path, role: FileRole, from: Option<&LineOrigin>) -> Result<(), SutError> {
         let bytes = fs::read(file).map_err(|e| match (e.kind(), from) {
             (ErrorKind::NotFound, Some(origin)) => origin.error(
                 format!("there is no file {}", file.display()),
@@ -137,20 +142,20 @@ impl Reader<'_> {
         }
         self.open.push(identity);
         for (line, text) in logical_lines(&decode(&bytes)) {
-            self.line(Origin { file: file.to_owned(), line }, text, role)?;
+            self.line(LineOrigin { file: file.to_owned(), line }, text, role)?;
         }
         self.open.pop();
         Ok(())
     }
 
-    fn line(&mut self, origin: Origin, text: String, role: Role) -> Result<(), SutError> {
+    fn line(&mut self, origin: LineOrigin, text: String, role: FileRole) -> Result<(), SutError> {
         let expanded = expand(&text, self.variables);
         let (requirement, option_words) = options::split(&expanded);
         if !requirement.is_empty() {
             let local = named::local(requirement, &self.found.folder, &origin)?;
             let name = Some(named::title(requirement, local.as_ref()));
             let local = local.map(|local| local.followed_by(option_words));
-            self.push(Line { origin, text, expanded, name, local }, role);
+            self.push(RequirementLine { origin, text, expanded, name, local }, role);
             return Ok(());
         }
         let choices = options::parse(option_words).map_err(|why| origin.error(why, "pip cannot read it"))?;
@@ -159,8 +164,8 @@ impl Reader<'_> {
             return self.editable(origin, &editable, &choices, role);
         }
         let included = value("--requirement")
-            .map(|file| (file, Role::Requirements))
-            .or_else(|| value("--constraint").map(|file| (file, Role::Constraints)));
+            .map(|file| (file, FileRole::Requirements))
+            .or_else(|| value("--constraint").map(|file| (file, FileRole::Constraints)));
         if let Some((file, role)) = included
             && let Some(file) = named::path_of(&file)
         {
@@ -171,17 +176,17 @@ impl Reader<'_> {
             .and_then(|links| named::links(&links, &origin, &self.found.folder))
             .map(|links| links.followed_by(&options::join_without(&choices, "--find-links")));
         // What requires is said by requirements, wherever the options stand.
-        self.push(Line { origin, text, expanded, name: None, local }, Role::Requirements);
+        self.push(RequirementLine { origin, text, expanded, name: None, local }, FileRole::Requirements);
         Ok(())
     }
 
     /// What pip would only link to is installed as any other package: programs run without the hooks of links.
     fn editable(
         &mut self,
-        origin: Origin,
+        origin: LineOrigin,
         what: &str,
-        choices: &[Choice],
-        role: Role,
+        choices: &[OptionKind],
+        role: FileRole,
     ) -> Result<(), SutError> {
         let rest = options::join_without(choices, "--editable");
         let shown = if named::is_folder(what, &self.found.folder) && !what.contains('/') {
@@ -193,14 +198,14 @@ impl Reader<'_> {
         let name = Some(named::title(&shown, local.as_ref()));
         let local = local.map(|local| local.followed_by(&rest));
         let text = format!("{shown} {rest}").trim_end().to_owned();
-        self.push(Line { origin, expanded: text.clone(), text, name, local }, role);
+        self.push(RequirementLine { origin, expanded: text.clone(), text, name, local }, role);
         Ok(())
     }
 
-    fn push(&mut self, line: Line, role: Role) {
+    fn push(&mut self, line: RequirementLine, role: FileRole) {
         match role {
-            Role::Requirements => self.found.lines.push(line),
-            Role::Constraints => self.found.constraints.push(line),
+            FileRole::Requirements => self.found.lines.push(line),
+            FileRole::Constraints => self.found.constraints.push(line),
         }
     }
 }
@@ -293,7 +298,7 @@ mod tests {
         Requirements::read(&folder.path().join("requirements.txt"), &variables)
     }
 
-    fn texts(lines: &[Line]) -> Vec<&str> {
+    fn texts(lines: &[RequirementLine]) -> Vec<&str> {
         lines.iter().map(|line| line.text.as_str()).collect()
     }
 

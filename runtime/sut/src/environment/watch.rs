@@ -14,20 +14,20 @@ use crate::SutError;
 const TICK: Duration = Duration::from_secs(1);
 
 /// A command that has ended, and its lines that are not empty.
-pub(super) struct Said {
+pub(super) struct PipSaid {
     pub status: ExitStatus,
     pub stdout: Vec<String>,
     pub stderr: Vec<String>,
 }
 
 #[derive(Clone, Copy)]
-enum Stream {
+enum PipStream {
     Stdout,
     Stderr,
 }
 
 /// Runs a command; `on_work` gets its last line on standard output, at each line and at least once a second.
-pub(super) fn watch(command: &mut Command, on_work: &dyn Fn(&str)) -> Result<Said, SutError> {
+pub(super) fn watch(command: &mut Command, on_work: &dyn Fn(&str)) -> Result<PipSaid, SutError> {
     let fail = || SutError::io(format!("cannot start {}", command.get_program().to_string_lossy()));
     let mut child = {
         let fail = fail();
@@ -35,26 +35,26 @@ pub(super) fn watch(command: &mut Command, on_work: &dyn Fn(&str)) -> Result<Sai
     };
     let fail = || SutError::io("cannot wait for a command");
     let (sender, lines) = channel();
-    read_lines(child.stdout.take(), Stream::Stdout, sender.clone());
-    read_lines(child.stderr.take(), Stream::Stderr, sender);
+    read_lines(child.stdout.take(), PipStream::Stdout, sender.clone());
+    read_lines(child.stderr.take(), PipStream::Stderr, sender);
     let (mut stdout, mut stderr): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     while let Some(line) = next(&lines, &mut child).map_err(fail())? {
         match line {
-            Some((Stream::Stdout, line)) => stdout.push(line),
-            Some((Stream::Stderr, line)) => stderr.push(line),
+            Some((PipStream::Stdout, line)) => stdout.push(line),
+            Some((PipStream::Stderr, line)) => stderr.push(line),
             None => {}
         }
         on_work(stdout.last().map_or("", |line| line.trim()));
     }
-    Ok(Said { status: child.wait().map_err(fail())?, stdout, stderr })
+    Ok(PipSaid { status: child.wait().map_err(fail())?, stdout, stderr })
 }
 
-type Spoken = Option<(Stream, String)>;
+type Spoken = Option<(PipStream, String)>;
 
 /// A line, or none within a tick; `None` at the end. A process that the command has left behind may hold its output
 /// open: that is not waited for.
 fn next(
-    lines: &Receiver<(Stream, String)>,
+    lines: &Receiver<(PipStream, String)>,
     child: &mut std::process::Child,
 ) -> std::io::Result<Option<Spoken>> {
     match lines.recv_timeout(TICK) {
@@ -64,7 +64,11 @@ fn next(
     }
 }
 
-fn read_lines(stream: Option<impl Read + Send + 'static>, which: Stream, sender: Sender<(Stream, String)>) {
+fn read_lines(
+    stream: Option<impl Read + Send + 'static>,
+    which: PipStream,
+    sender: Sender<(PipStream, String)>,
+) {
     let Some(stream) = stream else { return };
     thread::spawn(move || {
         for line in BufReader::new(stream).split(b'\n').map_while(Result::ok) {
