@@ -18,7 +18,9 @@ if pid == 0:
 shown, answered, lines = b"", 0, list(LINES)
 until = time.time() + 60
 while time.time() < until:
-    if not select.select([terminal], [], [], 1)[0]:
+    if not select.select([terminal], [], [], 2)[0]:
+        # An interrupt that came before the debugger waited is noticed at the next key, as in any terminal.
+        os.write(terminal, b"\n")
         continue
     try:
         piece = os.read(terminal, 4096)
