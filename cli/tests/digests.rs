@@ -1,0 +1,97 @@
+//! What the examples give, as digests: a change that is not meant to change it does not.
+//!
+//! Every test compares small campaigns; the whole ones run with
+//! `HRDSL_SOAK=1 cargo test -p hrdsl --test digests`. To renew the digests after a change that is meant to change them, add
+//! `HRDSL_RENEW=1`, and say in the change log what is different.
+
+mod support;
+
+use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use support::{expect_code, hrdsl_in, root, tree};
+
+/// What a part of the results is made of, by its name.
+type Parts = BTreeMap<&'static str, Sha256>;
+
+/// Generates an example's tests, and runs them if there is something to run.
+fn parts(example: &str, runs: bool, count: Option<u32>) -> Parts {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in tree(&root().join("examples").join(example)) {
+        if !name.contains('/') {
+            fs::write(folder.path().join(name), bytes).unwrap();
+        }
+    }
+    let count = count.map_or_else(String::new, |n| format!(" -n {n}"));
+    let mut parts = Parts::new();
+    if runs {
+        let line = format!("sim scenario.hri -o out --exit-zero{count}");
+        expect_code(&hrdsl_in(folder.path(), &line), 0);
+        judged(&folder.path().join("out/results.json"), &mut parts);
+    } else {
+        expect_code(&hrdsl_in(folder.path(), &format!("gen scenario.hri -o out/tests{count}")), 0);
+    }
+    for (name, bytes) in tree(&folder.path().join("out")) {
+        let mut add = |part: &'static str, bytes: &[u8]| {
+            let digest = parts.entry(part).or_default();
+            digest.update(name.as_bytes());
+            digest.update(bytes);
+        };
+        match name.split('/').next() {
+            Some("tests") if !name.contains(".hrdsl-results") => add("tests", &bytes),
+            Some("traces") => add("steps", steps(&bytes)),
+            Some("output") => add("output", &bytes),
+            Some("junit.xml") => add("junit.xml", &bytes),
+            Some("report.html") => add("report.html", &bytes),
+            Some(_) | None => {}
+        }
+    }
+    parts
+}
+
+/// A recording without its first and last line, which say where it comes from and how it ended.
+fn steps(recording: &[u8]) -> &[u8] {
+    let text = recording.strip_suffix(b"\n").unwrap();
+    let from = text.iter().position(|b| *b == b'\n').unwrap();
+    let to = text.iter().rposition(|b| *b == b'\n').unwrap();
+    &text[from..to.max(from)]
+}
+
+fn judged(results: &Path, parts: &mut Parts) {
+    let results: Value = serde_json::from_slice(&fs::read(results).unwrap()).unwrap();
+    let digest = |of: &mut dyn Iterator<Item = String>| Sha256::new_with_prefix(of.collect::<String>());
+    let tests = results["tests"].as_array().unwrap();
+    let test = |t: &Value, what: &str| format!("{} {}\n", t["name"], t[what]);
+    parts.insert("verdicts", digest(&mut tests.iter().map(|t| test(t, "verdicts"))));
+    parts.insert("endings", digest(&mut tests.iter().map(|t| test(t, "ended") + &test(t, "error"))));
+    parts.insert("bins", digest(&mut tests.iter().map(|t| test(t, "bins") + &test(t, "predicted"))));
+    parts.insert("code", digest(&mut tests.iter().map(|t| test(t, "code"))));
+    let goals = results["suites"].as_array().unwrap().iter();
+    parts.insert("goals", digest(&mut goals.map(|s| format!("{} {}\n", s["name"], s["goals"]))));
+}
+
+#[test]
+fn the_examples_give_what_they_gave() {
+    let whole = std::env::var_os("HRDSL_SOAK").is_some();
+    let (size, count) = if whole { ("whole", None) } else { ("small", Some(8)) };
+    let mut found = String::new();
+    for (example, runs) in [("corridor", true), ("handover", true), ("homecare", false)] {
+        for (part, digest) in parts(example, runs, count) {
+            let hex = digest.finalize().iter().fold(String::new(), |hex, byte| format!("{hex}{byte:02x}"));
+            let _ = writeln!(found, "{size} {example} {part} {hex}");
+        }
+    }
+    let path = root().join("cli/tests/digests.txt");
+    let before = fs::read_to_string(&path).unwrap_or_default();
+    let (own, others): (Vec<&str>, Vec<&str>) = before.lines().partition(|l| l.starts_with(size));
+    if std::env::var_os("HRDSL_RENEW").is_some() {
+        let mut lines: Vec<&str> = others.into_iter().chain(found.lines()).collect();
+        lines.sort_unstable();
+        fs::write(&path, lines.join("\n") + "\n").unwrap();
+    } else {
+        let found: Vec<&str> = found.lines().collect();
+        let differs: Vec<&&str> = found.iter().filter(|l| !own.contains(*l)).collect();
+        assert!(differs.is_empty() && own.len() == found.len(), "these differ: {differs:#?}");
+    }
+}
