@@ -54,9 +54,11 @@ enum Command {
     Gen(commands::generate::Args),
     Import(commands::import::Args),
     Inspect(commands::inspect::Args),
+    Judge(commands::judge::Args),
     Man(commands::man::Args),
     New(commands::new::Args),
     Prove(commands::prove::Args),
+    Report(commands::report::Args),
     Sim(commands::sim::Args),
 }
 
@@ -80,9 +82,11 @@ fn main() -> ExitCode {
         Command::Gen(args) => commands::generate::run(&args),
         Command::Import(args) => commands::import::run(&args),
         Command::Inspect(args) => commands::inspect::run(&args),
+        Command::Judge(args) => commands::judge::run(&args),
         Command::Man(args) => commands::man::run(&args, Cli::command()),
         Command::New(args) => commands::new::run(&args),
         Command::Prove(args) => commands::prove::run(&args),
+        Command::Report(args) => commands::report::run(&args),
         Command::Sim(args) => commands::sim::run(&args),
     });
     result

@@ -677,8 +677,8 @@ fn coverage_suites_and_tests() {
     let t = &p.tests[0];
     assert_eq!((t.name.as_str(), t.seed, t.provenance.suite.as_str()), ("small.h.t1", 17, "h"));
     assert_eq!(
-        (t.provenance.method.as_str(), t.provenance.predicts.as_slice()),
-        ("search", &["x.some".to_owned()][..])
+        (t.provenance.method.word(), t.provenance.predicts.as_slice()),
+        ("search", &[hrdsl_ir::coverage::BinName::new("x", "some")][..])
     );
     let args = |b| vec![Value::Bool(b)];
     assert_eq!(t.steps[0], TestStep::Do { event: EventId(2), args: args(true), samples: vec![] });
@@ -687,7 +687,7 @@ fn coverage_suites_and_tests() {
     let events = vec![pattern(1, &[TRUE]), pattern(0, &[])];
     assert_eq!(t.steps[2], TestStep::Await { events, within: 3 * SECOND });
     assert_eq!(t.steps[3], TestStep::Wait { time: SECOND });
-    assert_eq!((p.tests[1].name.as_str(), p.tests[1].provenance.method.as_str()), ("small.t2", "hand"));
+    assert_eq!((p.tests[1].name.as_str(), p.tests[1].provenance.method.word()), ("small.t2", "hand"));
 
     let system = p.system.as_ref().unwrap();
     assert_eq!(system.run, ["python3", "my robot.py"]);

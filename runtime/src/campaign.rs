@@ -10,21 +10,23 @@ use std::{
     time::Duration,
 };
 
-use hrdsl_coverage::Collector;
-use hrdsl_ir::{Program, system::System, test::Test};
-use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_sut::{Answer, Finished, Launch, Needs, Process, Reply, SutError, cell::KeptFiles};
+use hrdsl_ir::{Program, system::System, test::Test, value::seconds};
+use hrdsl_judge::Judge;
+use hrdsl_results::{Judgement, OutputSummary, Ratios, RunEnd, RunMark, TestName, TestResult};
+use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, Needs, Process, Reply, SutError};
 pub use hrdsl_sut::{
     Cells, Hooked, Output, Preparation, ProgramLimits, PythonEnv, StopFlag,
     cell::{Isolation, Supervisor, supervise},
 };
-use hrdsl_trace::{Trace, print, record};
+use hrdsl_trace::{
+    Trace,
+    record::{self, Ending, Header},
+};
 
 use crate::{
     harness::{
         Ended, Fault, Harness, Player, ProgramPlayer, Run, ScriptPlayer, Stage, SutFault, SutFaultKind,
     },
-    results::{self, Failure, OutputSummary, Ratios, RunMark, TestResult, VerdictResult, WitnessStep},
     testgen,
 };
 
@@ -46,7 +48,8 @@ pub struct Campaign<'a> {
     pub limits: ProgramLimits,
     /// Variables that the program gets besides the default ones.
     pub variables: Vec<(OsString, OsString)>,
-    /// The folder in which each test's files are kept, in a folder of the test's [`file_stem`](TestResult::file_stem).
+    /// The folder in which each test's files are kept, in a folder of the test's
+    /// [`file_stem`](TestName::file_stem).
     pub keep: Option<PathBuf>,
     /// Workers; at least one.
     pub jobs: usize,
@@ -61,24 +64,29 @@ pub struct Done<'a> {
     /// JSON Lines.
     pub recording: &'a str,
     pub output: &'a Output,
-    pub kept: Option<&'a KeptFiles>,
+}
+
+/// A finished test, with the code of the system under test that it executed.
+#[derive(Clone, Debug, Default)]
+pub struct FinishedTest {
+    pub result: TestResult,
+    pub executed: Vec<FileCoverage>,
 }
 
 /// What a campaign came to.
 #[derive(Clone, Debug, Default)]
 pub struct CampaignOutcome {
     /// The tests that ended, in the order in which they were given.
-    pub tests: Vec<TestResult>,
+    pub tests: Vec<FinishedTest>,
     pub planned: usize,
     pub interrupted: bool,
 }
 
 /// A test that was run, and what wall time has to do with it.
 struct Attempt {
-    result: TestResult,
+    finished: FinishedTest,
     recording: String,
     output: Output,
-    kept: Option<KeptFiles>,
     fault: Option<SutFaultKind>,
 }
 
@@ -116,14 +124,14 @@ impl Campaign<'_> {
         let system =
             self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
         let next = AtomicUsize::new(0);
-        let results: Mutex<Vec<Option<TestResult>>> = Mutex::new(vec![None; tests.len()]);
+        let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: Attempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
-            let Attempt { result, recording, output, kept, .. } = &attempt;
-            if let Err(why) = on_done(Done { index, result, recording, output, kept: kept.as_ref() }) {
-                attempt.result.break_off(why);
+            let Attempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
+            if let Err(why) = on_done(Done { index, result, recording, output }) {
+                attempt.finished.result.break_off(why);
             }
-            results[index] = Some(attempt.result);
+            results[index] = Some(attempt.finished);
         };
         let again: Mutex<Vec<(usize, Attempt)>> = Mutex::default();
         std::thread::scope(|scope| {
@@ -179,7 +187,7 @@ impl Campaign<'_> {
             Some(SutFaultKind::Interrupted) => first,
             Some(SutFaultKind::WallTime) => second,
             Some(SutFaultKind::Program) | None => {
-                second.result.marks.push(RunMark::DependsOnLoad);
+                second.finished.result.marks.push(RunMark::DependsOnLoad);
                 second
             }
         }
@@ -188,19 +196,18 @@ impl Campaign<'_> {
     /// Runs and judges one test.
     fn run_one(&self, system: &System, test: &Test) -> Attempt {
         let (run, finished) = self.execute(system, test);
-        let header = record::Header {
-            scenario: self.program.name.clone(),
-            test: Some(test.name.clone()),
-            seed: Some(test.seed),
-        };
-        let recording = record::write(self.program, &header, &run.trace);
+        let header =
+            Header { test: Some(test.name.clone()), seed: Some(test.seed), ..Header::of(self.program) };
+        let ending = ending(&run, finished.as_ref());
+        let recording = record::write(self.program, &header, &run.trace, &ending);
+        let judgement = judge(self.program, &run.trace, ending.how);
         let fault = match &run.ended {
             Ended::Fault(Fault::System(fault)) => Some(fault.kind),
             Ended::Fault(Fault::Model(_) | Fault::World(_)) | Ended::Quiet | Ended::Limit => None,
         };
-        let (output, kept) =
-            finished.as_ref().map(|f| (f.output.clone(), f.kept.clone())).unwrap_or_default();
-        Attempt { result: judge(self.program, test, &run, finished), recording, output, kept, fault }
+        let output = finished.as_ref().map(|f| f.output.clone()).unwrap_or_default();
+        let finished = test_result(self.program, test, &run, (ending, judgement), finished);
+        Attempt { finished, recording, output, fault }
     }
 
     fn execute(&self, system: &System, test: &Test) -> (Run, Option<Finished>) {
@@ -236,54 +243,63 @@ impl Campaign<'_> {
             cells: self.cells.clone(),
             limits: self.limits,
             output_kept: OUTPUT_KEPT,
-            keep: self.keep.as_ref().map(|folder| folder.join(results::file_stem(&test.name))),
+            keep: self
+                .keep
+                .as_ref()
+                .map(|folder| folder.join(TestName::from(test.name.as_str()).file_stem())),
             stop: self.stop.clone(),
         }
     }
 }
 
-/// Judges a run: verdicts and coverage, from the trace alone.
-fn judge(program: &Program, test: &Test, run: &Run, finished: Option<Finished>) -> TestResult {
-    let mut checker = Checker::new(program);
-    run.trace.replay(&mut checker);
-    let error = match &run.ended {
-        Ended::Fault(fault) => Some(fault.to_string()),
-        Ended::Quiet | Ended::Limit => None,
-    };
-    let verdicts = checker.verdicts();
-    let verdict = |v: &Verdict| verdict_result(program, &run.trace, v, error.is_some());
-    let (output, others, files) = finished
+/// What is known about a test when its run is over.
+fn test_result(
+    program: &Program,
+    test: &Test,
+    run: &Run,
+    (ending, judgement): (Ending, Judgement),
+    finished: Option<Finished>,
+) -> FinishedTest {
+    let (output, others, executed) = finished
         .map_or_else(Default::default, |f| (summary(&f.output), f.others, f.coverage.unwrap_or_default()));
-    TestResult {
-        name: test.name.clone(),
-        suite: test.provenance.suite.clone(),
-        method: test.provenance.method.clone(),
+    let result = TestResult {
+        name: test.name.as_str().into(),
+        suite: test.provenance.suite.as_str().into(),
+        method: test.provenance.method,
         seed: test.seed,
-        ended: match run.ended {
-            Ended::Quiet => "quiet",
-            Ended::Limit => "limit",
-            Ended::Fault(_) => "error",
-        },
-        duration: results::in_seconds(run.trace.end),
-        verdicts: verdicts.iter().map(verdict).collect(),
-        // What a run that broke off did not do, it might have done.
-        bins: if error.is_some() { Vec::new() } else { bins(program, &run.trace) },
+        ended: ending.how,
+        error: ending.error,
+        marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
+        duration: seconds(run.trace.end),
+        judgement,
         predicted: test.provenance.predicts.clone(),
         because: test.provenance.because.clone(),
-        code: ratios(&files),
+        code: ratios(&executed),
         steps: test.steps.iter().map(|s| testgen::step_text(program, s)).collect(),
-        marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
         output,
-        files,
-        error,
-    }
+    };
+    FinishedTest { result, executed }
 }
 
-/// The cross-product bins that a trace hits.
-fn bins(program: &Program, trace: &Trace) -> Vec<String> {
-    let mut collector = Collector::new(program);
-    trace.replay(&mut collector);
-    collector.finish().cross_names(&program.coverage)
+fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> Judgement {
+    let mut judge = Judge::new(program);
+    trace.replay(&mut judge);
+    judge.finish(ended)
+}
+
+/// How a run ended; that a file of its program could not be kept breaks it off, too.
+fn ending(run: &Run, finished: Option<&Finished>) -> Ending {
+    let kept = finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first());
+    let error = match &run.ended {
+        Ended::Fault(fault) => Some(fault.to_string()),
+        Ended::Quiet | Ended::Limit => kept.map(|f| format!("a file of the program could not be kept: {f}")),
+    };
+    let how = match (&error, &run.ended) {
+        (Some(_), _) | (None, Ended::Fault(_)) => RunEnd::Error,
+        (None, Ended::Quiet) => RunEnd::Quiet,
+        (None, Ended::Limit) => RunEnd::Limit,
+    };
+    Ending { how, error }
 }
 
 fn summary(output: &Output) -> OutputSummary {
@@ -295,7 +311,7 @@ fn summary(output: &Output) -> OutputSummary {
 }
 
 /// Lines and branches of one run over all files.
-fn ratios(files: &[hrdsl_sut::FileCoverage]) -> Ratios {
+fn ratios(files: &[FileCoverage]) -> Ratios {
     let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let mut sum = Ratios::default();
     for file in files {
@@ -305,46 +321,4 @@ fn ratios(files: &[hrdsl_sut::FileCoverage]) -> Ratios {
         sum.branches_total += count(file.branches.len());
     }
     sum
-}
-
-/// A run that broke off can show a violation, but nothing else about a requirement.
-fn verdict_result(program: &Program, trace: &Trace, verdict: &Verdict, broke_off: bool) -> VerdictResult {
-    let monitor = &program.monitors[verdict.monitor];
-    let outcome = match verdict.outcome {
-        Outcome::Fail => "fail",
-        Outcome::Pass | Outcome::NotChecked | Outcome::Open if broke_off => "error",
-        Outcome::Pass => "pass",
-        Outcome::NotChecked => "not_checked",
-        Outcome::Open => "open",
-    };
-    let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());
-    VerdictResult {
-        requirement: monitor.name.clone(),
-        outcome,
-        triggered: verdict.triggered,
-        failures: verdict.failures,
-        failure: failure(program, trace, verdict),
-        worst_margin: verdict.worst_margin.map(|(value, _)| (value, unit)),
-    }
-}
-
-fn failure(program: &Program, trace: &Trace, verdict: &Verdict) -> Option<Failure> {
-    let violation = verdict.first_failure.as_ref()?;
-    let step = |index: &usize| {
-        let step = trace.steps.get(*index)?;
-        let (who, what) = print::who_did_what(program, &step.what);
-        Some(WitnessStep {
-            step: *index,
-            time: results::in_seconds(step.time),
-            text: format!("{who} {what}"),
-        })
-    };
-    let mut witness: Vec<WitnessStep> = violation.witness.iter().filter_map(step).collect();
-    witness.sort_by_key(|w| w.step);
-    Some(Failure {
-        time: results::in_seconds(violation.time),
-        triggered_at: results::in_seconds(violation.trigger_time),
-        deadline: violation.step.is_none(),
-        witness,
-    })
 }

@@ -21,7 +21,8 @@ fn pairwise(example: &str, bins: usize) -> (usize, usize) {
     let whole = generate_with(&program, suite, options).unwrap();
     let options = Options { minimise: Some(true), count: Some(1000), ..options };
     let least = generate_with(&program, suite, options).unwrap();
-    let mut predicted: Vec<&String> = least.tests.iter().flat_map(|t| &t.provenance.predicts).collect();
+    let mut predicted: Vec<&hrdsl_ir::coverage::BinName> =
+        least.tests.iter().flat_map(|t| &t.provenance.predicts).collect();
     predicted.sort();
     predicted.dedup();
     assert_eq!(predicted.len(), bins, "{predicted:?}");

@@ -10,8 +10,10 @@ use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
     harness::{Detail, Inspection},
     prove::Settings,
-    report::{End, Picked, ending, explain_text, reasoning},
-    testgen::{Explanation, Generated, GoalReport, GoalStatus, ModelCoverage, Options, generate_with, write},
+    reasoning::{End, Picked, ending, reasoning},
+    report::explain_text,
+    results::{Explanation, GoalReport, GoalStatus, ModelCoverage},
+    testgen::{Generated, Options, generate_with, write},
 };
 use hrdsl_source::printable;
 use serde::Serialize;
@@ -165,7 +167,7 @@ impl Made {
         };
         Self {
             suite: generated.suite.clone(),
-            method: generated.method,
+            method: generated.method.word(),
             file: path.display().to_string(),
             abstract_tests: generated.abstract_tests,
             tests: generated.tests.iter().enumerate().map(test).collect(),
@@ -264,7 +266,7 @@ pub fn describe(generated: &Generated) -> String {
     let mut out = format!(
         "{} (by {}): {} abstract tests, {} concrete\n",
         generated.suite,
-        generated.method,
+        generated.method.word(),
         generated.abstract_tests,
         generated.tests.len()
     );

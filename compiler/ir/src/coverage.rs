@@ -1,5 +1,7 @@
 //! Coverage points over a trace, and their cross products.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{EventPattern, Span};
@@ -55,6 +57,75 @@ pub struct CrossBin {
     pub name: String,
     pub when: Condition,
     pub origin: Span,
+}
+
+/// The name of a bin of a point or cross, as it is printed, stored and read back: `legs.four`, `human_robot.4 legs, ready`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct BinName {
+    text: String,
+    /// Where the dot is.
+    dot: usize,
+}
+
+impl BinName {
+    /// The name of a bin of this owner. The owner is an identifier, so that the first dot ends it; a line break or another
+    /// control character in the bin's name becomes a space, so that a name is one line.
+    #[must_use]
+    pub fn new(owner: &str, bin: &str) -> Self {
+        Self { text: format!("{owner}.{}", bin.replace(char::is_control, " ")), dot: owner.len() }
+    }
+
+    /// Reads what [`new`](Self::new) has made; `None` if it has not that form.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let (owner, bin) =
+            text.split_once('.').filter(|(owner, bin)| !owner.is_empty() && !bin.is_empty())?;
+        Some(Self::new(owner, bin))
+    }
+
+    /// The point or cross that it belongs to.
+    #[must_use]
+    pub fn owner(&self) -> &str {
+        &self.text[..self.dot]
+    }
+
+    /// Its name there.
+    #[must_use]
+    pub fn bin(&self) -> &str {
+        &self.text[self.dot + 1..]
+    }
+
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+}
+
+impl fmt::Display for BinName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.text)
+    }
+}
+
+impl PartialEq<&str> for BinName {
+    fn eq(&self, other: &&str) -> bool {
+        self.text == *other
+    }
+}
+
+impl From<BinName> for String {
+    fn from(name: BinName) -> Self {
+        name.text
+    }
+}
+
+impl TryFrom<String> for BinName {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        Self::parse(&text).ok_or_else(|| format!("`{text}` is not the name of a bin, as `cross.bin`"))
+    }
 }
 
 /// A formula over points' bins.

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
 pub use expr::Expr;
-pub use hrdsl_source::{Enumeration, Span, Symbol, is_steering};
+pub use hrdsl_source::{Enumeration, Span, Symbol};
 pub use list::{List, Text};
 pub use value::{ListOf, Nanos, Type, Unit, Value};
 

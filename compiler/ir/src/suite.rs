@@ -125,6 +125,51 @@ pub enum ModelGoal {
     Paths,
 }
 
+/// What the items of agents' programs are tallied by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ItemKind {
+    Selected,
+    Completed,
+    Failed,
+    ContextTrue,
+    ContextFalse,
+    Applicable,
+    Message,
+    Edge,
+    Path,
+}
+
+impl ItemKind {
+    pub const ALL: [ItemKind; 9] = [
+        ItemKind::Selected,
+        ItemKind::Completed,
+        ItemKind::Failed,
+        ItemKind::ContextTrue,
+        ItemKind::ContextFalse,
+        ItemKind::Applicable,
+        ItemKind::Message,
+        ItemKind::Edge,
+        ItemKind::Path,
+    ];
+
+    /// As the heading of a column.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            ItemKind::Selected => "plans selected",
+            ItemKind::Completed => "completed",
+            ItemKind::Failed => "failed",
+            ItemKind::ContextTrue => "contexts true",
+            ItemKind::ContextFalse => "contexts false",
+            ItemKind::Applicable => "applicable sets",
+            ItemKind::Message => "messages",
+            ItemKind::Edge => "edges",
+            ItemKind::Path => "paths",
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchGoal {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{EventId, EventPattern, Nanos, Span, Value};
+use crate::{EventId, EventPattern, Nanos, Span, Value, coverage::BinName};
 
 /// A test is a value: everything that a run of it depends on, but the scenario, is in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,12 +19,48 @@ pub struct Test {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     pub suite: String,
-    /// `agents`, `search`, `random`, `hand`
-    pub method: String,
+    pub method: TestMethod,
     /// One line for each fact: the beliefs chosen, the goal and its witness.
     pub because: Vec<String>,
-    /// The cross-product bins that the model predicts, as `cross.bin`.
-    pub predicts: Vec<String>,
+    /// The cross-product bins that the model predicts.
+    pub predicts: Vec<BinName>,
+}
+
+/// How a test was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestMethod {
+    /// By running agents.
+    Agents,
+    /// From a witness of a search.
+    Search,
+    /// At random.
+    Random,
+    /// By a person.
+    #[default]
+    Hand,
+}
+
+impl TestMethod {
+    pub const ALL: [TestMethod; 4] =
+        [TestMethod::Agents, TestMethod::Search, TestMethod::Random, TestMethod::Hand];
+
+    /// The word for it in the language and in results.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            TestMethod::Agents => "agents",
+            TestMethod::Search => "search",
+            TestMethod::Random => "random",
+            TestMethod::Hand => "hand",
+        }
+    }
+
+    /// The method that a word stands for.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.word() == word)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

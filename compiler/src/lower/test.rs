@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     EventId,
-    test::{Provenance, Test, TestStep},
+    coverage::BinName,
+    test::{Provenance, Test, TestMethod, TestStep},
     value::nanos,
 };
 use hrdsl_model as model;
@@ -19,9 +20,10 @@ pub(crate) fn test(t: &model::Test, scenario: &str) -> Test {
         seed: t.seed,
         provenance: Provenance {
             suite: suite.to_owned(),
-            method: t.method.clone(),
+            // The checker knows these words and this form alone.
+            method: TestMethod::of_word(&t.method).unwrap_or_default(),
             because: t.because.clone(),
-            predicts: t.predicts.clone(),
+            predicts: t.predicts.iter().filter_map(|name| BinName::parse(name)).collect(),
         },
         steps: t.steps.iter().map(step).collect(),
         origin: t.span,

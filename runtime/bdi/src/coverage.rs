@@ -12,7 +12,7 @@ mod universe;
 mod why;
 
 pub use text::{name, trigger};
-pub use universe::{Applicable, Item, Kind, items, sites, universe};
+pub use universe::{Applicable, Item, items, sites, universe};
 pub use why::{Team, times};
 
 #[cfg(test)]

@@ -2,12 +2,10 @@
 
 use hrdsl_ir::{
     EventId, Program, Value,
-    coverage::{self as ir, PointId},
+    coverage::{self as ir, BinName, PointId},
 };
 use hrdsl_trace::{Observer, Step, What};
 use serde::{Deserialize, Serialize};
-
-use crate::name;
 
 /// What one test covers.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,13 +19,13 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// The names of the cross-product bins hit, in source order, as [`name::bin`] prints them.
+    /// The names of the cross-product bins hit, in source order.
     #[must_use]
-    pub fn cross_names(&self, declared: &ir::Coverage) -> Vec<String> {
+    pub fn cross_names(&self, declared: &ir::Coverage) -> Vec<BinName> {
         let mut names = Vec::new();
         for (cross, hits) in declared.crosses.iter().zip(&self.crosses) {
             let bins = hits.iter().filter_map(|bin| cross.bins.get(usize::from(*bin)));
-            names.extend(bins.map(|bin| name::bin(&cross.name, &bin.name)));
+            names.extend(bins.map(|bin| BinName::new(&cross.name, &bin.name)));
         }
         names
     }

@@ -1,10 +1,10 @@
 //! The coverage of a set of tests; sums and minima only, so that no order of the tests can be seen in it.
 
-use hrdsl_ir::coverage as ir;
+use hrdsl_ir::coverage::{self as ir, BinName};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{Coverage, name};
+use crate::Coverage;
 
 /// How many tests hit a bin, and the name of the first of them in alphabetic order.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,8 +31,7 @@ pub struct Mismatch;
 /// One bin in a table for people.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
-    /// As [`name::bin`] prints it.
-    pub name: String,
+    pub name: BinName,
     /// It is a cross-product bin, not a point's.
     pub cross: bool,
     pub count: Count,
@@ -105,7 +104,7 @@ impl Merge {
         for (point, counts) in declared.points.iter().zip(&self.points) {
             for (bin, count) in point.bins.iter().zip(counts) {
                 rows.push(Row {
-                    name: name::bin(&point.name, &bin.name),
+                    name: BinName::new(&point.name, &bin.name),
                     cross: false,
                     count: count.clone(),
                 });
@@ -113,7 +112,11 @@ impl Merge {
         }
         for (cross, counts) in declared.crosses.iter().zip(&self.crosses) {
             for (bin, count) in cross.bins.iter().zip(counts) {
-                rows.push(Row { name: name::bin(&cross.name, &bin.name), cross: true, count: count.clone() });
+                rows.push(Row {
+                    name: BinName::new(&cross.name, &bin.name),
+                    cross: true,
+                    count: count.clone(),
+                });
             }
         }
         rows

@@ -2,14 +2,14 @@
 
 use hrdsl_ir::{
     ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Symbol, Value,
-    coverage::{self as ir, Bin, Condition, Cross, CrossBin, Point, PointId},
+    coverage::{self as ir, Bin, BinName, Condition, Cross, CrossBin, Point, PointId},
     monitor::Assumption,
     world::SignalId,
 };
 use hrdsl_trace::{Observer, Step, Trace, What};
 use proptest::prelude::*;
 
-use crate::{Collector, Coverage, Merge, Mismatch, assume::Assumptions, hits_from_numbers, name};
+use crate::{Collector, Coverage, Merge, Mismatch, assume::Assumptions, hits_from_numbers};
 
 const ASK: u16 = 0;
 const DECIDED: u16 = 1;
@@ -154,11 +154,11 @@ fn foreign_coverage_is_refused_whole() {
 
 #[test]
 fn names_of_bins_are_stable() {
-    assert_eq!(name::bin("legs", "four"), "legs.four");
-    assert_eq!(name::bin("legs", "4 legs, \"ready\""), "legs.4 legs, \"ready\"");
-    assert_eq!(name::bin("c", "a\nb\tc"), "c.a b c");
+    assert_eq!(BinName::new("legs", "four").as_str(), "legs.four");
+    assert_eq!(BinName::new("legs", "4 legs, \"ready\"").as_str(), "legs.4 legs, \"ready\"");
+    assert_eq!(BinName::new("c", "a\nb\tc").as_str(), "c.a b c");
     for bad in ["legs", "legs.", ".four", ""] {
-        assert_eq!(name::split(bad), None, "{bad}");
+        assert_eq!(BinName::parse(bad), None, "{bad}");
     }
 }
 
@@ -232,9 +232,10 @@ proptest! {
 
     #[test]
     fn a_bins_name_can_be_read_back(owner in "[a-z_][a-z_0-9]{0,8}", bin in "[ -~äλ]{1,12}") {
-        let name = name::bin(&owner, &bin);
-        prop_assert!(!name.contains('\n'));
-        prop_assert_eq!(name::split(&name), Some((owner.as_str(), bin.as_str())));
+        let name = BinName::new(&owner, &bin);
+        prop_assert!(!name.as_str().contains('\n'));
+        prop_assert_eq!((name.owner(), name.bin()), (owner.as_str(), bin.as_str()));
+        prop_assert_eq!(BinName::parse(name.as_str()), Some(name));
     }
 
     /// Against all windows of the whole list.

@@ -19,7 +19,7 @@ use hrdsl_ir::{EventPattern, Nanos, Program, Value, monitor::On, world::SignalId
 use hrdsl_trace::{Observer, Step, What};
 
 use machine::{Machine, Moment};
-pub use verdict::{Outcome, Verdict, Violation};
+pub use verdict::{Outcome, SeenStep, Verdict, Violation};
 
 /// Runs all monitors of a program over one trace.
 #[derive(Clone, Debug)]
@@ -123,7 +123,7 @@ impl Observer for Checker {
                 }
             }
             What::Sample { signal, value } => {
-                self.signals.set(*signal, Reading { value: *value, step: index });
+                self.signals.set(*signal, Reading { value: *value, step: index, time: step.time });
                 for &reader in self.by_signal.get(usize::from(signal.0)).into_iter().flatten() {
                     self.sampled[reader] = Some(at);
                 }
@@ -152,11 +152,28 @@ pub(crate) struct Reading {
     pub value: Value,
     /// The step of the trace that brought it.
     pub step: usize,
+    pub time: Nanos,
+}
+
+impl Reading {
+    /// The step that brought it.
+    pub fn seen(self, signal: SignalId) -> SeenStep {
+        let what = What::Sample { signal, value: self.value };
+        SeenStep { index: self.step, step: Step { time: self.time, what } }
+    }
 }
 
 impl Latest {
     pub fn get(&self, signal: SignalId) -> Option<Reading> {
         self.0.get(usize::from(signal.0)).copied().flatten()
+    }
+
+    /// The sample that is this step of the trace, if it is the latest of its signal.
+    pub fn of_step(&self, index: usize) -> Option<SeenStep> {
+        let of =
+            |(signal, reading): (u16, &Option<Reading>)| Some((signal, reading.filter(|r| r.step == index)?));
+        let (signal, reading) = (0u16..).zip(&self.0).find_map(of)?;
+        Some(reading.seen(SignalId(signal)))
     }
 
     fn set(&mut self, signal: SignalId, reading: Reading) {

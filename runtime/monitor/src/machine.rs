@@ -5,13 +5,23 @@ use hrdsl_ir::{
     monitor::{Edge, Effect, Monitor, On},
 };
 
-use crate::{Latest, Outcome, Verdict, Violation};
+use hrdsl_trace::{Step, What};
+
+use crate::{Latest, Outcome, SeenStep, Verdict, Violation};
 
 /// When something happened, and by which step of the trace; a deadline has none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub time: Nanos,
     pub step: Option<usize>,
+}
+
+/// What is due since a trigger.
+#[derive(Clone, Debug)]
+struct Obligation {
+    time: Nanos,
+    /// The step that triggered it; a deadline has none.
+    step: Option<SeenStep>,
 }
 
 /// A monitor with its state, clock and counters.
@@ -31,7 +41,7 @@ pub(crate) struct Machine {
     /// The time of the latest deadline, and how many fired at that very time.
     burst: (Nanos, usize),
     /// The trigger that has been neither discharged nor left by a failure.
-    obligation: Option<Moment>,
+    obligation: Option<Obligation>,
     triggered: u32,
     discharged: u32,
     failures: u32,
@@ -126,7 +136,7 @@ impl Machine {
         let complete = || self.monitor.signals.iter().all(|s| signals.get(*s).is_some());
         if self.watches && self.triggered == 0 && complete() {
             self.triggered = 1;
-            self.obligation = Some(at);
+            self.obligation = Some(obligation(Cause::Sample, at, signals));
         }
         self.react(Cause::Sample, at, signals);
     }
@@ -139,11 +149,11 @@ impl Machine {
         };
         let edges = self.leaving.get(self.state).map_or(&[][..], Vec::as_slice);
         if let Some(&edge) = edges.iter().find(|&&edge| enabled(&self.monitor.edges[edge])) {
-            self.take(edge, at, signals);
+            self.take(edge, cause, at, signals);
         }
     }
 
-    fn take(&mut self, edge: usize, at: Moment, signals: &Latest) {
+    fn take(&mut self, edge: usize, cause: Cause<'_>, at: Moment, signals: &Latest) {
         let to = usize::from(self.monitor.edges[edge].to.0);
         let moves = to != self.state;
         let has = |effect| self.monitor.edges[edge].effects.contains(&effect);
@@ -156,14 +166,14 @@ impl Machine {
                     // A further trigger of an obligation whose time goes on joins it: the first stays the witness.
                     let joins = !moves && !resets && !fails && self.obligation.is_some();
                     if !joins {
-                        self.obligation = Some(at);
+                        self.obligation = Some(obligation(cause, at, signals));
                     }
                 }
                 Effect::Discharge => {
                     self.discharged = self.discharged.saturating_add(1);
                     self.obligation = None;
                 }
-                Effect::Fail => self.fail(at, signals),
+                Effect::Fail => self.fail(cause, at, signals),
             }
         }
         if moves {
@@ -184,16 +194,17 @@ impl Machine {
         self.due = deadline.map(|d| self.zero.saturating_add(d).max(now));
     }
 
-    fn fail(&mut self, at: Moment, signals: &Latest) {
+    fn fail(&mut self, cause: Cause<'_>, at: Moment, signals: &Latest) {
         self.failures = self.failures.saturating_add(1);
         if self.first_failure.is_some() {
             return;
         }
-        let trigger = self.obligation.unwrap_or(at);
+        let here = obligation(cause, at, signals);
+        let trigger = self.obligation.clone().unwrap_or_else(|| here.clone());
         let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r)));
-        let mut witness: Vec<usize> = Vec::new();
-        for step in trigger.step.into_iter().chain(at.step).chain(read.clone().map(|(_, r)| r.step)) {
-            if !witness.contains(&step) {
+        let mut witness: Vec<SeenStep> = Vec::new();
+        for step in trigger.step.into_iter().chain(here.step).chain(read.clone().map(|(s, r)| r.seen(s))) {
+            if witness.iter().all(|known| known.index != step.index) {
                 witness.push(step);
             }
         }
@@ -232,7 +243,7 @@ impl Machine {
         } else {
             Outcome::Pass
         };
-        let since = self.obligation.map_or(self.entered, |trigger| trigger.time);
+        let since = self.obligation.as_ref().map_or(self.entered, |trigger| trigger.time);
         Verdict {
             monitor: index,
             outcome,
@@ -244,4 +255,17 @@ impl Machine {
             open_since: pending.then_some(since),
         }
     }
+}
+
+/// What is due from a moment on, with the step that it is due to.
+fn obligation(cause: Cause<'_>, at: Moment, signals: &Latest) -> Obligation {
+    let step = at.step.and_then(|index| match cause {
+        Cause::Event(event, args) => {
+            let what = What::Event { event, args: args.to_vec() };
+            Some(SeenStep { index, step: Step { time: at.time, what } })
+        }
+        Cause::Sample => signals.of_step(index),
+        Cause::Deadline => None,
+    });
+    Obligation { time: at.time, step }
 }

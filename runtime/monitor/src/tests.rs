@@ -36,6 +36,10 @@ fn program(monitors: Vec<Monitor>) -> Program {
     }
 }
 
+fn indices(witness: &[SeenStep]) -> Vec<usize> {
+    witness.iter().map(|seen| seen.index).collect()
+}
+
 fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<Edge>) -> Monitor {
     let state =
         |&(pending, deadline): &(bool, Option<Nanos>)| State { name: String::new(), pending, deadline };
@@ -102,7 +106,7 @@ fn a_missed_deadline_is_a_violation_at_its_own_time() {
     let verdict = check(response(), vec![happens(5, 0), happens(7, 0), happens(90, 2)], 100);
     let violation = verdict.first_failure.unwrap();
     assert_eq!((violation.time, violation.step, violation.trigger_time), (15, None, 5));
-    assert_eq!(violation.witness, [0]);
+    assert_eq!(indices(&violation.witness), [0]);
     assert_eq!((verdict.triggered, verdict.failures, verdict.open_since), (2, 1, None));
 }
 
@@ -186,7 +190,7 @@ fn a_violation_shows_the_samples_it_rests_on() {
     let verdict = check(never_close(), steps, 10);
     let violation = verdict.first_failure.unwrap();
     assert_eq!((violation.time, violation.step, violation.trigger_time), (4, Some(4), 4));
-    assert_eq!(violation.witness, [4, 3]);
+    assert_eq!(indices(&violation.witness), [4, 3]);
     assert_eq!(violation.values, [(SignalId(0), Value::Float(0.01))]);
     assert_eq!(verdict.worst_margin, Some((0.01 - 0.05, 4)));
     assert_eq!(verdict.triggered, 3);
@@ -251,7 +255,7 @@ fn an_obligation_ends_when_it_is_met_or_lost() {
         vec![edge(0, 0, on(0), &[Trigger]), edge(0, 0, on(1), &[Discharge]), edge(0, 0, on(2), &[Fail])];
     let steps = [(1, 0), (2, 0), (3, 1), (4, 0), (5, 0), (6, 2)].map(|(t, e)| happens(t, e)).to_vec();
     let violation = check(monitor(&[(false, None)], edges), steps, 10).first_failure.unwrap();
-    assert_eq!((violation.trigger_time, violation.witness), (4, vec![3, 5]));
+    assert_eq!((violation.trigger_time, indices(&violation.witness)), (4, vec![3, 5]));
     // What is pending after a violation is not what was violated.
     let edges = vec![edge(0, 1, on(0), &[Trigger]), edge(1, 2, on(2), &[Fail])];
     let states = [(false, None), (true, None), (true, None)];
@@ -304,12 +308,4 @@ fn bad_input_is_borne() {
     checker.end(100);
     let verdict = checker.verdicts().remove(0);
     assert_eq!((verdict.outcome, verdict.triggered), (Outcome::Pass, 1));
-}
-
-#[test]
-fn a_verdict_survives_json() {
-    let steps = vec![reads(0, 0, 0.01), happens(4, 0)];
-    let verdict = check(never_close(), steps, 10);
-    let text = serde_json::to_string(&verdict).unwrap();
-    assert_eq!(serde_json::from_str::<Verdict>(&text).unwrap(), verdict);
 }

@@ -3,11 +3,10 @@
 use std::fmt;
 
 use hrdsl_ir::{Nanos, Value, world::SignalId};
-use serde::{Deserialize, Serialize};
+use hrdsl_trace::Step;
 
 /// The judgement on one requirement in one trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Outcome {
     /// It was triggered, and held.
     Pass,
@@ -31,7 +30,7 @@ impl fmt::Display for Outcome {
 }
 
 /// One monitor's outcome with the figures and steps that support it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// Index into [`Program::monitors`](hrdsl_ir::Program::monitors).
     pub monitor: usize,
@@ -48,16 +47,23 @@ pub struct Verdict {
 }
 
 /// The first violation of a requirement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
     pub time: Nanos,
     /// The step that violates; `None`: a deadline did.
     pub step: Option<usize>,
     /// When the violated obligation was made; `time` if there was none.
     pub trigger_time: Nanos,
-    /// Indices of the trace's steps: the trigger, the violating step, then the latest sample of each signal of the
-    /// monitor; each index once.
-    pub witness: Vec<usize>,
+    /// The trigger, the violating step, then the latest sample of each signal of the monitor; each step once.
+    pub witness: Vec<SeenStep>,
     /// The values of the monitor's signals at that time, so far as they had any.
     pub values: Vec<(SignalId, Value)>,
+}
+
+/// A step of the trace, which need not be kept for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenStep {
+    /// Its place in the trace, from 0.
+    pub index: usize,
+    pub step: Step,
 }

@@ -253,7 +253,10 @@ proptest! {
     fn the_first_trigger_is_the_witness(trace in traces(), within in 0i64..15) {
         if let Some(violation) = judge_one(causes(Some(within)), &trace).first_failure {
             prop_assert_eq!(violation.trigger_time + within, violation.time);
-            let trigger = &trace.steps[violation.witness[0]];
+            let trigger = &trace.steps[violation.witness[0].index];
+            for seen in &violation.witness {
+                prop_assert_eq!(&seen.step, &trace.steps[seen.index], "what is shown is what was there");
+            }
             prop_assert_eq!(trigger.time, violation.trigger_time);
             prop_assert_eq!(&trigger.what, &What::Event { event: EventId(E), args: Vec::new() });
         }

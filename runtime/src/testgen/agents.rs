@@ -12,12 +12,13 @@ use hrdsl_ir::{
     bdi::AgentId,
     suite::{Explore, Method, PlayerRef, Suite},
 };
+use hrdsl_results::ModelCoverage;
 use rayon::prelude::*;
 
 use super::{
     AbstractTest, Found, Harvest, Origin, concrete, extract,
     goals::{Goals, Reached, agents},
-    model::{self, ModelCoverage},
+    model,
 };
 use crate::harness::{Detail, Ended, How, ModelRun, model_run};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::{Program, ta::LocationId};
+use hrdsl_ir::{Program, coverage::BinName, ta::LocationId};
 use hrdsl_ta::Witness;
 
 use crate::prove;
@@ -15,8 +15,7 @@ pub struct Seen {
     edges: BTreeSet<(usize, usize)>,
     /// Automaton and two edges that it took one after the other.
     pairs: BTreeSet<(usize, usize, usize)>,
-    /// Names of bins, as `cross.bin`.
-    bins: Vec<String>,
+    bins: Vec<BinName>,
     violated: Vec<bool>,
     triggered: Vec<bool>,
 }
@@ -27,7 +26,7 @@ pub enum Shown {
     Location(usize, LocationId),
     Edge(usize, usize),
     Pair(usize, usize, usize),
-    Bin(String),
+    Bin(BinName),
     Violation(usize),
     Trigger(usize),
     /// Only the search knows.
@@ -37,7 +36,7 @@ pub enum Shown {
 impl Seen {
     /// `initial`: where the automata start, in the network's order.
     #[must_use]
-    pub fn of(program: &Program, initial: &[LocationId], witness: &Witness, bins: Vec<String>) -> Self {
+    pub fn of(program: &Program, initial: &[LocationId], witness: &Witness, bins: Vec<BinName>) -> Self {
         let mut seen = Self {
             locations: initial.iter().copied().enumerate().collect(),
             edges: BTreeSet::new(),

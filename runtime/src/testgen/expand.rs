@@ -2,10 +2,11 @@
 
 use hrdsl_ir::{
     Program,
-    coverage::{Condition, Cross},
+    coverage::{BinName, Condition, Cross},
     suite::SearchGoal,
     ta::{Ask, Automaton, AutomatonId, LocationId, Network},
 };
+use hrdsl_results::GoalName;
 use hrdsl_ta::{Counter, Goal, GoalKind, StateFormula};
 
 use super::{covers::Shown, flow};
@@ -13,7 +14,7 @@ use crate::prove;
 
 /// A goal with its name for people. It is reached if one of the ways to it is.
 pub struct Named {
-    pub name: String,
+    pub name: GoalName,
     pub ways: Vec<Goal>,
     /// Each with the way of the same place.
     pub shown: Vec<Shown>,
@@ -22,8 +23,8 @@ pub struct Named {
 }
 
 impl Named {
-    pub(super) fn one(name: String, what: GoalKind, settled: bool, shown: Shown) -> Self {
-        Self { name, ways: vec![Goal { what, settled }], shown: vec![shown], monitor: None }
+    pub(super) fn one(name: impl Into<GoalName>, what: GoalKind, settled: bool, shown: Shown) -> Self {
+        Self { name: name.into(), ways: vec![Goal { what, settled }], shown: vec![shown], monitor: None }
     }
 }
 
@@ -71,7 +72,7 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<Named> {
 fn requirement(program: &Program, monitor: u16, what: &str, shown: fn(usize) -> Shown) -> Vec<Named> {
     let at = usize::from(monitor);
     let Some(requirement) = program.monitors.get(at) else { return Vec::new() };
-    let name = format!("{what} of {}", requirement.name);
+    let name = GoalName::from(format!("{what} of {}", requirement.name));
     vec![Named { name, ways: Vec::new(), shown: vec![shown(at)], monitor: Some(at) }]
 }
 
@@ -136,12 +137,6 @@ fn final_target(automaton: &Automaton, mut to: LocationId) -> LocationId {
 
 // ── bins ──
 
-/// What the goal of a bin is called, by the bin's name.
-#[must_use]
-pub fn bin_goal(bin: &str) -> String {
-    format!("bin {bin}")
-}
-
 /// A bin holds where its condition does and none of the cross's `ignore`s.
 fn bins(program: &Program, cross: &Cross) -> Vec<Named> {
     let ignored = cross.ignore.iter().map(|c| StateFormula::Not(Box::new(formula(program, c))));
@@ -149,8 +144,13 @@ fn bins(program: &Program, cross: &Cross) -> Vec<Named> {
     let named = cross.bins.iter().map(|bin| {
         let mut all = vec![formula(program, &bin.when)];
         all.extend(ignored.iter().cloned());
-        let name = hrdsl_coverage::name::bin(&cross.name, &bin.name);
-        Named::one(bin_goal(&name), GoalKind::Condition(StateFormula::And(all)), true, Shown::Bin(name))
+        let name = BinName::new(&cross.name, &bin.name);
+        Named::one(
+            GoalName::of_bin(&name),
+            GoalKind::Condition(StateFormula::And(all)),
+            true,
+            Shown::Bin(name),
+        )
     });
     named.collect()
 }

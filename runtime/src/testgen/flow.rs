@@ -36,7 +36,8 @@ pub fn pairs(index: usize, automaton: &Automaton) -> Vec<Named> {
                     automaton.name,
                     edge_name(automaton, *i, *first),
                     edge_name(automaton, *j, *second)
-                ),
+                )
+                .into(),
                 ways: firsts.iter().map(way).collect(),
                 shown: firsts.iter().map(|f| Shown::Pair(index, *f, *second)).collect(),
                 monitor: None,

@@ -10,10 +10,12 @@ use hrdsl_coverage::Coverage;
 use hrdsl_ir::{
     Program,
     bdi::{Agent, AgentId},
+    coverage::BinName,
     suite::{ModelGoal, PlayerRef},
 };
+use hrdsl_results::GoalName;
 
-use super::{bins, expand::bin_goal};
+use super::bins;
 
 /// Something that a suite is to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +28,7 @@ pub enum Goal {
 /// The goals of a suite, each once, in the order in which the suite asks for them.
 pub struct Goals {
     pub all: Vec<Goal>,
-    pub names: Vec<String>,
+    pub names: Vec<GoalName>,
 }
 
 /// The goals that were reached, by their places.
@@ -88,13 +90,13 @@ impl Goals {
     }
 }
 
-fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goal, String)> {
+fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goal, GoalName)> {
     match goal {
         ModelGoal::Bins { cross } => {
             let Some(declared) = program.coverage.crosses.get(usize::from(cross)) else { return Vec::new() };
             let bins = (0u16..).zip(&declared.bins);
             let named = bins.map(|(i, bin)| {
-                (Goal::Bin(cross, i), bin_goal(&hrdsl_coverage::name::bin(&declared.name, &bin.name)))
+                (Goal::Bin(cross, i), GoalName::of_bin(&BinName::new(&declared.name, &bin.name)))
             });
             named.collect()
         }
@@ -104,8 +106,9 @@ fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goa
         | ModelGoal::Messages
         | ModelGoal::Paths => {
             let of = |(id, agent): (AgentId, &Agent)| {
-                let named =
-                    items(agent, goal).into_iter().map(|i| (Goal::Item(id, i), name(program, agent, i)));
+                let named = items(agent, goal)
+                    .into_iter()
+                    .map(|i| (Goal::Item(id, i), name(program, agent, i).into()));
                 named.collect::<Vec<_>>()
             };
             agents(program, players).into_iter().flat_map(of).collect()

@@ -4,7 +4,7 @@
 //!
 //! 1. [`agents`], [`search`] and [`random`] make abstract tests: each the stimuli of the environment's actors, and the
 //!    awaits and waits between them, with where it came from and the bins that the model predicts;
-//! 2. equal abstract tests become one, and [`mod@minimise`] keeps those that are needed for the suite's [`goals`];
+//! 2. [equal](distinct) abstract tests become one, and [`mod@minimise`] keeps those that are needed for the suite's [`goals`];
 //! 3. [`concrete`] draws the second tier's values: test number n of a suite has seed n (Section "Experimental setup");
 //! 4. [`model`] says what of the agents' programs was reached, what each test is for, and why goals stayed uncovered;
 //! 5. [`write`] prints tests in the language.
@@ -13,6 +13,7 @@ mod agents;
 mod bins;
 mod concrete;
 mod covers;
+mod distinct;
 mod expand;
 mod extract;
 mod flow;
@@ -23,20 +24,18 @@ mod random;
 mod search;
 mod write;
 
-use crate::prove::Settings;
 use hrdsl_ir::{
     Program,
+    coverage::BinName,
     suite::{Delays, Method, Suite, WitnessKind},
-    test::{Provenance, Test, TestStep},
+    test::{Provenance, Test, TestMethod, TestStep},
 };
+use hrdsl_results::{Explanation, GoalName, GoalReport, GoalStatus, ModelCoverage, Uncovered};
 
+use crate::prove::Settings;
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
-pub use expand::bin_goal;
 pub use hrdsl_bdi::choose::BeliefSet;
-pub use model::{
-    AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation, Uncovered, Unreached,
-};
 pub use write::{step_text, write};
 
 /// An abstract test: steps without samples.
@@ -44,7 +43,7 @@ pub use write::{step_text, write};
 pub struct AbstractTest {
     pub steps: Vec<TestStep>,
     pub because: Vec<String>,
-    pub predicts: Vec<String>,
+    pub predicts: Vec<BinName>,
     /// Which of the suite's goals the run reached.
     pub reaches: goals::Reached,
     /// Of a suite by agents: the first run that it came from.
@@ -59,32 +58,11 @@ pub struct Origin {
     pub beliefs: BeliefSet,
 }
 
-/// What became of one goal of a suite by search.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct GoalReport {
-    /// `bin human_robot.4 legs, bored`, `edge Robot: sense -> decide`
-    pub goal: String,
-    pub status: GoalStatus,
-    /// For an unreachable goal, why; for an open one, which budget ran out.
-    pub reason: String,
-    /// For one that is reached: the first test whose witness reaches it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub test: Option<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GoalStatus {
-    Reached,
-    Unreachable,
-    Open,
-}
-
 /// A generated suite.
 #[derive(Clone, Debug)]
 pub struct Generated {
     pub suite: String,
-    pub method: &'static str,
+    pub method: TestMethod,
     /// How many different abstract tests there are.
     pub abstract_tests: usize,
     pub tests: Vec<Test>,
@@ -112,8 +90,7 @@ pub struct Harvest {
 
 /// What the runs of agents found out.
 pub struct Found {
-    /// The goals' names.
-    pub goals: Vec<String>,
+    pub goals: Vec<GoalName>,
     /// Why no test reaches a goal; empty for those that are reached.
     pub reasons: Vec<String>,
     pub coverage: ModelCoverage,
@@ -163,7 +140,7 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
     }
     let (method, harvest, minimise) = match &suite.method {
         Method::Agents { minimise: said, .. } => {
-            ("agents", agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
+            (TestMethod::Agents, agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
         Method::Search { network, goals, witness, delays } => {
             let settings = Settings {
@@ -173,19 +150,19 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
                 keep_first: true,
                 ..options.search
             };
-            ("search", search::harvest(program, suite, *network, goals, &settings)?, true)
+            (TestMethod::Search, search::harvest(program, suite, *network, goals, &settings)?, true)
         }
-        Method::Random { .. } => ("random", random::harvest(program, suite, most, seed)?, false),
+        Method::Random { .. } => (TestMethod::Random, random::harvest(program, suite, most, seed)?, false),
     };
     let Harvest { tests, mut goals, mut notes, found } = harvest;
-    let mut different = distinct(tests);
+    let mut different = distinct::distinct(tests);
     let mut number = most;
     if minimise {
         let keep = minimise::minimised(&different);
         notes.push(format!("{} of {} abstract tests are needed", keep.len(), different.len()));
         different = keep.into_iter().map(|i| different[i].clone()).collect();
         // One of each will do, unless a number was asked for. Those of a search are made concrete again, with other seeds.
-        if method != "search" {
+        if method != TestMethod::Search {
             number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
         }
     }
@@ -234,45 +211,11 @@ fn test_name(suite: &Suite, number: u64) -> String {
     format!("{}.t{number:03}", suite.name)
 }
 
-/// How many origins of one abstract test are written out.
-const ORIGINS: usize = 3;
-
-/// Equal abstract tests are one; the first keeps its place and takes over the others' reasons.
-fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
-    let mut seen: indexmap::IndexMap<String, AbstractTest> = indexmap::IndexMap::new();
-    for test in tests {
-        let key = format!("{:?}", test.steps);
-        match seen.entry(key) {
-            indexmap::map::Entry::Vacant(slot) => {
-                slot.insert(test);
-            }
-            indexmap::map::Entry::Occupied(mut slot) => {
-                let known = slot.get_mut();
-                known.reaches.extend(test.reaches);
-                for line in test.because {
-                    if !known.because.contains(&line) {
-                        known.because.push(line);
-                    }
-                }
-            }
-        }
-    }
-    let mut tests: Vec<AbstractTest> = seen.into_values().collect();
-    for test in &mut tests {
-        let more = test.because.len().saturating_sub(ORIGINS);
-        if more > 0 {
-            test.because.truncate(ORIGINS);
-            test.because.push(format!("and {more} more that lead to the same test"));
-        }
-    }
-    tests
-}
-
 /// Numbers and seeds the tests; abstract tests that are too few come again with other seeds.
 fn make_concrete(
     program: &Program,
     suite: &Suite,
-    method: &str,
+    method: TestMethod,
     tests: &[AbstractTest],
     count: u32,
     seed: u64,
@@ -287,7 +230,7 @@ fn make_concrete(
                 seed,
                 provenance: Provenance {
                     suite: suite.name.clone(),
-                    method: method.to_owned(),
+                    method,
                     because: test.because.clone(),
                     predicts: test.predicts.clone(),
                 },
@@ -314,14 +257,6 @@ mod tests {
     }
 
     #[test]
-    fn equal_tests_reach_what_each_of_them_does() {
-        let different = distinct(vec![test(1, "a", &[0]), test(2, "b", &[1]), test(1, "c", &[2])]);
-        assert_eq!(different.len(), 2);
-        assert_eq!(different[0].reaches, [0, 2].into());
-        assert_eq!(different[0].because, ["a", "c"]);
-    }
-
-    #[test]
     fn goals_that_only_tests_left_out_reach_are_uncovered() {
         let suite = Suite {
             name: "s".into(),
@@ -337,16 +272,13 @@ mod tests {
             origin: Span::default(),
         };
         let found = Found {
-            goals: ["g0", "g1", "g2"].map(String::from).to_vec(),
+            goals: ["g0", "g1", "g2"].map(GoalName::from).to_vec(),
             reasons: ["", "", "it cannot be"].map(String::from).to_vec(),
             coverage: ModelCoverage::default(),
         };
         let said = explain(&found, &[test(1, "a", &[0])], &suite);
         assert_eq!(said.tests[0].test, "s.t001");
-        assert_eq!(
-            (&said.tests[0].first, &said.tests[0].only),
-            (&vec!["g0".to_owned()], &vec!["g0".to_owned()])
-        );
+        assert_eq!((&said.tests[0].first, &said.tests[0].only), (&vec!["g0".into()], &vec!["g0".into()]));
         let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
         assert_eq!(
             said.uncovered,

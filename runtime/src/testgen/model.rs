@@ -1,79 +1,17 @@
 //! What a suite by agents reached of its model, and why not the rest.
 
-use hrdsl_bdi::coverage::{Kind, Team, name, universe};
-use hrdsl_ir::{Program, bdi::AgentId, suite::PlayerRef};
-use serde::Serialize;
+use hrdsl_bdi::coverage::{Team, name, universe};
+use hrdsl_ir::{
+    Program,
+    bdi::AgentId,
+    suite::{ItemKind, PlayerRef},
+};
+use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, Unreached};
 
 use super::{
     AbstractTest,
     goals::{Reached, agents},
 };
-
-/// What the runs of a suite's agents reached of their programs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ModelCoverage {
-    /// Runs that count.
-    pub runs: usize,
-    /// The suite's goals: how many were reached, and how many there are.
-    pub goals_reached: usize,
-    pub goals: usize,
-    pub agents: Vec<AgentCoverage>,
-}
-
-/// What was reached of an agent.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AgentCoverage {
-    pub agent: String,
-    /// One for each [`Kind`], in order.
-    pub kinds: Vec<KindCoverage>,
-    pub unreached: Vec<Unreached>,
-}
-
-/// Items of a kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct KindCoverage {
-    pub kind: Kind,
-    pub reached: usize,
-    pub all: usize,
-}
-
-/// An item that no run reached.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Unreached {
-    pub kind: Kind,
-    /// `plan Human.leg#2 failed`
-    pub item: String,
-    pub reason: String,
-}
-
-/// What each test of a suite is for, and why goals stayed uncovered.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Explanation {
-    /// One for each abstract test that was made concrete, in order.
-    pub tests: Vec<TestExplanation>,
-    /// The goals that no test reaches.
-    pub uncovered: Vec<Uncovered>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct TestExplanation {
-    /// The first concrete test made of it.
-    pub test: String,
-    /// The belief sets that it came from.
-    pub because: Vec<String>,
-    /// How many goals it reaches.
-    pub reaches: usize,
-    /// The goals that no test before it reaches.
-    pub first: Vec<String>,
-    /// Those that no other test reaches.
-    pub only: Vec<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Uncovered {
-    pub goal: String,
-    pub reason: String,
-}
 
 /// What the agents' counts say, summed over all runs that count.
 pub fn coverage(program: &Program, players: &[PlayerRef], team: &Team<'_>) -> Vec<AgentCoverage> {
@@ -87,7 +25,7 @@ fn of_agent(program: &Program, id: AgentId, team: &Team<'_>) -> AgentCoverage {
         .into_iter()
         .map(|item| (item, measured.is_some_and(|m| item.is_reached(m))))
         .collect();
-    let kind = |kind: Kind| {
+    let kind = |kind: ItemKind| {
         let of_kind = || items.iter().filter(|(item, _)| item.kind() == kind);
         KindCoverage {
             kind,
@@ -97,12 +35,12 @@ fn of_agent(program: &Program, id: AgentId, team: &Team<'_>) -> AgentCoverage {
     };
     let unreached = items.iter().filter(|(_, reached)| !reached).map(|(item, _)| Unreached {
         kind: item.kind(),
-        item: name(program, agent, *item),
+        item: name(program, agent, *item).into(),
         reason: team.why(id, *item),
     });
     AgentCoverage {
         agent: agent.name.clone(),
-        kinds: Kind::ALL.into_iter().map(kind).collect(),
+        kinds: ItemKind::ALL.into_iter().map(kind).collect(),
         unreached: unreached.collect(),
     }
 }
@@ -110,7 +48,7 @@ fn of_agent(program: &Program, id: AgentId, team: &Team<'_>) -> AgentCoverage {
 /// What each test is for: `name` says what the first concrete test of an abstract one is called.
 pub fn explained(
     tests: &[AbstractTest],
-    goals: &[String],
+    goals: &[GoalName],
     name: impl Fn(usize) -> String,
 ) -> Vec<TestExplanation> {
     let mut how_many = vec![0usize; goals.len()];
@@ -120,7 +58,7 @@ pub fn explained(
     let mut seen = Reached::new();
     let mut explained = Vec::new();
     for (index, test) in tests.iter().enumerate() {
-        let named = |which: &dyn Fn(usize) -> bool| -> Vec<String> {
+        let named = |which: &dyn Fn(usize) -> bool| -> Vec<GoalName> {
             test.reaches.iter().filter(|g| which(**g)).map(|g| goals[*g].clone()).collect()
         };
         explained.push(TestExplanation {
@@ -145,11 +83,11 @@ mod tests {
             reaches: goals.iter().copied().collect(),
             ..AbstractTest::default()
         };
-        let goals: Vec<String> = ["a", "b", "c", "d"].map(String::from).to_vec();
+        let goals: Vec<GoalName> = ["a", "b", "c", "d"].map(GoalName::from).to_vec();
         let found = explained(&[test(&[0, 1]), test(&[1, 2]), test(&[2])], &goals, |i| format!("t{i}"));
-        let first: Vec<&[String]> = found.iter().map(|t| t.first.as_slice()).collect();
+        let first: Vec<&[GoalName]> = found.iter().map(|t| t.first.as_slice()).collect();
         assert_eq!(first, [&goals[..2], &goals[2..3], &[]]);
-        let only: Vec<&[String]> = found.iter().map(|t| t.only.as_slice()).collect();
+        let only: Vec<&[GoalName]> = found.iter().map(|t| t.only.as_slice()).collect();
         assert_eq!(only, [&goals[..1], &[], &[]]);
         assert_eq!((found[1].test.as_str(), found[1].reaches), ("t1", 2));
     }

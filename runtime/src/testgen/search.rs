@@ -8,10 +8,11 @@ use hrdsl_ir::{
     suite::{PlayerRef, SearchGoal, Suite},
     ta::Network,
 };
+use hrdsl_results::{GoalReport, GoalStatus};
 use hrdsl_ta::{Error, Goal, GoalKind};
 
 use super::{
-    AbstractTest, GoalReport, GoalStatus, Harvest,
+    AbstractTest, Harvest,
     covers::{Seen, Shown},
     expand::{Named, counters, goals},
     extract,

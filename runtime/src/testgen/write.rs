@@ -25,12 +25,12 @@ fn write_test(out: &mut String, program: &Program, test: &Test) {
     let name = test.name.strip_prefix(&prefix).unwrap_or(&test.name);
     let _ = writeln!(out, "test {name} {{");
     let _ = writeln!(out, "  seed {}", test.seed);
-    let _ = writeln!(out, "  method {}", test.provenance.method);
+    let _ = writeln!(out, "  method {}", test.provenance.method.word());
     for line in &test.provenance.because {
         let _ = writeln!(out, "  because {}", quoted(line));
     }
     for bin in &test.provenance.predicts {
-        let _ = writeln!(out, "  predicts {}", quoted(bin));
+        let _ = writeln!(out, "  predicts {}", quoted(bin.as_str()));
     }
     for step in &test.steps {
         let _ = writeln!(out, "  {}", step_text(program, step));

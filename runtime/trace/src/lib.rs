@@ -3,15 +3,18 @@
 //! This is the waist between execution, which makes it, and judgement (monitors, coverage, reports), which reads it and
 //! nothing else. A run in virtual time on a model, a run in simulation and a recording of a real robot all have this form.
 //!
-//! A trace is kept as text: [`record`] writes the recording format, [`parse`] reads it back. [`print`] shows a step to
-//! people, [`decimal`] turns nanoseconds into seconds and back without loss. `spec/traces.md` defines the format.
+//! A trace is kept as text: [`record`] writes the recording format, [`parse`] reads it back, step by step if it is long.
+//! [`print`] shows a step to people, [`decimal`] turns nanoseconds into seconds and back without loss, [`vocabulary`] tells
+//! scenarios apart whose recordings are not each other's. `spec/traces.md` defines the format.
 
 pub mod decimal;
 pub mod parse;
 pub mod print;
 pub mod record;
+pub mod vocabulary;
 
 use hrdsl_ir::{EventId, Nanos, Value, world::SignalId};
+use serde::{Deserialize, Serialize};
 
 /// One run's timestamped events and samples, in order of time; steps of the same instant in the order they happened.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +38,39 @@ pub enum What {
     Sample { signal: SignalId, value: Value },
 }
 
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunEnd {
+    /// Nothing more could happen.
+    #[default]
+    Quiet,
+    /// At the time limit.
+    Limit,
+    /// It broke off: what it did not do, it might have done.
+    Error,
+}
+
+impl RunEnd {
+    pub const ALL: [RunEnd; 3] = [RunEnd::Quiet, RunEnd::Limit, RunEnd::Error];
+
+    /// The word for it, in recordings and results.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            RunEnd::Quiet => "quiet",
+            RunEnd::Limit => "limit",
+            RunEnd::Error => "error",
+        }
+    }
+
+    /// The end that a word stands for.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|end| end.word() == word)
+    }
+}
+
 /// Something that reads a trace step by step, in bounded memory: a monitor, a coverage collector, a recorder.
 pub trait Observer {
     /// `index` counts the trace's steps from 0.
@@ -50,6 +86,17 @@ impl Trace {
             observer.step(index, step);
         }
         observer.end(self.end);
+    }
+}
+
+/// A trace takes down what it is shown.
+impl Observer for Trace {
+    fn step(&mut self, _: usize, step: &Step) {
+        self.steps.push(step.clone());
+    }
+
+    fn end(&mut self, time: Nanos) {
+        self.end = time;
     }
 }
 

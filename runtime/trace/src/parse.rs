@@ -1,20 +1,47 @@
-//! Reads a recording back into a trace, with its names resolved against a program.
+//! Reads a recording back, with its names resolved against a program: step by step ([`Recording`]), or as a whole trace
+//! ([`parse`]).
 //!
 //! Recordings come from other programs, too: whatever is wrong with one is said with the number of its line.
 
 mod line;
 
-use std::collections::BTreeMap;
+use std::{
+    collections::BTreeMap,
+    io::{BufRead, Read as _},
+};
 
 use hrdsl_ir::{EventId, Nanos, Param, Program, Type, Unit, Value, world::SignalId};
 use serde_json::Value as Json;
 use thiserror::Error;
 
 use crate::{
-    Step, Trace, What, decimal,
-    record::{Header, KIND, VERSION},
+    Observer, Step, Trace, What, decimal,
+    record::{Ending, Header, KIND, VERSION},
 };
 use line::{HeaderLine, Line};
+
+/// The most bytes of one line, so that a file of another kind does not fill the memory.
+const LONGEST_LINE: u64 = 16 << 20;
+
+/// A recording, apart from its steps.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Recorded {
+    pub header: Header,
+    /// When the run ended.
+    pub end: Nanos,
+    pub ending: Ending,
+    /// How many steps there were.
+    pub steps: usize,
+}
+
+/// Why a recording could not be read.
+#[derive(Debug, Error)]
+pub enum ReadError {
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    #[error("{0}")]
+    Parse(#[from] ParseError),
+}
 
 /// Why a text is not a recording of this program.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -31,11 +58,17 @@ pub enum Problem {
     #[error("not a line of a recording: {0}")]
     Json(String),
     #[error(
-        "the recording has to start with a header: {{\"hrdsl\":\"trace\",\"version\":1,\"scenario\":...}}"
+        "the recording has to start with a header: {{\"hrdsl\":\"trace\",\"version\":2,\"scenario\":...}}"
     )]
     NoHeader,
-    #[error("this is format version {0}; only version {VERSION} can be read")]
+    #[error("this is format version {0}; versions 1 to {VERSION} can be read")]
     Version(u64),
+    #[error("`{0}` is not how a run ends; that is `quiet`, `limit` or `error`")]
+    End(String),
+    #[error("the line is longer than {} MiB", LONGEST_LINE >> 20)]
+    TooLong,
+    #[error("the line is not text in UTF-8")]
+    NotText,
     #[error("{0}")]
     Form(&'static str),
     #[error("unknown event `{name}`{}", hint(.near))]
@@ -64,37 +97,127 @@ fn hint(near: &Option<String>) -> String {
     near.as_ref().map_or(String::new(), |near| format!("; did you mean `{near}`?"))
 }
 
-/// The header and the trace of a recording. Blank lines are skipped.
+/// A recording's trace and the rest of it. Blank lines are skipped.
 ///
 /// # Errors
 /// The first line that is wrong, and why.
-pub fn parse(program: &Program, text: &str) -> Result<(Header, Trace), ParseError> {
-    let mut reader = Reader::new(program);
-    let mut last = 1;
-    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        last = index + 1;
-        reader.line(line).map_err(|problem| {
-            // A line that was being written when the recorder died has no line break.
-            let is_cut = matches!(problem, Problem::Json(_)) && text.ends_with(line);
-            ParseError { line: last, problem: if is_cut { Problem::Truncated } else { problem } }
-        })?;
+pub fn parse(program: &Program, text: &str) -> Result<(Recorded, Trace), ParseError> {
+    let mut trace = Trace::default();
+    match Recording::open(text.as_bytes()).and_then(|r| r.replay(program, &mut trace)) {
+        Ok(recorded) => Ok((recorded, trace)),
+        Err(ReadError::Parse(error)) => Err(error),
+        // Nothing goes wrong with reading from memory.
+        Err(ReadError::Io(error)) => Err(ParseError { line: 1, problem: Problem::Json(error.to_string()) }),
     }
-    reader.finish().map_err(|problem| ParseError { line: last, problem })
 }
 
-/// Reads line by line.
+/// A recording of which the header was read.
+#[derive(Debug)]
+pub struct Recording<R> {
+    lines: Lines<R>,
+    header: Header,
+}
+
+impl<R: BufRead> Recording<R> {
+    /// Reads the header.
+    ///
+    /// # Errors
+    /// A first line that is none.
+    pub fn open(source: R) -> Result<Self, ReadError> {
+        let mut lines = Lines { source, bytes: Vec::new(), read: 0, number: 0, is_whole: true };
+        let header = match lines.next()? {
+            Some(text) => header(text),
+            None => Err(Problem::NoHeader),
+        };
+        let header = header.map_err(|problem| lines.wrong(problem))?;
+        Ok(Self { lines, header })
+    }
+
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// Shows the steps to an observer, one by one, in memory that does not grow with the recording.
+    ///
+    /// # Errors
+    /// The first line that is wrong, and why; then the observer has seen the steps before it.
+    pub fn replay(self, program: &Program, observer: &mut dyn Observer) -> Result<Recorded, ReadError> {
+        let Self { mut lines, header } = self;
+        let mut reader = Reader::new(program, header);
+        while let Some(text) = lines.next()? {
+            match reader.line(text) {
+                Ok(Some(step)) => {
+                    observer.step(reader.recorded.steps, &step);
+                    reader.recorded.steps += 1;
+                }
+                Ok(None) => {}
+                Err(problem) => return Err(lines.wrong(problem).into()),
+            }
+        }
+        let recorded = reader.finish().map_err(|problem| lines.wrong(problem))?;
+        observer.end(recorded.end);
+        Ok(recorded)
+    }
+}
+
+/// The lines of a recording, one at a time.
+#[derive(Debug)]
+struct Lines<R> {
+    source: R,
+    bytes: Vec<u8>,
+    /// How many were read.
+    read: usize,
+    /// Of the latest line that is not blank, from 1.
+    number: usize,
+    /// Whether that line has a line break.
+    is_whole: bool,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// The next line that is not blank.
+    fn next(&mut self) -> Result<Option<&str>, ReadError> {
+        loop {
+            self.bytes.clear();
+            if (&mut self.source).take(LONGEST_LINE).read_until(b'\n', &mut self.bytes)? == 0 {
+                return Ok(None);
+            }
+            self.read += 1;
+            self.is_whole = self.bytes.ends_with(b"\n");
+            if !self.is_whole && self.bytes.len() as u64 == LONGEST_LINE {
+                return Err(ParseError { line: self.read, problem: Problem::TooLong }.into());
+            }
+            if !self.bytes.iter().all(u8::is_ascii_whitespace) {
+                break;
+            }
+        }
+        self.number = self.read;
+        match std::str::from_utf8(&self.bytes) {
+            Ok(text) => Ok(Some(text.trim_end_matches(['\n', '\r']))),
+            Err(_) => Err(ParseError { line: self.number, problem: Problem::NotText }.into()),
+        }
+    }
+
+    /// What is wrong with the latest line.
+    fn wrong(&self, problem: Problem) -> ParseError {
+        // A line that was being written when the recorder died has no line break.
+        let is_cut = matches!(problem, Problem::Json(_)) && !self.is_whole;
+        ParseError { line: self.number.max(1), problem: if is_cut { Problem::Truncated } else { problem } }
+    }
+}
+
+/// Gives names their meaning, line by line.
 struct Reader<'a> {
     program: &'a Program,
     events: BTreeMap<&'a str, EventId>,
     signals: BTreeMap<&'a str, SignalId>,
-    header: Option<Header>,
-    trace: Trace,
+    recorded: Recorded,
     now: Nanos,
     ended: bool,
 }
 
 impl<'a> Reader<'a> {
-    fn new(program: &'a Program) -> Self {
+    fn new(program: &'a Program, header: Header) -> Self {
         // From the back, so that the first of several of the same name stands.
         let events = (0u16..).zip(&program.events).map(|(i, e)| (e.name.as_str(), EventId(i)));
         let signals = (0u16..).zip(&program.signals).map(|(i, s)| (s.name.as_str(), SignalId(i)));
@@ -102,26 +225,26 @@ impl<'a> Reader<'a> {
             program,
             events: events.collect::<Vec<_>>().into_iter().rev().collect(),
             signals: signals.collect::<Vec<_>>().into_iter().rev().collect(),
-            header: None,
-            trace: Trace::default(),
+            recorded: Recorded { header, ..Recorded::default() },
             now: 0,
             ended: false,
         }
     }
 
-    fn line(&mut self, text: &str) -> Result<(), Problem> {
-        if self.header.is_none() {
-            self.header = Some(header(text)?);
-            return Ok(());
-        }
+    /// The line's step; none if it is the last line.
+    fn line(&mut self, text: &str) -> Result<Option<Step>, Problem> {
         let line = Line::read(text)?;
         if self.ended {
             return Err(Problem::AfterEnd);
         }
         if let Some(end) = line.end {
-            self.trace.end = self.pass(end.get())?;
+            self.recorded.end = self.pass(end.get())?;
             self.ended = true;
-            return line.only_end();
+            self.recorded.ending = line.ending()?;
+            return Ok(None);
+        }
+        if line.ended.is_some() || line.error.is_some() {
+            return Err(Problem::Form("only the last line says how the run ended"));
         }
         let Some(time) = line.t else { return Err(Problem::Form("the step lacks its time `t`")) };
         let time = self.pass(time.get())?;
@@ -135,8 +258,7 @@ impl<'a> Reader<'a> {
             }
             (None, _, None, _) => return Err(Problem::Form("the step has neither `event` nor `signal`")),
         };
-        self.trace.steps.push(Step { time, what });
-        Ok(())
+        Ok(Some(Step { time, what }))
     }
 
     fn pass(&mut self, text: &str) -> Result<Nanos, Problem> {
@@ -181,9 +303,8 @@ impl<'a> Reader<'a> {
         Ok(What::Sample { signal, value: typed(name, ty, json)? })
     }
 
-    fn finish(self) -> Result<(Header, Trace), Problem> {
-        let header = self.header.ok_or(Problem::NoHeader)?;
-        if self.ended { Ok((header, self.trace)) } else { Err(Problem::Truncated) }
+    fn finish(self) -> Result<Recorded, Problem> {
+        if self.ended { Ok(self.recorded) } else { Err(Problem::Truncated) }
     }
 }
 
@@ -195,10 +316,10 @@ fn header(text: &str) -> Result<Header, Problem> {
     if kind != KIND {
         return Err(Problem::NoHeader);
     }
-    if version != VERSION {
+    if !(1..=VERSION).contains(&version) {
         return Err(Problem::Version(version));
     }
-    Ok(Header { scenario, test: head.test, seed: head.seed })
+    Ok(Header { scenario, vocabulary: head.vocabulary, test: head.test, seed: head.seed })
 }
 
 /// The value, if it is of the type. A whole number will do for a float; a float that no JSON number can be is a string.

@@ -3,64 +3,53 @@
 use std::fmt::Write as _;
 
 use hrdsl_ir::{EventId, Nanos, Program, Value, world::SignalId};
-use serde::{Deserialize, Serialize};
 
-use crate::{Observer, Step, Trace, What, decimal};
+use crate::{RunEnd, Step, Trace, What, decimal, vocabulary};
 
 /// What kind of file this is: the header's `hrdsl`.
 pub const KIND: &str = "trace";
-/// The version of the format that this module writes and [`parse`](crate::parse) reads.
-pub const VERSION: u64 = 1;
+/// The version of the format that this module writes; [`parse`](crate::parse) reads it and those before it.
+pub const VERSION: u64 = 2;
 
 /// Where a recording comes from.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Header {
     pub scenario: String,
+    /// The digest of the scenario's [`vocabulary`](crate::vocabulary); recordings by other programs may lack it.
+    pub vocabulary: Option<String>,
     /// The test that was run; none: a recording of something else.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub test: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+}
+
+impl Header {
+    /// The header of a recording of this scenario.
+    #[must_use]
+    pub fn of(program: &Program) -> Self {
+        let vocabulary = Some(vocabulary::digest(program));
+        Self { scenario: program.name.clone(), vocabulary, ..Self::default() }
+    }
+}
+
+/// How the run of a recording ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ending {
+    pub how: RunEnd,
+    /// What happened to a run that broke off.
+    pub error: Option<String>,
 }
 
 /// The whole recording of a trace; every line ends with a line break.
 #[must_use]
-pub fn write(program: &Program, header: &Header, trace: &Trace) -> String {
-    let mut recorder = Recorder::new(program, header);
-    trace.replay(&mut recorder);
-    recorder.take()
-}
-
-/// Records a run while it goes on.
-#[derive(Clone, Debug)]
-pub struct Recorder<'a> {
-    program: &'a Program,
-    text: String,
-}
-
-impl<'a> Recorder<'a> {
-    #[must_use]
-    pub fn new(program: &'a Program, header: &Header) -> Self {
-        Self { program, text: header_line(header) + "\n" }
+pub fn write(program: &Program, header: &Header, trace: &Trace, ending: &Ending) -> String {
+    let mut text = header_line(header) + "\n";
+    for step in &trace.steps {
+        text.push_str(&step_line(program, step));
+        text.push('\n');
     }
-
-    /// The lines written since the last call; to be called now and then, so that the memory stays bounded.
-    #[must_use]
-    pub fn take(&mut self) -> String {
-        std::mem::take(&mut self.text)
-    }
-}
-
-impl Observer for Recorder<'_> {
-    fn step(&mut self, _: usize, step: &Step) {
-        self.text.push_str(&step_line(self.program, step));
-        self.text.push('\n');
-    }
-
-    fn end(&mut self, time: Nanos) {
-        self.text.push_str(&end_line(time));
-        self.text.push('\n');
-    }
+    text.push_str(&end_line(trace.end, ending));
+    text.push('\n');
+    text
 }
 
 /// The first line, without a line break.
@@ -68,12 +57,13 @@ impl Observer for Recorder<'_> {
 pub fn header_line(header: &Header) -> String {
     let mut line = format!("{{\"hrdsl\":{},\"version\":{VERSION},\"scenario\":", text(KIND));
     line.push_str(&text(&header.scenario));
-    if let Some(test) = &header.test {
-        line.push_str(",\"test\":");
-        line.push_str(&text(test));
+    for (key, value) in [("vocabulary", &header.vocabulary), ("test", &header.test)] {
+        if let Some(value) = value {
+            // Writing to a string cannot fail.
+            let _ = write!(line, ",\"{key}\":{}", text(value));
+        }
     }
     if let Some(seed) = header.seed {
-        // Writing to a string cannot fail.
         let _ = write!(line, ",\"seed\":{seed}");
     }
     line.push('}');
@@ -109,8 +99,14 @@ pub fn step_line(program: &Program, step: &Step) -> String {
 
 /// The last line, without a line break.
 #[must_use]
-pub fn end_line(time: Nanos) -> String {
-    format!("{{\"end\":{}}}", decimal::seconds(time))
+pub fn end_line(time: Nanos, ending: &Ending) -> String {
+    let mut line = format!("{{\"end\":{},\"ended\":{}", decimal::seconds(time), text(ending.how.word()));
+    if let Some(error) = &ending.error {
+        line.push_str(",\"error\":");
+        line.push_str(&text(error));
+    }
+    line.push('}');
+    line
 }
 
 /// What stands for a name that the program does not have; a reader will refuse it.

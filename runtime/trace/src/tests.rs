@@ -8,10 +8,11 @@ use hrdsl_ir::{
 use proptest::prelude::*;
 
 use crate::{
-    Step, Trace, What, decimal,
-    parse::{Problem, parse},
+    RunEnd, Step, Trace, What, decimal,
+    parse::{Problem, Recorded, Recording, parse},
     print,
-    record::{self, Header},
+    record::{self, Ending, Header},
+    vocabulary,
 };
 
 fn event(name: &str, from: u16, params: &[(&str, Type)]) -> Event {
@@ -99,19 +100,26 @@ fn a_recording_is_lines_of_names() {
         ],
         end: 300_000_000_000,
     };
-    let header = Header { scenario: "handover".into(), test: Some("t \"1\"".into()), seed: Some(u64::MAX) };
-    let text = record::write(&program(), &header, &trace);
+    let header = Header {
+        scenario: "handover".into(),
+        vocabulary: Some("0123456789abcdef".into()),
+        test: Some("t \"1\"".into()),
+        seed: Some(u64::MAX),
+    };
+    let ending = Ending { how: RunEnd::Error, error: Some("it \"fell\"\noff".into()) };
+    let text = record::write(&program(), &header, &trace, &ending);
     let expected = [
-        r#"{"hrdsl":"trace","version":1,"scenario":"handover","test":"t \"1\"","seed":18446744073709551615}"#,
+        r#"{"hrdsl":"trace","version":2,"scenario":"handover","vocabulary":"0123456789abcdef","test":"t \"1\"","seed":18446744073709551615}"#,
         r#"{"t":0,"event":"leg_request"}"#,
         r#"{"t":1.25,"event":"decided","args":{"ready":true}}"#,
         r#"{"t":1.250000001,"event":"sensed","args":{"gaze":false,"legs":3,"far":1.0}}"#,
         r#"{"t":2,"signal":"distance(person.hand, \"λ\")","value":-0.25}"#,
-        r#"{"end":300}"#,
+        r#"{"end":300,"ended":"error","error":"it \"fell\"\noff"}"#,
         "",
     ];
     assert_eq!(text, expected.join("\n"));
-    assert_eq!(parse(&program(), &text).unwrap(), (header, trace));
+    let recorded = Recorded { header, end: trace.end, ending, steps: 4 };
+    assert_eq!(parse(&program(), &text).unwrap(), (recorded, trace));
 }
 
 #[test]
@@ -119,8 +127,8 @@ fn recordings_of_other_programs_are_read() {
     let text = "{\"hrdsl\": \"trace\", \"version\": 1, \"scenario\": \"handover\", \"robot\": 7}\r\n\r\n\
         {\"args\": {\"far\": 2, \"gaze\": true, \"legs\": 0}, \"event\": \"sensed\", \"t\": 0.30000000000000004}\r\n\
         {\"t\": 3e-1, \"event\": \"leg_request\", \"args\": {}}\n{\"end\": 1.0}";
-    let (header, trace) = parse(&program(), text).unwrap();
-    assert_eq!((header.test, header.seed), (None, None));
+    let (recorded, trace) = parse(&program(), text).unwrap();
+    assert_eq!((recorded.header.test, recorded.header.seed), (None, None));
     let args = vec![Value::Bool(true), Value::Int(0), Value::Float(2.0)];
     assert_eq!(trace.steps, [happens(300_000_000, 2, args), happens(300_000_000, 0, Vec::new())]);
     assert_eq!(trace.end, 1_000_000_000);
@@ -149,10 +157,10 @@ fn faults_are_said_with_their_line() {
     says(r#"{"t":1,"signal":"gaze"}"#, "the sample lacks its `value`");
     says(r#"{"t":1,"signal":"gaze","value":true,"args":{}}"#, "a sample has `t`, `signal` and `value` only");
     says(r#"{"t":1,"event":"leg_request","value":1}"#, "an event has `t`, `event` and `args` only");
-    says(r#"{"end":1,"t":1}"#, "the last line has `end` only");
+    says(r#"{"end":1,"t":1}"#, "the last line has `end`, `ended` and `error` only");
     says(
         r#"{"t":1,"evnt":"x"}"#,
-        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `end` (column 13)",
+        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `end`, `ended`, `error` (column 13)",
     );
 }
 
@@ -169,7 +177,7 @@ fn time_goes_forward_until_the_end() {
 fn a_file_cut_off_anywhere_is_noticed() {
     let trace = Trace { steps: vec![happens(5, 1, vec![Value::Bool(true)])], end: 25_000_000_000 };
     let header = Header { scenario: "handover".into(), ..Header::default() };
-    let text = record::write(&program(), &header, &trace);
+    let text = record::write(&program(), &header, &trace, &Ending::default());
     for cut in 0..text.len() - 1 {
         let error = parse(&program(), &text[..cut]);
         // Without its final line break it is still whole.
@@ -181,11 +189,61 @@ fn a_file_cut_off_anywhere_is_noticed() {
 }
 
 #[test]
+fn the_last_line_says_how_the_run_ended() {
+    let ending = |last: &str| parse(&program(), &[HEADER, last].join("\n")).unwrap().0.ending;
+    assert_eq!(ending(r#"{"end":1}"#), Ending::default());
+    assert_eq!(ending(r#"{"end":1,"ended":"limit"}"#).how, RunEnd::Limit);
+    let error = ending(r#"{"end":1,"ended":"error","error":"gone"}"#);
+    assert_eq!(error, Ending { how: RunEnd::Error, error: Some("gone".into()) });
+    let faults = [
+        (r#"{"end":1,"ended":"over"}"#, "`over` is not how a run ends; that is `quiet`, `limit` or `error`"),
+        (r#"{"end":1,"error":"gone"}"#, "a run has an `error` only if it `ended` in error"),
+        (r#"{"end":1,"t":1}"#, "the last line has `end`, `ended` and `error` only"),
+        (r#"{"t":1,"ended":"quiet"}"#, "only the last line says how the run ended"),
+    ];
+    for (line, says) in faults {
+        assert_eq!(fault(&[HEADER, line]), (2, says.to_owned()));
+    }
+}
+
+#[test]
+fn a_line_that_is_no_text_is_named() {
+    let read = |bytes: &[u8]| {
+        let mut trace = Trace::default();
+        let recording = Recording::open(bytes).and_then(|r| r.replay(&program(), &mut trace));
+        recording.unwrap_err().to_string()
+    };
+    let text = [HEADER.as_bytes(), b"\n\n{\"t\":\xff}\n"].concat();
+    assert_eq!(read(&text), "line 3: the line is not text in UTF-8");
+    let long = [HEADER.as_bytes(), b"\n", &vec![b' '; 17 << 20], b"{\"end\":1}"].concat();
+    assert_eq!(read(&long), "line 2: the line is longer than 16 MiB");
+}
+
+#[test]
+fn a_vocabulary_is_names_and_types_in_any_order() {
+    let mut other = program();
+    assert_eq!(
+        vocabulary::listed(&other).lines().last(),
+        Some("signal pace:enum slow|fast|nan|true"),
+        "{}",
+        vocabulary::listed(&other)
+    );
+    other.events.reverse();
+    other.signals.reverse();
+    other.name = "another".into();
+    assert_eq!(vocabulary::digest(&program()), vocabulary::digest(&other));
+    other.events.push(event("more", 1, &[]));
+    assert_ne!(vocabulary::digest(&program()), vocabulary::digest(&other));
+}
+
+#[test]
 fn headers_are_checked() {
     assert_eq!(fault(&[r#"{"end":1}"#]), (1, Problem::NoHeader.to_string()));
     assert_eq!(fault(&[r#"{"hrdsl":"report","version":1,"scenario":"s"}"#]).1, Problem::NoHeader.to_string());
-    let newer = fault(&[r#"{"hrdsl":"trace","version":2,"scenario":"s"}"#]).1;
-    assert_eq!(newer, "this is format version 2; only version 1 can be read");
+    for (version, says) in [(0, "version 0"), (3, "version 3; versions 1 to 2 can be read")] {
+        let found = fault(&[&format!(r#"{{"hrdsl":"trace","version":{version},"scenario":"s"}}"#)]).1;
+        assert!(found.contains(says), "{found}");
+    }
     assert_eq!(fault(&["[1"]).0, 1);
 }
 
@@ -208,7 +266,7 @@ fn the_first_of_several_of_one_name_is_meant() {
 fn floats_that_are_no_json_numbers_are_kept() {
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let trace = Trace { steps: vec![reads(0, 1, Value::Float(x))], end: 0 };
-        let text = record::write(&program(), &Header::default(), &trace);
+        let text = record::write(&program(), &Header::default(), &trace, &Ending::default());
         let (_, read) = parse(&program(), &text).unwrap();
         assert_eq!(format!("{trace:?}"), format!("{read:?}"));
     }
@@ -224,7 +282,7 @@ fn symbols_are_names_and_read_by_their_type() {
         ],
         end: 2,
     };
-    let text = record::write(&program(), &Header::default(), &trace);
+    let text = record::write(&program(), &Header::default(), &trace, &Ending::default());
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[1], r#"{"t":0,"event":"paced","args":{"pace":"nan","far":"nan"}}"#);
     assert_eq!(lines[2], r#"{"t":0.000000001,"signal":"pace","value":"fast"}"#);
@@ -298,8 +356,10 @@ fn the_specification_shows_real_recordings() {
         .collect();
     assert!(!blocks.is_empty());
     for block in blocks {
-        let (header, trace) = parse(&program(), block).unwrap();
-        assert_eq!(record::write(&program(), &header, &trace), block);
+        let (Recorded { mut header, ending, .. }, trace) = parse(&program(), block).unwrap();
+        assert_eq!(header.vocabulary.take().is_some(), header.test.is_some(), "those of tests have it");
+        header.vocabulary = header.test.as_ref().map(|_| "45b92b0b4a1c8e6d".to_owned());
+        assert_eq!(record::write(&program(), &header, &trace, &ending), block);
     }
 }
 
@@ -354,14 +414,18 @@ proptest! {
         scenario in any::<String>(),
         test in any::<Option<String>>(),
         seed in any::<Option<u64>>(),
+        how in prop::sample::select(&RunEnd::ALL[..]),
+        error in any::<String>(),
     ) {
-        let header = Header { scenario, test, seed };
-        let text = record::write(&program(), &header, &trace);
+        let header = Header { scenario, vocabulary: test.clone(), test, seed };
+        let ending = Ending { how, error: (how == RunEnd::Error).then_some(error) };
+        let text = record::write(&program(), &header, &trace, &ending);
         prop_assert_eq!(text.lines().count(), trace.steps.len() + 2);
-        let (read_header, read) = parse(&program(), &text).unwrap();
+        let (found, read) = parse(&program(), &text).unwrap();
         // The text once more, since equality of floats overlooks the sign of zero.
-        prop_assert_eq!(record::write(&program(), &read_header, &read), text);
-        prop_assert_eq!((read_header, read), (header, trace));
+        prop_assert_eq!(record::write(&program(), &found.header, &read, &found.ending), text);
+        prop_assert_eq!((found.steps, found.end), (trace.steps.len(), trace.end));
+        prop_assert_eq!((found.header, found.ending, read), (header, ending, trace));
     }
 
     #[test]

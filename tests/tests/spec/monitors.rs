@@ -8,7 +8,7 @@ use std::{
 
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{EventId, Program, Type, Value, value::SECOND, world::SignalId};
-use hrdsl_monitor::Checker;
+use hrdsl_monitor::{Checker, Outcome, Verdict, Violation};
 use hrdsl_trace::{Step, Trace, What};
 use serde_json::{Value as Json, json};
 
@@ -63,6 +63,31 @@ fn as_json(trace: &Trace) -> Json {
     json!({ "steps": trace.steps.iter().map(step).collect::<Vec<_>>(), "end": trace.end })
 }
 
+/// A verdict as the reference says it.
+fn in_words(verdict: &Verdict) -> Json {
+    let violation = |v: &Violation| {
+        let witness: Vec<usize> = v.witness.iter().map(|seen| seen.index).collect();
+        json!({
+            "time": v.time, "step": v.step, "trigger_time": v.trigger_time, "witness": witness, "values": v.values
+        })
+    };
+    json!({
+        "monitor": verdict.monitor,
+        "outcome": match verdict.outcome {
+            Outcome::Pass => "pass",
+            Outcome::Fail => "fail",
+            Outcome::NotChecked => "not_checked",
+            Outcome::Open => "open",
+        },
+        "triggered": verdict.triggered,
+        "discharged": verdict.discharged,
+        "failures": verdict.failures,
+        "first_failure": verdict.first_failure.as_ref().map(violation),
+        "worst_margin": verdict.worst_margin,
+        "open_since": verdict.open_since,
+    })
+}
+
 #[test]
 fn the_reference_gives_the_same_verdicts() {
     let compilation = compile(Input { name: "monitors.hri", text: SCENARIO }, &[]);
@@ -88,7 +113,7 @@ fn the_reference_gives_the_same_verdicts() {
         trace.replay(&mut checker);
         let got: Vec<Json> = serde_json::from_str(got).unwrap();
         for (verdict, got) in checker.verdicts().iter().zip(got) {
-            let expected = serde_json::to_value(verdict).unwrap();
+            let expected = in_words(verdict);
             let name = &program.monitors[verdict.monitor].name;
             outcomes.insert((verdict.monitor, expected["outcome"].to_string()));
             assert_eq!(

@@ -9,7 +9,7 @@ use std::{
 
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::Program;
-use hrdsl_runtime::testgen::{GoalStatus, generate};
+use hrdsl_runtime::{results::GoalStatus, testgen::generate};
 
 use crate::page::root;
 

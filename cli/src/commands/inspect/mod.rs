@@ -13,7 +13,7 @@ use hrdsl_ir::{
 };
 use hrdsl_runtime::{
     harness::{Detail, How, Inspection, LogLine, inspect},
-    report::{End, Picked, ending, reasoning},
+    reasoning::{End, Picked, ending, reasoning},
     testgen::{self, Options, Origin, generate_with, how_many_sets, seed_of},
 };
 use hrdsl_source::printable_line;

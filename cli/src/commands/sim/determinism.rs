@@ -33,7 +33,7 @@ pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<
     // The second run keeps no files: those of the first are the results.
     let again = Campaign { keep: None, ..campaign.clone() };
     let outcome = again.run(&backwards, |done| {
-        let stem = done.result.file_stem();
+        let stem = done.result.name.file_stem();
         let before = input::read(&recording(first, &stem))?;
         let output = input::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
         let difference = difference(&before, done.recording).or_else(|| {
@@ -43,7 +43,7 @@ pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<
         });
         if let Some(difference) = difference {
             let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-            found.insert(tests.len() - done.index, (done.result.name.clone(), difference));
+            found.insert(tests.len() - done.index, (done.result.name.to_string(), difference));
         }
         bar.inc(1);
         Ok(())

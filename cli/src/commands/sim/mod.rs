@@ -135,8 +135,8 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
     let sources = system.coverage.iter().filter_map(|f| Some((f.clone(), input::read(&dir.join(f)).ok()?)));
-    let mut results = tally(program, args.seed, &generated, outcome, &sources.collect::<BTreeMap<_, _>>());
-    results.rerun = rerun(args, &out);
+    let sources = sources.collect::<BTreeMap<_, _>>();
+    let results = tally(program, args.seed, &generated, outcome, &sources, rerun(args, &out));
     publish(&results, &campaign, folder)?;
     summarise(&results, &campaign, &out, begun.elapsed())?;
     let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
@@ -389,7 +389,7 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     };
     input::write(&to.join("run.json"), &json(&info)?)?;
-    input::write(&to.join("results.json"), &json(results)?)?;
+    input::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;
     input::write(&to.join("junit.xml"), &report::junit(results))?;
     input::write(&to.join("report.html"), &report::html(results))?;
     folder.publish(&REPORTS)

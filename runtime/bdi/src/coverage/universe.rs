@@ -5,9 +5,8 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{
     Expr,
     bdi::{Agent, Context, Plan, Step, StepKind, Term, Trigger, TriggerOn, each_step},
-    suite::ModelGoal,
+    suite::{ItemKind, ModelGoal},
 };
-use serde::Serialize;
 
 use crate::measure::Measured;
 
@@ -64,64 +63,19 @@ impl Applicable {
     }
 }
 
-/// What items are tallied by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
-    Selected,
-    Completed,
-    Failed,
-    ContextTrue,
-    ContextFalse,
-    Applicable,
-    Message,
-    Edge,
-    Path,
-}
-
-impl Kind {
-    pub const ALL: [Kind; 9] = [
-        Kind::Selected,
-        Kind::Completed,
-        Kind::Failed,
-        Kind::ContextTrue,
-        Kind::ContextFalse,
-        Kind::Applicable,
-        Kind::Message,
-        Kind::Edge,
-        Kind::Path,
-    ];
-
-    /// As the heading of a column.
-    #[must_use]
-    pub fn title(self) -> &'static str {
-        match self {
-            Kind::Selected => "plans selected",
-            Kind::Completed => "completed",
-            Kind::Failed => "failed",
-            Kind::ContextTrue => "contexts true",
-            Kind::ContextFalse => "contexts false",
-            Kind::Applicable => "applicable sets",
-            Kind::Message => "messages",
-            Kind::Edge => "edges",
-            Kind::Path => "paths",
-        }
-    }
-}
-
 impl Item {
     #[must_use]
-    pub fn kind(self) -> Kind {
+    pub fn kind(self) -> ItemKind {
         match self {
-            Item::Selected(_) => Kind::Selected,
-            Item::Completed(_) => Kind::Completed,
-            Item::Failed(_) => Kind::Failed,
-            Item::Context { holds: true, .. } => Kind::ContextTrue,
-            Item::Context { holds: false, .. } => Kind::ContextFalse,
-            Item::Applicable { .. } => Kind::Applicable,
-            Item::Message { .. } => Kind::Message,
-            Item::Edge { .. } => Kind::Edge,
-            Item::Path(_) => Kind::Path,
+            Item::Selected(_) => ItemKind::Selected,
+            Item::Completed(_) => ItemKind::Completed,
+            Item::Failed(_) => ItemKind::Failed,
+            Item::Context { holds: true, .. } => ItemKind::ContextTrue,
+            Item::Context { holds: false, .. } => ItemKind::ContextFalse,
+            Item::Applicable { .. } => ItemKind::Applicable,
+            Item::Message { .. } => ItemKind::Message,
+            Item::Edge { .. } => ItemKind::Edge,
+            Item::Path(_) => ItemKind::Path,
         }
     }
 
@@ -158,7 +112,7 @@ pub(super) fn numbered(agent: &Agent) -> impl Iterator<Item = (u16, &Plan)> {
     (0u16..).zip(&agent.plans)
 }
 
-/// All items of an agent, by kind in the order of [`Kind::ALL`], in each in the order of the text.
+/// All items of an agent, by kind in the order of [`ItemKind::ALL`], in each in the order of the text.
 #[must_use]
 pub fn universe(agent: &Agent) -> Vec<Item> {
     let selected = numbered(agent).map(|(p, _)| Item::Selected(p));

@@ -9,6 +9,7 @@ use serde::{
 use serde_json::{Value as Json, value::RawValue};
 
 use super::Problem;
+use crate::{RunEnd, record::Ending};
 
 /// The first line. Other programs may say more in it, which is skipped.
 #[derive(Deserialize)]
@@ -16,6 +17,7 @@ pub(super) struct HeaderLine {
     pub hrdsl: Option<String>,
     pub version: Option<u64>,
     pub scenario: Option<String>,
+    pub vocabulary: Option<String>,
     pub test: Option<String>,
     pub seed: Option<u64>,
 }
@@ -34,6 +36,10 @@ pub(super) struct Line<'a> {
     pub value: Option<Json>,
     #[serde(borrow)]
     pub end: Option<&'a RawValue>,
+    #[serde(borrow)]
+    pub ended: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    pub error: Option<Cow<'a, str>>,
 }
 
 /// An event's arguments in the order written, doubles included.
@@ -50,14 +56,25 @@ impl<'a> Line<'a> {
         serde_json::from_str(text).map_err(|error| problem(&error))
     }
 
-    /// Fails if there is anything but `end`.
-    pub fn only_end(self) -> Result<(), Problem> {
+    /// How the run ended; fails if there is anything of a step.
+    pub fn ending(self) -> Result<Ending, Problem> {
         let more = self.t.is_some()
             || self.event.is_some()
             || self.args.is_some()
             || self.signal.is_some()
             || self.value.is_some();
-        if more { Err(Problem::Form("the last line has `end` only")) } else { Ok(()) }
+        if more {
+            return Err(Problem::Form("the last line has `end`, `ended` and `error` only"));
+        }
+        let how = match &self.ended {
+            None => RunEnd::default(),
+            Some(word) => RunEnd::of_word(word).ok_or_else(|| Problem::End(word.to_string()))?,
+        };
+        let error = self.error.map(Cow::into_owned);
+        if error.is_some() && how != RunEnd::Error {
+            return Err(Problem::Form("a run has an `error` only if it `ended` in error"));
+        }
+        Ok(Ending { how, error })
     }
 }
 

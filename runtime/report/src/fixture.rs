@@ -1,55 +1,50 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
-use hrdsl_bdi::coverage::Kind;
-use hrdsl_ir::Span;
-use hrdsl_sut::FileCoverage;
-
-use crate::{
-    results::{
-        BinResult, CodeFile, Failure, Margin, OutputSummary, Ratios, Requirement, Results, RunMark,
-        SuiteInfo, Tally, TestResult, VerdictResult, WitnessStep,
-    },
-    testgen::{
-        AgentCoverage, Explanation, GoalReport, GoalStatus, KindCoverage, ModelCoverage, TestExplanation,
-        Uncovered, Unreached,
-    },
+use hrdsl_results::{
+    AgentCoverage, BinName, BinResult, CodeFile, Explanation, FORMAT, Failure, GoalReport, GoalStatus,
+    ItemKind, Judgement, KindCoverage, Margin, ModelCoverage, OutputSummary, Ratios, Requirement,
+    RequirementKind, Results, RunEnd, RunMark, SuiteInfo, Tally, TestExplanation, TestMethod, TestResult,
+    Uncovered, Unreached, VERSION, VerdictOutcome as Outcome, VerdictResult, WitnessStep,
 };
 
-const SUITES: [(&str, &str); 3] =
-    [("bdi_tests", "agents"), ("ta_tests", "search"), ("random_tests", "random")];
+const SUITES: [(&str, TestMethod); 3] = [
+    ("bdi_tests", TestMethod::Agents),
+    ("ta_tests", TestMethod::Search),
+    ("random_tests", TestMethod::Random),
+];
 
-const REQUIREMENTS: [(&str, &str, &str, &str); 6] = [
+const REQUIREMENTS: [(&str, RequirementKind, &str, &str); 6] = [
     (
         "R1",
-        "functional",
+        RequirementKind::Functional,
         "a leg is released or discarded in time once the robot has decided",
         "after decided(_): (released or discarded) within DEADLINE",
     ),
     (
         "R2",
-        "functional",
+        RequirementKind::Functional,
         "a person who is ready gets the leg",
         "sensed(true, true, true) causes released within DEADLINE",
     ),
     (
         "R3",
-        "functional",
+        RequirementKind::Functional,
         "a person who is not ready does not get the leg",
         "(sensed(false, _, _) or sensed(_, false, _) or sensed(_, _, false)) forbids released until leg_request",
     ),
     (
         "R4",
-        "functional",
+        RequirementKind::Functional,
         "whoever asks is answered: the leg is released or discarded",
         "leg_request causes released or discarded",
     ),
     (
         "R5",
-        "safety",
+        RequirementKind::Safety,
         "the gripper does not close on a hand",
         "never gripper_closing while distance(person.hand, robot.palm) < 5 cm",
     ),
-    ("R6", "safety", "the arm is slow", "globally joint_speed(robot.arm) < 0.25 rad/s"),
+    ("R6", RequirementKind::Safety, "the arm is slow", "globally joint_speed(robot.arm) < 0.25 rad/s"),
 ];
 
 const BINS: [&str; 14] = [
@@ -137,14 +132,27 @@ const BRANCHES: [(u32, i32); 12] = [
     (37, 41),
 ];
 
+/// A test with what it executed.
+struct Made {
+    result: TestResult,
+    executed: Executed,
+}
+
+/// Executed lines and branches.
+struct Executed {
+    lines: Vec<u32>,
+    branches: Vec<(u32, i32)>,
+}
+
 /// A campaign with this many tests in each suite.
 pub fn campaign(per_suite: usize) -> Results {
-    let tests: Vec<TestResult> =
-        (0..SUITES.len()).flat_map(|s| (0..per_suite).map(move |i| test(s, i))).collect();
-    let of = |s: usize| tests.iter().filter(move |t| t.suite == SUITES[s].0);
+    let tests: Vec<Made> = (0..SUITES.len()).flat_map(|s| (0..per_suite).map(move |i| test(s, i))).collect();
+    let of = |s: usize| tests.iter().filter(move |t| t.result.suite == SUITES[s].0);
     Results {
+        format: FORMAT.into(),
+        version: VERSION,
+        hrdsl: "0.1.0".into(),
         scenario: "handover".into(),
-        version: "0.1.0".into(),
         seed: 1,
         requirements: (0..REQUIREMENTS.len()).map(|r| requirement(r, &tests)).collect(),
         suites: (0..SUITES.len()).map(|s| suite(s, &of(s).collect::<Vec<_>>())).collect(),
@@ -153,7 +161,7 @@ pub fn campaign(per_suite: usize) -> Results {
         interrupted: false,
         planned: tests.len(),
         rerun: "hrdsl sim ../scenario.hri tests --test".into(),
-        tests,
+        tests: tests.into_iter().map(|t| t.result).collect(),
     }
 }
 
@@ -166,7 +174,7 @@ fn mix(suite: usize, test: usize, salt: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-fn test(s: usize, i: usize) -> TestResult {
+fn test(s: usize, i: usize) -> Made {
     let (suite, method) = SUITES[s];
     let number = i + 1;
     let error = (i % 11 == 6 && s != 1).then(|| {
@@ -177,19 +185,21 @@ fn test(s: usize, i: usize) -> TestResult {
     let seen = ((mix(s, i, 1) % 5) as usize, mix(s, i, 2));
     let bins = if s == 2 { vec![bin_name(12 + i % 2)] } else { vec![bin_name(i % 11), bin_name(seen.0 * 2)] };
     let predicted = if s == 2 { vec![] } else { vec![bin_name(i % 11), bin_name((i + 4) % 12)] };
-    let files = vec![coverage(s, i)];
-    TestResult {
-        name: format!("handover.{suite}.t{number:03}"),
+    let executed = executed(s, i);
+    let result = TestResult {
+        name: format!("handover.{suite}.t{number:03}").into(),
         suite: suite.into(),
-        method: method.into(),
+        method,
         seed: number as u64,
-        ended: if error.is_some() { "error" } else { ["quiet", "limit"][i % 2] },
+        ended: if error.is_some() { RunEnd::Error } else { [RunEnd::Quiet, RunEnd::Limit][i % 2] },
         duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
-        verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
-        bins,
+        judgement: Judgement {
+            verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
+            bins,
+        },
         predicted,
         because: because(s, i),
-        code: ratios(&files),
+        code: ratios(&executed),
         steps: steps(s, i),
         marks: if i % 29 == 6 { vec![RunMark::DependsOnLoad] } else { Vec::new() },
         output: OutputSummary {
@@ -201,12 +211,12 @@ fn test(s: usize, i: usize) -> TestResult {
                 .unwrap_or_default(),
         },
         error,
-        files,
-    }
+    };
+    Made { result, executed }
 }
 
-fn bin_name(b: usize) -> String {
-    format!("human_robot.{}", BINS[b])
+fn bin_name(b: usize) -> BinName {
+    BinName::new("human_robot", BINS[b])
 }
 
 fn because(s: usize, i: usize) -> Vec<String> {
@@ -251,29 +261,30 @@ fn steps(s: usize, i: usize) -> Vec<String> {
 fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
     let dice = mix(s, i, 10 + r as u64) % 100;
     let outcome = match r {
-        5 => "pass",
-        0 if dice < 20 + 15 * s as u64 % 25 => "fail",
-        1 if dice < 9 && s != 2 => "fail",
-        2 if s == 0 && i % 12 == 3 => "fail",
-        4 if dice < 8 * (1 + s as u64) => "fail",
-        1 if s == 2 => "not_checked",
-        3 if dice > 92 => "open",
-        _ if is_broken => "error",
-        _ if dice > 60 => "not_checked",
-        _ => "pass",
+        5 => Outcome::Pass,
+        0 if dice < 20 + 15 * s as u64 % 25 => Outcome::Fail,
+        1 if dice < 9 && s != 2 => Outcome::Fail,
+        2 if s == 0 && i % 12 == 3 => Outcome::Fail,
+        4 if dice < 8 * (1 + s as u64) => Outcome::Fail,
+        1 if s == 2 => Outcome::NotChecked,
+        3 if dice > 92 => Outcome::Open,
+        _ if is_broken => Outcome::Error,
+        _ if dice > 60 => Outcome::NotChecked,
+        _ => Outcome::Pass,
     };
-    let failure = (outcome == "fail").then(|| failure(r, 20.0 + (mix(s, i, 30) % 9000) as f64 / 100.0));
+    let failure =
+        (outcome == Outcome::Fail).then(|| failure(r, 20.0 + (mix(s, i, 30) % 9000) as f64 / 100.0));
     let worst_margin = match r {
-        4 if outcome == "fail" => Some((-0.0321, "m")),
-        4 if outcome == "pass" => Some((0.184, "m")),
-        5 => Some((0.031 + (mix(s, i, 40) % 90) as f64 / 10_000.0, "rad/s")),
+        4 if outcome == Outcome::Fail => Some((-0.0321, "m".into())),
+        4 if outcome == Outcome::Pass => Some((0.184, "m".into())),
+        5 => Some((0.031 + (mix(s, i, 40) % 90) as f64 / 10_000.0, "rad/s".into())),
         _ => None,
     };
     VerdictResult {
         requirement: REQUIREMENTS[r].0.into(),
         outcome,
-        triggered: if outcome == "not_checked" { 0 } else { 1 + (dice % 4) as u32 },
-        failures: u32::from(outcome == "fail"),
+        triggered: if outcome == Outcome::NotChecked { 0 } else { 1 + (dice % 4) as u32 },
+        failures: u32::from(outcome == Outcome::Fail),
         failure,
         worst_margin,
     }
@@ -308,8 +319,8 @@ fn failure(r: usize, time: f64) -> Failure {
 }
 
 /// What a test executes: the longer it runs, the more; only agents and search get to the rare lines.
-fn coverage(s: usize, i: usize) -> FileCoverage {
-    let executed = |line: &u32| match line {
+fn executed(s: usize, i: usize) -> Executed {
+    let is_executed = |line: &u32| match line {
         20 | 21 => false,
         34 => i % 11 == 6 && s != 1,
         26 | 27 => s != 1 && mix(s, i, 50).is_multiple_of(3),
@@ -318,59 +329,46 @@ fn coverage(s: usize, i: usize) -> FileCoverage {
         24 | 25 | 28 | 35..=37 | 42 => s != 2 || !mix(s, i, 53).is_multiple_of(3),
         _ => true,
     };
-    let lines: Vec<u32> = STATEMENTS.iter().copied().filter(executed).collect();
+    let lines: Vec<u32> = STATEMENTS.iter().copied().filter(is_executed).collect();
     let taken = |(from, to): &(u32, i32)| {
         lines.contains(from) && (*to < 0 || lines.contains(&u32::try_from(*to).unwrap_or(0))) && *from != 18
             || (*from, *to) == (18, 19)
     };
-    FileCoverage {
-        file: "robot.py".into(),
-        statements: STATEMENTS.to_vec(),
-        branches: BRANCHES.to_vec(),
-        executed_branches: BRANCHES.iter().copied().filter(taken).collect(),
-        executed: lines,
-    }
+    Executed { branches: BRANCHES.iter().copied().filter(taken).collect(), lines }
 }
 
-fn ratios(files: &[FileCoverage]) -> Ratios {
-    let sum = |of: fn(&FileCoverage) -> usize| files.iter().map(of).sum::<usize>() as u32;
+fn ratios(executed: &Executed) -> Ratios {
     Ratios {
-        lines: sum(|f| f.executed.len()),
-        lines_total: sum(|f| f.statements.len()),
-        branches: sum(|f| f.executed_branches.len()),
-        branches_total: sum(|f| f.branches.len()),
+        lines: executed.lines.len() as u32,
+        lines_total: STATEMENTS.len() as u32,
+        branches: executed.branches.len() as u32,
+        branches_total: BRANCHES.len() as u32,
     }
 }
 
 /// What several tests execute together.
-fn together(tests: &[&TestResult]) -> FileCoverage {
-    let mut all = coverage(0, 0);
-    let files = || tests.iter().flat_map(|t| &t.files);
-    all.executed.clone_from(&STATEMENTS.to_vec());
-    all.executed.retain(|line| files().any(|f| f.executed.contains(line)));
-    all.executed_branches.clone_from(&BRANCHES.to_vec());
-    all.executed_branches.retain(|branch| files().any(|f| f.executed_branches.contains(branch)));
-    all
+fn together(tests: &[&Made]) -> Executed {
+    let line = |line: &u32| tests.iter().any(|t| t.executed.lines.contains(line));
+    let branch = |branch: &(u32, i32)| tests.iter().any(|t| t.executed.branches.contains(branch));
+    Executed {
+        lines: STATEMENTS.iter().copied().filter(line).collect(),
+        branches: BRANCHES.iter().copied().filter(branch).collect(),
+    }
 }
 
-fn requirement(r: usize, tests: &[TestResult]) -> Requirement {
+fn requirement(r: usize, tests: &[Made]) -> Requirement {
     let (name, kind, title, text) = REQUIREMENTS[r];
     let mut tally = vec![Tally::default(); SUITES.len()];
     let mut failing = Vec::new();
     let mut worst_margin: Option<Margin> = None;
-    for test in tests {
-        let suite = SUITES.iter().position(|(name, _)| *name == test.suite).unwrap_or(0);
-        match test.verdicts[r].outcome {
-            "pass" => tally[suite].pass += 1,
-            "fail" => tally[suite].fail += 1,
-            "open" => tally[suite].open += 1,
-            "error" => tally[suite].error += 1,
-            _ => tally[suite].not_checked += 1,
-        }
-        if test.verdicts[r].outcome == "fail" {
+    for test in tests.iter().map(|t| &t.result) {
+        let suite = SUITES.iter().position(|(name, _)| test.suite == *name).unwrap_or(0);
+        let verdict = &test.judgement.verdicts[r];
+        tally[suite].add(verdict.outcome);
+        if verdict.outcome == Outcome::Fail {
             failing.push(test.name.clone());
         }
-        if let Some((value, unit)) = test.verdicts[r].worst_margin
+        if let Some((value, unit)) = verdict.worst_margin.clone()
             && worst_margin.as_ref().is_none_or(|m| value < m.value)
         {
             worst_margin = Some(Margin { value, unit, test: test.name.clone() });
@@ -378,27 +376,26 @@ fn requirement(r: usize, tests: &[TestResult]) -> Requirement {
     }
     Requirement {
         name: name.into(),
-        kind: kind.into(),
+        kind,
         title: title.into(),
         text: text.into(),
         tally,
         failing,
         worst_margin,
-        origin: Span::default(),
     }
 }
 
-fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
+fn suite(s: usize, tests: &[&Made]) -> SuiteInfo {
     let (name, method) = SUITES[s];
-    let line_percent = |n: usize| ratios(&[together(&tests[..n])]).line_percent();
+    let line_percent = |n: usize| ratios(&together(&tests[..n])).line_percent();
     let goal = |goal: String, status: GoalStatus, reason: &str| GoalReport {
-        goal,
+        goal: goal.into(),
         status,
         reason: reason.into(),
         test: None,
     };
     let mut goals = Vec::new();
-    if method == "search" {
+    if method == TestMethod::Search {
         goals.extend(BINS[..13].iter().zip(0..13).map(|(b, i)| {
             let name = format!("bin human_robot.{b}");
             if i == 11 {
@@ -420,17 +417,17 @@ fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
     }
     SuiteInfo {
         name: name.into(),
-        method: method.into(),
+        method,
         abstract_tests: Some([131, 91, 160][s].min(tests.len())),
         tests: tests.len() as u32,
-        errors: tests.iter().filter(|t| t.error.is_some()).count() as u32,
+        errors: tests.iter().filter(|t| t.result.error.is_some()).count() as u32,
         goals,
         model: None,
         explanation: None,
         notes: if s == 0 { vec!["pairwise: 131 belief sets of 20480 possible".into()] } else { vec![] },
-        code: ratios(&[together(tests)]),
+        code: ratios(&together(tests)),
         code_accumulated: (1..=tests.len()).map(line_percent).collect(),
-        code_per_test: tests.iter().map(|t| t.code.line_percent()).collect(),
+        code_per_test: tests.iter().map(|t| t.result.code.line_percent()).collect(),
     }
 }
 
@@ -438,7 +435,7 @@ fn suite(s: usize, tests: &[&TestResult]) -> SuiteInfo {
 pub(crate) fn model() -> (ModelCoverage, Explanation) {
     let reached = [2, 1, 0, 0, 0, 0, 0, 1, 0];
     let all = [3, 2, 0, 0, 0, 0, 0, 2, 0];
-    let kinds = Kind::ALL.into_iter().zip(reached).zip(all);
+    let kinds = ItemKind::ALL.into_iter().zip(reached).zip(all);
     let unreached =
         |kind, item: &str, reason: &str| Unreached { kind, item: item.into(), reason: reason.into() };
     let before = "`+!leg` came twice: twice a plan before it was selected (`leg#1` twice)";
@@ -446,14 +443,14 @@ pub(crate) fn model() -> (ModelCoverage, Explanation) {
         agent: "Human".into(),
         kinds: kinds.map(|((kind, reached), all)| KindCoverage { kind, reached, all }).collect(),
         unreached: vec![
-            unreached(Kind::Selected, "plan Human.leg#2", before),
+            unreached(ItemKind::Selected, "plan Human.leg#2", before),
             unreached(
-                Kind::Completed,
+                ItemKind::Completed,
                 "plan Human.leg#1 completed",
                 "it was selected twice and failed twice",
             ),
             unreached(
-                Kind::Edge,
+                ItemKind::Edge,
                 "edge Human.table#1 -> leg#2 (step 1)",
                 "for this step others were selected (`leg#1` twice)",
             ),
@@ -463,8 +460,8 @@ pub(crate) fn model() -> (ModelCoverage, Explanation) {
         test: format!("bdi_tests.{name}"),
         because: vec![because.into()],
         reaches: 2,
-        first: first.iter().map(|s| (*s).to_owned()).collect(),
-        only: only.iter().map(|s| (*s).to_owned()).collect(),
+        first: first.iter().map(|s| (*s).into()).collect(),
+        only: only.iter().map(|s| (*s).into()).collect(),
     };
     let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
     let released = "bin human_robot.1 leg, released";
@@ -481,19 +478,21 @@ pub(crate) fn model() -> (ModelCoverage, Explanation) {
     (ModelCoverage { runs: 2, goals_reached: 3, goals: 5, agents: vec![human] }, explanation)
 }
 
-fn bin(bin: &str, tests: &[TestResult]) -> BinResult {
-    let name = format!("human_robot.{bin}");
+fn bin(bin: &str, tests: &[Made]) -> BinResult {
+    let name = BinName::new("human_robot", bin);
+    let tests: Vec<&TestResult> = tests.iter().map(|t| &t.result).collect();
     let number = |has: &dyn Fn(&TestResult) -> bool| -> Vec<u32> {
-        let of =
-            |(suite, _): &(&str, &str)| tests.iter().filter(|t| t.suite == *suite && has(t)).count() as u32;
+        let of = |(suite, _): &(&str, TestMethod)| {
+            tests.iter().filter(|t| t.suite == *suite && has(t)).count() as u32
+        };
         SUITES.iter().map(of).collect()
     };
-    let hits = number(&|t| t.bins.contains(&name));
+    let hits = number(&|t| t.judgement.bins.contains(&name));
     let unreachable =
         (bin == "1 leg, bored").then(|| "none of the 48210 symbolic states of the model meets it".into());
     BinResult {
         predicted: number(&|t| t.predicted.contains(&name) && unreachable.is_none()),
-        first: tests.iter().find(|t| t.bins.contains(&name)).map(|t| t.name.clone()),
+        first: tests.iter().find(|t| t.judgement.bins.contains(&name)).map(|t| t.name.clone()),
         cross: "human_robot".into(),
         bin: bin.into(),
         hits,
@@ -502,14 +501,20 @@ fn bin(bin: &str, tests: &[TestResult]) -> BinResult {
     }
 }
 
-fn code(tests: &[TestResult]) -> CodeFile {
+fn code(tests: &[Made]) -> CodeFile {
     let all = together(&tests.iter().collect::<Vec<_>>());
-    let executed_by = |line: &u32| tests.iter().filter(|t| t.files[0].executed.contains(line)).count() as u32;
+    let executed_by = |line: u32, is_of: &dyn Fn(&Made) -> bool| {
+        tests.iter().filter(|t| is_of(t) && t.executed.lines.contains(&line)).count() as u32
+    };
+    let suites = |line: &u32| {
+        SUITES.iter().map(|(suite, _)| executed_by(*line, &|t| t.result.suite == *suite)).collect()
+    };
     CodeFile {
         file: "robot.py".into(),
-        ratios: ratios(std::slice::from_ref(&all)),
-        lines: STATEMENTS.iter().map(|l| (*l, executed_by(l))).collect(),
-        missed_branches: BRANCHES.iter().copied().filter(|b| !all.executed_branches.contains(b)).collect(),
+        ratios: ratios(&all),
+        lines: STATEMENTS.iter().map(|l| (*l, executed_by(*l, &|_| true))).collect(),
+        suites: STATEMENTS.iter().map(suites).collect(),
+        missed_branches: BRANCHES.iter().copied().filter(|b| !all.branches.contains(b)).collect(),
         source: SOURCE.into(),
     }
 }

@@ -1,14 +1,12 @@
 //! Every test with its verdicts, its origin and its steps.
 
+use hrdsl_results::{BinName, Results, RunEnd, TestResult, VerdictOutcome as Outcome, VerdictResult};
 use serde::Serialize;
 
 use super::violations::{Witness, witness};
 use crate::{
-    report::{
-        facts::{self, Outcome},
-        text,
-    },
-    results::{Results, TestResult, VerdictResult},
+    facts::{self, ShownOutcome},
+    text,
 };
 
 /// More requirements than this have no column each.
@@ -33,7 +31,7 @@ struct Test {
     full_name: String,
     suite: usize,
     suite_name: String,
-    method: String,
+    method: &'static str,
     seed: u64,
     ended: &'static str,
     duration: String,
@@ -91,8 +89,8 @@ struct TestBin {
 /// All tests.
 pub fn list(results: &Results) -> List {
     List {
-        suites: results.suites.iter().map(|s| s.name.clone()).collect(),
-        requirements: results.requirements.iter().map(|r| r.name.clone()).collect(),
+        suites: results.suites.iter().map(|s| s.name.to_string()).collect(),
+        requirements: results.requirements.iter().map(|r| r.name.to_string()).collect(),
         has_columns: results.requirements.len() <= COLUMNS,
         tests: results.tests.iter().enumerate().map(|(i, t)| test(results, i, t)).collect(),
     }
@@ -100,7 +98,11 @@ pub fn list(results: &Results) -> List {
 
 /// What a test did to a requirement; nothing, if it says nothing.
 fn outcome(test: &TestResult, requirement: &str) -> Outcome {
-    test.verdicts.iter().find(|v| v.requirement == requirement).map_or(Outcome::NotChecked, Outcome::of)
+    test.judgement
+        .verdicts
+        .iter()
+        .find(|v| v.requirement == *requirement)
+        .map_or(Outcome::NotChecked, |v| v.outcome)
 }
 
 fn test(results: &Results, index: usize, test: &TestResult) -> Test {
@@ -113,31 +115,31 @@ fn test(results: &Results, index: usize, test: &TestResult) -> Test {
         symbol: overall.symbol(),
         says: says(results, test, &outcomes),
         name: facts::short(results, &test.name).to_owned(),
-        full_name: test.name.clone(),
+        full_name: test.name.to_string(),
         suite: suite.unwrap_or(results.suites.len()),
-        suite_name: test.suite.clone(),
-        method: test.method.clone(),
+        suite_name: test.suite.to_string(),
+        method: test.method.word(),
         seed: test.seed,
         ended: match test.ended {
-            "quiet" => "when nothing more could happen",
-            "limit" => "at the time limit",
-            "error" => "in error",
-            other => other,
+            RunEnd::Quiet => "when nothing more could happen",
+            RunEnd::Limit => "at the time limit",
+            RunEnd::Error => "in error",
         },
         duration: text::stretch(test.duration),
         letters: outcomes.iter().map(|o| o.letter()).collect(),
         marks: outcomes.iter().map(|o| Mark { class: o.letter(), symbol: o.symbol() }).collect(),
         error: test.error.as_deref().map(|e| text::ends(&text::clean(e))).unwrap_or_default(),
         failures: test
+            .judgement
             .verdicts
             .iter()
-            .filter(|v| Outcome::of(v) == Outcome::Fail)
+            .filter(|v| v.outcome == Outcome::Fail)
             .map(|v| failed(results, v))
             .collect(),
         others: groups(test),
         because: test.because.clone(),
         bins: bins(test),
-        bins_hit: test.bins.len(),
+        bins_hit: test.judgement.bins.len(),
         coverage: if test.code.lines_total > 0 {
             format!("{:.1} %", test.code.line_percent())
         } else {
@@ -151,7 +153,7 @@ fn test(results: &Results, index: usize, test: &TestResult) -> Test {
         notes: test.marks.iter().map(|m| m.sentence()).collect(),
         stderr: text::clean(&test.output.stderr_end),
         output: if test.output.stdout_bytes + test.output.stderr_bytes > 0 {
-            format!("output/{}.txt", test.file_stem())
+            format!("output/{}.txt", test.name.file_stem())
         } else {
             String::new()
         },
@@ -170,7 +172,7 @@ fn overall(test: &TestResult, outcomes: &[Outcome]) -> Outcome {
 fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
     let named = |outcome: Outcome| -> Vec<String> {
         let such = results.requirements.iter().zip(outcomes).filter(|(_, o)| **o == outcome);
-        such.map(|(r, _)| r.name.clone()).collect()
+        such.map(|(r, _)| r.name.to_string()).collect()
     };
     let mut says = Vec::new();
     if test.error.is_some() {
@@ -188,7 +190,7 @@ fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
 fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
     let requirement = results.requirements.iter().find(|r| r.name == verdict.requirement);
     FailedVerdict {
-        requirement: verdict.requirement.clone(),
+        requirement: verdict.requirement.to_string(),
         title: requirement.map(|r| r.title.clone()).unwrap_or_default(),
         witness: verdict.failure.as_ref().map(|failure| witness(verdict, failure)),
     }
@@ -196,7 +198,7 @@ fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
 
 fn groups(test: &TestResult) -> Vec<Group> {
     let group = |outcome: Outcome| {
-        let such = test.verdicts.iter().filter(|v| Outcome::of(v) == outcome);
+        let such = test.judgement.verdicts.iter().filter(|v| v.outcome == outcome);
         let verdicts: Vec<String> = such.map(|v| in_words(v, outcome)).collect();
         let group =
             Group { class: outcome.letter(), symbol: outcome.symbol(), word: outcome.word(), verdicts };
@@ -210,30 +212,30 @@ fn groups(test: &TestResult) -> Vec<Group> {
 
 /// `R6 3×, margin +0.0312 rad/s`
 fn in_words(verdict: &VerdictResult, outcome: Outcome) -> String {
-    let mut text = verdict.requirement.clone();
+    let mut text = verdict.requirement.to_string();
     if outcome == Outcome::Pass || outcome == Outcome::Open {
         text += &format!(" {}×", verdict.triggered);
     }
-    match verdict.worst_margin {
-        Some((value, unit)) => format!("{text} (margin {})", text::margin(value, unit)),
+    match &verdict.worst_margin {
+        Some((value, unit)) => format!("{text} (margin {})", text::margin(*value, unit)),
         None => text,
     }
 }
 
 /// First what was hit, then what was predicted in vain.
 fn bins(test: &TestResult) -> Vec<TestBin> {
-    let bin = |name: &String, outcome: Outcome, word| TestBin {
+    let bin = |name: &BinName, outcome: Outcome, word| TestBin {
         class: outcome.letter(),
         symbol: outcome.symbol(),
-        name: name.clone(),
+        name: name.to_string(),
         word,
     };
     let is_guided = !test.predicted.is_empty();
-    let hit = test.bins.iter().map(|name| match (test.predicted.contains(name), is_guided) {
+    let hit = test.judgement.bins.iter().map(|name| match (test.predicted.contains(name), is_guided) {
         (true, _) => bin(name, Outcome::Pass, "hit as predicted"),
         (false, true) => bin(name, Outcome::Pass, "hit, not predicted"),
         (false, false) => bin(name, Outcome::Pass, "hit"),
     });
-    let missed = test.predicted.iter().filter(|name| !test.bins.contains(name));
+    let missed = test.predicted.iter().filter(|name| !test.judgement.bins.contains(name));
     hit.chain(missed.map(|name| bin(name, Outcome::NotChecked, "predicted, not hit"))).collect()
 }

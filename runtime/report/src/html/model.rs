@@ -1,12 +1,9 @@
 //! The section about what of the models of suites by agents was reached.
 
+use hrdsl_results::{AgentCoverage, Results, SuiteInfo};
 use serde::Serialize;
 
 use super::super::model::{kinds, of, ratio};
-use crate::{
-    results::{Results, SuiteInfo},
-    testgen::AgentCoverage,
-};
 
 /// A suite by agents.
 #[derive(Serialize)]
@@ -57,17 +54,19 @@ fn model(suite: &SuiteInfo) -> Option<Model> {
         Agent {
             name: agent.agent.clone(),
             cells: kinds.iter().copied().map(cell).collect(),
-            unreached: unreached.map(|u| Reason { name: u.item.clone(), reason: u.reason.clone() }).collect(),
+            unreached: unreached
+                .map(|u| Reason { name: u.item.to_string(), reason: u.reason.clone() })
+                .collect(),
         }
     };
     let uncovered = suite.explanation.iter().flat_map(|e| &e.uncovered);
     Some(Model {
-        suite: suite.name.clone(),
+        suite: suite.name.to_string(),
         runs: coverage.runs,
         goals_reached: coverage.goals_reached,
         goals: coverage.goals,
         columns: kinds.iter().map(|k| k.title()).collect(),
         agents: coverage.agents.iter().map(agent).collect(),
-        uncovered: uncovered.map(|u| Reason { name: u.goal.clone(), reason: u.reason.clone() }).collect(),
+        uncovered: uncovered.map(|u| Reason { name: u.goal.to_string(), reason: u.reason.clone() }).collect(),
     })
 }

@@ -5,13 +5,13 @@
 
 use std::{fmt::Write as _, time::Duration};
 
+use hrdsl_results::{Results, TestResult, VerdictResult};
 use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, TestSuite};
 
-use super::{
-    facts::{self, Outcome},
+use crate::{
+    facts::{self, ShownOutcome},
     model, text,
 };
-use crate::results::{Results, TestResult, VerdictResult};
 
 /// Steps of a witness that are printed; the last ones, since they violate.
 const WITNESS: usize = 20;
@@ -51,7 +51,7 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
     let tests = || results.tests.iter().filter(|t| t.suite == name);
     let mut suite = TestSuite::new(text::line(name));
     suite.set_time(simulated(tests()));
-    suite.add_property(Property::new("hrdsl.version", text::line(&results.version)));
+    suite.add_property(Property::new("hrdsl.version", text::line(&results.hrdsl)));
     suite.add_property(Property::new("hrdsl.seed", results.seed.to_string()));
     if results.interrupted {
         let missing = results.planned.saturating_sub(results.tests.len());
@@ -61,7 +61,7 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
         ));
     }
     if let Some(info) = results.suites.iter().find(|s| s.name == name) {
-        suite.add_property(Property::new("hrdsl.method", text::line(&info.method)));
+        suite.add_property(Property::new("hrdsl.method", text::line(&info.method.word())));
         if let Some(number) = info.abstract_tests {
             suite.add_property(Property::new("hrdsl.abstract_tests", number.to_string()));
         }
@@ -94,11 +94,11 @@ fn test_case(results: &Results, test: &TestResult) -> TestCase {
     let mut case = TestCase::new(text::line(facts::short(results, &test.name)), status(results, test));
     case.set_classname(format!("{}.{}", text::line(&results.scenario), text::line(&test.suite)));
     case.set_time(simulated([test].into_iter()));
-    case.set_assertions(test.verdicts.iter().filter(|v| v.triggered > 0).count());
+    case.set_assertions(test.judgement.verdicts.iter().filter(|v| v.triggered > 0).count());
     case.add_property(Property::new("hrdsl.seed", test.seed.to_string()));
-    case.add_property(Property::new("hrdsl.ended", test.ended));
-    let verdict = |v: &VerdictResult| format!("{}: {}", text::line(&v.requirement), Outcome::of(v).word());
-    let verdicts: Vec<String> = test.verdicts.iter().map(verdict).collect();
+    case.add_property(Property::new("hrdsl.ended", test.ended.word()));
+    let verdict = |v: &VerdictResult| format!("{}: {}", text::line(&v.requirement), v.outcome.word());
+    let verdicts: Vec<String> = test.judgement.verdicts.iter().map(verdict).collect();
     case.add_property(Property::new("hrdsl.verdicts", verdicts.join(", ")));
     for mark in &test.marks {
         case.add_property(Property::new("hrdsl.mark", mark.sentence()));
@@ -106,7 +106,7 @@ fn test_case(results: &Results, test: &TestResult) -> TestCase {
     if !test.output.stderr_end.is_empty() {
         case.set_system_err(text::clean(&test.output.stderr_end));
     }
-    let bins: Vec<String> = test.bins.iter().map(|b| text::line(b)).collect();
+    let bins: Vec<String> = test.judgement.bins.iter().map(|b| text::line(b.as_str())).collect();
     if !bins.is_empty() {
         case.add_property(Property::new("hrdsl.bins", bins.join(", ")));
     }
@@ -147,14 +147,13 @@ fn violations(results: &Results, test: &TestResult) -> String {
             continue;
         }
         let name = text::line(&requirement.name);
-        let _ =
-            writeln!(out, "{name} ({}): {}", text::line(&requirement.kind), text::line(&requirement.title));
+        let _ = writeln!(out, "{name} ({}): {}", facts::kind(requirement), text::line(&requirement.title));
         let _ = writeln!(out, "  {}", text::line(&requirement.text));
         let Some((verdict, failure)) = facts::failure(test, &requirement.name) else { continue };
         let how = format!("violated at {}. {}", text::moment(failure.time), facts::how(failure));
         let _ = writeln!(out, "  {}", how.trim_end());
-        if let Some((value, unit)) = verdict.worst_margin {
-            let _ = writeln!(out, "  worst margin {}", text::margin(value, unit));
+        if let Some((value, unit)) = &verdict.worst_margin {
+            let _ = writeln!(out, "  worst margin {}", text::margin(*value, unit));
         }
         let left_out = failure.witness.len().saturating_sub(WITNESS);
         if left_out > 0 {

@@ -2,13 +2,15 @@
 
 use std::fmt::Write as _;
 
-use super::{
-    facts::{self, Bin, Outcome},
+use hrdsl_results::{
+    BinResult, ItemKind, Ratios, Requirement, Results, RunMark, SuiteInfo, TestResult,
+    VerdictOutcome as Outcome,
+};
+
+use crate::{
+    facts::{self, Bin, ShownOutcome},
     model, text,
 };
-use hrdsl_bdi::coverage::Kind;
-
-use crate::results::{BinResult, Ratios, Requirement, Results, RunMark, SuiteInfo, TestResult};
 
 /// Room for a label at the start of a line, at the least.
 const LABEL: usize = 20;
@@ -30,6 +32,20 @@ pub fn summary(results: &Results, width: usize, color: bool) -> String {
     code(&mut page, results);
     errors(&mut page, results);
     marks(&mut page, results);
+    page.out
+}
+
+/// The verdicts and bins of recordings, as [`summary`] shows those of a campaign.
+#[must_use]
+pub fn summary_of_recordings(results: &Results, width: usize, color: bool) -> String {
+    let mut page = Page { out: String::new(), width: width.max(40), color };
+    let scenario = text::line(&results.scenario);
+    page.line(&[Cell(scenario, Style::Bold), Cell("   judged from recordings".into(), Style::Dim)]);
+    totals(&mut page, results, "recording");
+    requirements(&mut page, results);
+    violations(&mut page, results);
+    bins(&mut page, results);
+    errors(&mut page, results);
     page.out
 }
 
@@ -125,19 +141,9 @@ impl Page {
 
 fn header(page: &mut Page, results: &Results) {
     let scenario = text::line(&results.scenario);
-    let about = format!("   seed {}   hrdsl {}", results.seed, text::line(&results.version));
+    let about = format!("   seed {}   hrdsl {}", results.seed, text::line(&results.hrdsl));
     page.line(&[Cell(scenario, Style::Bold), Cell(about, Style::Dim)]);
-    let failing = results.tests.iter().filter(|t| t.has_failed()).count();
-    let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
-    let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
-    page.line(&[
-        Cell(text::count(results.tests.len(), "test"), Style::Plain),
-        Cell(", ".into(), Style::Plain),
-        Cell(format!("{failing} with violations"), if failing > 0 { Style::Bad } else { Style::Good }),
-        Cell(", ".into(), Style::Plain),
-        Cell(text::count(broken, "error"), if broken > 0 { Style::Warn } else { Style::Good }),
-        Cell(format!(", {} simulated", text::stretch(simulated)), Style::Plain),
-    ]);
+    totals(page, results, "test");
     if results.interrupted {
         let missing = results.planned.saturating_sub(results.tests.len());
         let what =
@@ -146,11 +152,24 @@ fn header(page: &mut Page, results: &Results) {
     }
 }
 
+fn totals(page: &mut Page, results: &Results, what: &str) {
+    let failing = results.tests.iter().filter(|t| t.has_failed()).count();
+    let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
+    let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
+    page.line(&[
+        Cell(text::count(results.tests.len(), what), Style::Plain),
+        Cell(", ".into(), Style::Plain),
+        Cell(format!("{failing} with violations"), if failing > 0 { Style::Bad } else { Style::Good }),
+        Cell(", ".into(), Style::Plain),
+        Cell(text::count(broken, "error"), if broken > 0 { Style::Warn } else { Style::Good }),
+        Cell(format!(", {} simulated", text::stretch(simulated)), Style::Plain),
+    ]);
+}
+
 /// The outcomes with a column: the first three always, the others if there are any.
 fn columns(results: &Results) -> Vec<(Outcome, usize)> {
-    let most = |o: Outcome| {
-        results.requirements.iter().flat_map(|r| &r.tally).map(|t| o.count(t)).max().unwrap_or(0)
-    };
+    let most =
+        |o: Outcome| results.requirements.iter().flat_map(|r| &r.tally).map(|t| t.of(o)).max().unwrap_or(0);
     Outcome::ALL
         .into_iter()
         .map(|o| (o, most(o)))
@@ -164,7 +183,11 @@ fn requirements(page: &mut Page, results: &Results) {
         return;
     }
     let columns = columns(results);
-    let group = columns.iter().map(|(_, w)| w).sum::<usize>() + 2;
+    let numbers = columns.iter().map(|(_, w)| w).sum::<usize>();
+    let widest = results.suites.iter().map(|s| text::line(&s.name).chars().count()).max().unwrap_or(0);
+    // A name that is a little wider than its numbers moves them apart; one that is much wider is cut.
+    let group = numbers.max(widest.min(numbers + 6)) + 2;
+    let gap = group - numbers;
     let all: Vec<usize> = (0..results.suites.len()).collect();
     for suites in all.chunks(page.fit(group)) {
         let label = page.label(suites.len(), group);
@@ -172,14 +195,15 @@ fn requirements(page: &mut Page, results: &Results) {
         let mut names = vec![left("Requirements", label, Style::Bold)];
         let mut heads = vec![left("", label, Style::Plain)];
         for suite in suites {
-            names.push(right(&text::line(&results.suites[*suite].name), group, Style::Bold));
-            heads.push(Cell("  ".into(), Style::Plain));
+            let name = text::cut(&text::line(&results.suites[*suite].name), group - 1);
+            names.push(right(&name, group, Style::Bold));
+            heads.push(Cell(" ".repeat(gap), Style::Plain));
             heads.extend(columns.iter().map(|(o, w)| right(o.short(), *w, Style::Dim)));
         }
         page.line(&names);
         page.line(&heads);
         for requirement in &results.requirements {
-            requirement_line(page, requirement, suites, &columns, label);
+            requirement_line(page, requirement, suites, (&columns, gap), label);
         }
     }
 }
@@ -188,7 +212,7 @@ fn requirement_line(
     page: &mut Page,
     requirement: &Requirement,
     suites: &[usize],
-    columns: &[(Outcome, usize)],
+    (columns, gap): (&[(Outcome, usize)], usize),
     label: usize,
 ) {
     let standing = facts::standing(requirement);
@@ -198,9 +222,9 @@ fn requirement_line(
     let mut cells = vec![Cell(name, Style::of(standing)), left(&title, room, Style::Plain)];
     for suite in suites {
         let tally = requirement.tally.get(*suite).copied().unwrap_or_default();
-        cells.push(Cell("  ".into(), Style::Plain));
+        cells.push(Cell(" ".repeat(gap), Style::Plain));
         for (outcome, width) in columns {
-            let number = outcome.count(&tally);
+            let number = tally.of(*outcome);
             let marked = matches!(outcome, Outcome::Fail | Outcome::Open | Outcome::Error);
             let style = match number {
                 0 => Style::Dim,
@@ -266,13 +290,13 @@ fn bins(page: &mut Page, results: &Results) {
         results.bins.iter().filter(|b| Bin::of(b) != Bin::Hit).take(BINS).collect()
     };
     let all: Vec<usize> = (0..results.suites.len()).collect();
+    let is_predicted = all.iter().any(|suite| facts::predicts(results, *suite));
+    let what = if is_predicted { "  tests that hit / were predicted to" } else { "  tests that hit" };
     for suites in all.chunks(page.fit(column)) {
         let label = page.label(suites.len(), column);
         page.out.push('\n');
-        let mut names = vec![
-            Cell("Bins".into(), Style::Bold),
-            left("  tests that hit / were predicted to", label.saturating_sub(4), Style::Dim),
-        ];
+        let mut names =
+            vec![Cell("Bins".into(), Style::Bold), left(what, label.saturating_sub(4), Style::Dim)];
         let name = |i: &usize| right(&text::line(&results.suites[*i].name), column, Style::Bold);
         names.extend(suites.iter().map(name));
         page.line(&names);
@@ -310,7 +334,7 @@ fn bin_line(
         Bin::Unreachable => (Style::Dim, "  unreachable in the model"),
         Bin::Refuted => (Style::Bad, "  hit, yet unreachable in the model"),
     };
-    let name = text::line(if is_one_cross { &bin.bin } else { &bin.name });
+    let name = text::line(if is_one_cross { &bin.bin } else { bin.name.as_str() });
     let name = text::cut(&name, label.saturating_sub(3 + note.chars().count()).max(12));
     let rest = label.saturating_sub(2 + name.chars().count());
     let mut cells =
@@ -351,7 +375,7 @@ fn models(page: &mut Page, results: &Results) {
             page.line(&heads);
             for agent in &coverage.agents {
                 let mut cells = vec![left(&format!("  {}", text::line(&agent.agent)), label, Style::Plain)];
-                let cell = |kind: &Kind| {
+                let cell = |kind: &ItemKind| {
                     let tally = model::of(agent, *kind);
                     let style = if tally.reached < tally.all { Style::Warn } else { Style::Plain };
                     right(&model::ratio(tally), COLUMN, style)

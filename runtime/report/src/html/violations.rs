@@ -1,12 +1,10 @@
 //! Violated requirements, each with a few tests that show it and their witnesses.
 
+use hrdsl_results::{Failure, Requirement, Results, SuiteName, TestName, TestResult, VerdictResult};
 use serde::Serialize;
 
 use super::Link;
-use crate::{
-    report::{facts, text},
-    results::{Failure, Requirement, Results, TestResult, VerdictResult},
-};
+use crate::{facts, text};
 
 /// Tests that are shown with their witness for each requirement.
 const SHOWN: usize = 3;
@@ -17,7 +15,7 @@ const END: usize = 9;
 #[derive(Serialize)]
 pub struct Violated {
     name: String,
-    kind: String,
+    kind: &'static str,
     title: String,
     text: String,
     tests: usize,
@@ -59,7 +57,7 @@ pub struct Point {
 }
 
 /// One for each violated requirement.
-pub fn all(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<Violated> {
+pub fn all(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Violated> {
     let of = |requirement: &Requirement| {
         let failing = facts::failing(results, requirement);
         (!failing.is_empty()).then(|| violated(results, requirement, &failing, link))
@@ -71,7 +69,7 @@ fn violated(
     results: &Results,
     requirement: &Requirement,
     failing: &[(usize, &TestResult)],
-    link: &dyn Fn(&str) -> Link,
+    link: &dyn Fn(&TestName) -> Link,
 ) -> Violated {
     let chosen = choose(failing);
     let shown = |(_, test): &(usize, &TestResult)| Shown {
@@ -79,18 +77,18 @@ fn violated(
         witness: facts::failure(test, &requirement.name).map(|(verdict, failure)| witness(verdict, failure)),
         again: results.rerun_of(test).unwrap_or_default(),
     };
-    let number = |suite: &str| failing.iter().filter(|(_, t)| t.suite == suite).count();
+    let number = |suite: &SuiteName| failing.iter().filter(|(_, t)| t.suite == *suite).count();
     let others = failing.iter().filter(|(i, _)| chosen.iter().all(|(c, _)| c != i));
     Violated {
-        name: requirement.name.clone(),
-        kind: requirement.kind.clone(),
+        name: requirement.name.to_string(),
+        kind: facts::kind(requirement),
         title: requirement.title.clone(),
         text: requirement.text.clone(),
         tests: failing.len(),
         per_suite: results
             .suites
             .iter()
-            .map(|s| (s.name.clone(), number(&s.name)))
+            .map(|s| (s.name.to_string(), number(&s.name)))
             .filter(|(_, n)| *n > 0)
             .collect(),
         others: others.map(|(_, t)| link(&t.name)).collect(),
@@ -131,7 +129,11 @@ pub fn witness(verdict: &VerdictResult, failure: &Failure) -> Witness {
     Witness {
         how: facts::how(failure),
         time: text::moment(failure.time),
-        margin: verdict.worst_margin.map(|(value, unit)| text::margin(value, unit)).unwrap_or_default(),
+        margin: verdict
+            .worst_margin
+            .as_ref()
+            .map(|(value, unit)| text::margin(*value, unit))
+            .unwrap_or_default(),
         more: verdict.failures.saturating_sub(1),
         points,
     }

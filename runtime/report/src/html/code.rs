@@ -2,13 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use hrdsl_results::{CodeFile, Results, SuiteInfo};
 use serde::Serialize;
 
 use super::{Ratio, branches_of, lines_of};
-use crate::{
-    report::{facts, text},
-    results::{CodeFile, Results, SuiteInfo},
-};
+use crate::{facts, text};
 
 #[derive(Serialize)]
 pub struct Code {
@@ -58,7 +56,7 @@ pub fn code(results: &Results) -> Option<Code> {
 }
 
 fn file(results: &Results, file: &CodeFile) -> File {
-    let per_suite = per_suite(results, file);
+    let is_executed = file.lines.iter().any(|(_, tests)| *tests > 0);
     let missed = file.lines.iter().filter(|(_, tests)| *tests == 0).map(|(line, _)| *line);
     File {
         name: file.file.clone(),
@@ -66,28 +64,17 @@ fn file(results: &Results, file: &CodeFile) -> File {
         branches: branches_of(file.ratios),
         missed_lines: text::ranges(missed),
         missed_branches: file.missed_branches.len(),
-        is_per_suite: !per_suite.is_empty() && results.suites.len() > 1,
-        rows: if file.source.is_empty() { Vec::new() } else { rows(file, &per_suite, results.suites.len()) },
+        is_per_suite: is_executed && results.suites.len() > 1,
+        rows: if file.source.is_empty() { Vec::new() } else { rows(file) },
     }
 }
 
-/// For each line the number of tests of each suite that executed it; empty if the tests do not say.
-fn per_suite(results: &Results, file: &CodeFile) -> BTreeMap<u32, Vec<u32>> {
-    let mut counts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for test in &results.tests {
-        let Some(suite) = results.suites.iter().position(|s| s.name == test.suite) else { continue };
-        for line in test.files.iter().filter(|f| f.file == file.file).flat_map(|f| &f.executed) {
-            counts.entry(*line).or_insert_with(|| vec![0; results.suites.len()])[suite] += 1;
-        }
-    }
-    counts
-}
-
-fn rows(file: &CodeFile, per_suite: &BTreeMap<u32, Vec<u32>>, suites: usize) -> Vec<Line> {
-    let tests: BTreeMap<u32, u32> = file.lines.iter().copied().collect();
-    let none = vec![0; suites];
+fn rows(file: &CodeFile) -> Vec<Line> {
+    let counts = file.lines.iter().zip(&file.suites);
+    let counts: BTreeMap<u32, (u32, &Vec<u32>)> =
+        counts.map(|((line, tests), suites)| (*line, (*tests, suites))).collect();
     let row = |(text, number): (&str, u32)| {
-        let count = tests.get(&number).copied();
+        let count = counts.get(&number).map(|(tests, _)| *tests);
         let missed = file.missed_branches.iter().filter(|(from, _)| *from == number).map(|(_, to)| *to);
         let missed: BTreeSet<i32> = missed.collect();
         let (class, symbol) = match count {
@@ -101,11 +88,7 @@ fn rows(file: &CodeFile, per_suite: &BTreeMap<u32, Vec<u32>>, suites: usize) -> 
             class,
             symbol,
             tests: count,
-            suites: if count.is_some() {
-                per_suite.get(&number).unwrap_or(&none).clone()
-            } else {
-                Vec::new()
-            },
+            suites: counts.get(&number).map(|(_, suites)| suites.to_vec()).unwrap_or_default(),
             text: text.to_owned(),
             note: if class == "b" { note(&missed) } else { String::new() },
         }
@@ -257,7 +240,7 @@ fn curve(index: usize, suite: &SuiteInfo, measured: &[bool], scale: &Scale) -> C
     let last = suite.code_accumulated.last().copied().unwrap_or(0.0);
     Curve {
         style,
-        name: suite.name.clone(),
+        name: suite.name.to_string(),
         last: format!("{last:.1}"),
         line,
         dots: dots.map(|(dot_at, _)| dot(dot_at)).collect(),
@@ -290,8 +273,8 @@ mod tests {
     use super::*;
 
     fn suite(name: &str, accumulated: &[f64]) -> SuiteInfo {
-        let mut info = crate::report::fixture::campaign(1).suites[0].clone();
-        info.name = name.to_owned();
+        let mut info = crate::fixture::campaign(1).suites[0].clone();
+        info.name = name.into();
         info.code_accumulated = accumulated.to_vec();
         info.code_per_test = accumulated.to_vec();
         info

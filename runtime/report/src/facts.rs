@@ -2,36 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use super::text;
-use crate::results::{BinResult, Failure, Ratios, Requirement, Results, Tally, TestResult, VerdictResult};
+use hrdsl_results::{
+    BinResult, Failure, GoalStatus, Ratios, Requirement, RequirementKind, Results, Tally, TestName,
+    TestResult, VerdictOutcome as Outcome, VerdictResult,
+};
 
-/// The outcome of a requirement in a test.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    Pass,
-    Fail,
-    NotChecked,
-    Open,
-    Error,
+use crate::text;
+
+/// How a verdict is shown.
+pub trait ShownOutcome {
+    fn symbol(self) -> &'static str;
+    fn short(self) -> &'static str;
+    fn letter(self) -> char;
+    fn word(self) -> &'static str;
 }
 
-impl Outcome {
-    pub const ALL: [Outcome; 5] =
-        [Outcome::Pass, Outcome::Fail, Outcome::NotChecked, Outcome::Open, Outcome::Error];
-
-    /// The outcome as [`VerdictResult`] writes it; a word that is none of them says that nothing was checked.
-    pub fn of(verdict: &VerdictResult) -> Self {
-        match verdict.outcome {
-            "pass" => Outcome::Pass,
-            "fail" => Outcome::Fail,
-            "open" => Outcome::Open,
-            "error" => Outcome::Error,
-            _ => Outcome::NotChecked,
-        }
-    }
-
+impl ShownOutcome for Outcome {
     /// A mark that needs no colour.
-    pub fn symbol(self) -> &'static str {
+    fn symbol(self) -> &'static str {
         match self {
             Outcome::Pass => "✓",
             Outcome::Fail => "✗",
@@ -42,7 +30,7 @@ impl Outcome {
     }
 
     /// The heading of its column.
-    pub fn short(self) -> &'static str {
+    fn short(self) -> &'static str {
         match self {
             Outcome::Pass => "P",
             Outcome::Fail => "F",
@@ -53,7 +41,7 @@ impl Outcome {
     }
 
     /// One letter, for style classes and filters.
-    pub fn letter(self) -> char {
+    fn letter(self) -> char {
         match self {
             Outcome::Pass => 'p',
             Outcome::Fail => 'f',
@@ -64,7 +52,7 @@ impl Outcome {
     }
 
     /// As a word.
-    pub fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Outcome::Pass => "passed",
             Outcome::Fail => "violated",
@@ -73,16 +61,13 @@ impl Outcome {
             Outcome::Error => "error",
         }
     }
+}
 
-    /// Its number in a tally.
-    pub fn count(self, tally: &Tally) -> u32 {
-        match self {
-            Outcome::Pass => tally.pass,
-            Outcome::Fail => tally.fail,
-            Outcome::NotChecked => tally.not_checked,
-            Outcome::Open => tally.open,
-            Outcome::Error => tally.error,
-        }
+/// The kind of a requirement, as a word.
+pub fn kind(requirement: &Requirement) -> &'static str {
+    match requirement.kind {
+        RequirementKind::Safety => "safety",
+        RequirementKind::Functional => "functional",
     }
 }
 
@@ -168,13 +153,17 @@ pub fn code(results: &Results) -> Ratios {
 
 /// Whether a test violates a requirement.
 pub fn violates(test: &TestResult, requirement: &str) -> bool {
-    test.verdicts.iter().any(|v| v.requirement == requirement && v.outcome == "fail")
+    failed(test, requirement).is_some()
 }
 
 /// The failure of a requirement in a test.
 pub fn failure<'a>(test: &'a TestResult, requirement: &str) -> Option<(&'a VerdictResult, &'a Failure)> {
-    let verdict = test.verdicts.iter().find(|v| v.requirement == requirement && v.outcome == "fail")?;
+    let verdict = failed(test, requirement)?;
     verdict.failure.as_ref().map(|failure| (verdict, failure))
+}
+
+fn failed<'a>(test: &'a TestResult, requirement: &str) -> Option<&'a VerdictResult> {
+    test.judgement.verdicts.iter().find(|v| v.requirement == *requirement && v.outcome == Outcome::Fail)
 }
 
 /// The tests that violate a requirement, in order, each with its place in [`Results::tests`].
@@ -203,22 +192,21 @@ pub fn in_short(verdict: &VerdictResult, failure: &Failure) -> String {
         (false, [first, .., _]) if failure.triggered_at < failure.time => {
             format!("{step}, {passed} after {}", text::line(&first.text))
         }
-        (false, _) => match verdict.worst_margin {
-            Some((value, unit)) => format!("{step}, margin {}", text::margin(value, unit)),
+        (false, _) => match &verdict.worst_margin {
+            Some((value, unit)) => format!("{step}, margin {}", text::margin(*value, unit)),
             None => step,
         },
     }
 }
 
 /// A test's name within its scenario.
-pub fn short<'a>(results: &Results, name: &'a str) -> &'a str {
-    let within = name.strip_prefix(results.scenario.as_str()).and_then(|n| n.strip_prefix('.'));
-    within.unwrap_or(name)
+pub fn short<'a>(results: &Results, name: &'a TestName) -> &'a str {
+    name.within(&results.scenario)
 }
 
 /// The first place of each test's name.
-pub fn places(results: &Results) -> BTreeMap<&str, usize> {
-    results.tests.iter().enumerate().rev().map(|(i, t)| (t.name.as_str(), i)).collect()
+pub fn places(results: &Results) -> BTreeMap<&TestName, usize> {
+    results.tests.iter().enumerate().rev().map(|(i, t)| (&t.name, i)).collect()
 }
 
 /// What the campaign leaves unsaid, in sentences: unchecked requirements, missed bins, open goals, missed code, errors.
@@ -228,7 +216,7 @@ pub fn gaps(results: &Results) -> Vec<String> {
     unchecked(results, &mut gaps);
     missed_bins(results, &mut gaps);
     for suite in &results.suites {
-        let open = suite.goals.iter().filter(|g| g.status == crate::testgen::GoalStatus::Open).count();
+        let open = suite.goals.iter().filter(|g| g.status == GoalStatus::Open).count();
         if open > 0 {
             gaps.push(format!(
                 "{} of {} stayed open: the search ended before it had an answer.",
@@ -277,14 +265,16 @@ fn unchecked(results: &Results, gaps: &mut Vec<String>) {
         .requirements
         .iter()
         .filter(|r| !r.tally.iter().any(checked))
-        .map(|r| r.name.clone())
+        .map(|r| r.name.to_string())
         .collect();
     if !never.is_empty() {
         gaps.push(format!("{} got no verdict from any test.", text::enumeration(&never)));
     }
     for (i, suite) in results.suites.iter().enumerate() {
-        let here = |r: &&Requirement| !r.tally.get(i).is_some_and(checked) && !never.contains(&r.name);
-        let names: Vec<String> = results.requirements.iter().filter(here).map(|r| r.name.clone()).collect();
+        let here =
+            |r: &&Requirement| !r.tally.get(i).is_some_and(checked) && !never.contains(&r.name.to_string());
+        let names: Vec<String> =
+            results.requirements.iter().filter(here).map(|r| r.name.to_string()).collect();
         if !names.is_empty() {
             gaps.push(format!("{} got no verdict from {}.", text::enumeration(&names), suite.name));
         }

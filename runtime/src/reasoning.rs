@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use hrdsl_bdi::{Standing, Status, show};
 use hrdsl_ir::{Nanos, Span};
+use hrdsl_report::text;
 use serde::Serialize;
 
-use super::text;
 use crate::harness::{Ended, Fault, Inspection, LogLine};
 
 /// Of more cycles of an agent in a round than this only the first and last are shown.

@@ -2,26 +2,26 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_bdi::coverage::Kind;
+use hrdsl_results::ItemKind;
 
 use super::text;
-use crate::testgen::{AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation};
+use hrdsl_results::{AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation};
 
 /// Goals that are listed for a test, at most.
 const LISTED: usize = 12;
 
 /// The heading of a narrow column.
-pub fn short(kind: Kind) -> &'static str {
+pub fn short(kind: ItemKind) -> &'static str {
     match kind {
-        Kind::Selected => "plans",
-        Kind::Completed => "done",
-        Kind::Failed => "failed",
-        Kind::ContextTrue => "true",
-        Kind::ContextFalse => "false",
-        Kind::Applicable => "choices",
-        Kind::Message => "messages",
-        Kind::Edge => "edges",
-        Kind::Path => "paths",
+        ItemKind::Selected => "plans",
+        ItemKind::Completed => "done",
+        ItemKind::Failed => "failed",
+        ItemKind::ContextTrue => "true",
+        ItemKind::ContextFalse => "false",
+        ItemKind::Applicable => "choices",
+        ItemKind::Message => "messages",
+        ItemKind::Edge => "edges",
+        ItemKind::Path => "paths",
     }
 }
 
@@ -31,13 +31,13 @@ pub fn ratio(tally: KindCoverage) -> String {
 }
 
 /// The kinds of which an agent of the suite has items.
-pub fn kinds(model: &ModelCoverage) -> Vec<Kind> {
-    let has = |kind: &Kind| model.agents.iter().any(|a| of(a, *kind).all > 0);
-    Kind::ALL.into_iter().filter(has).collect()
+pub fn kinds(model: &ModelCoverage) -> Vec<ItemKind> {
+    let has = |kind: &ItemKind| model.agents.iter().any(|a| of(a, *kind).all > 0);
+    ItemKind::ALL.into_iter().filter(has).collect()
 }
 
 /// An agent's tally of a kind.
-pub fn of(agent: &AgentCoverage, kind: Kind) -> KindCoverage {
+pub fn of(agent: &AgentCoverage, kind: ItemKind) -> KindCoverage {
     let none = KindCoverage { kind, reached: 0, all: 0 };
     agent.kinds.iter().find(|k| k.kind == kind).copied().unwrap_or(none)
 }

@@ -8,16 +8,16 @@ mod model;
 mod tests_list;
 mod violations;
 
+use hrdsl_results::{
+    BinResult, GoalReport, GoalStatus, Ratios, Requirement, Results, SuiteInfo, Tally, TestName,
+    VerdictOutcome as Outcome,
+};
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
 
-use super::{
-    facts::{self, Bin, Outcome},
-    text,
-};
 use crate::{
-    results::{BinResult, Ratios, Requirement, Results, SuiteInfo, Tally},
-    testgen::{GoalReport, GoalStatus},
+    facts::{self, Bin, ShownOutcome},
+    text,
 };
 
 /// The results as one page.
@@ -106,7 +106,7 @@ struct Fact {
 #[derive(Serialize)]
 struct Suite {
     name: String,
-    method: String,
+    method: &'static str,
     abstract_tests: String,
     tests: u32,
     failing: usize,
@@ -139,7 +139,7 @@ struct Row {
     class: char,
     symbol: &'static str,
     name: String,
-    kind: String,
+    kind: &'static str,
     title: String,
     text: String,
     standing: String,
@@ -210,7 +210,7 @@ struct Goal {
 impl Page {
     fn of(results: &Results) -> Self {
         let places = facts::places(results);
-        let link = |name: &str| Link {
+        let link = |name: &TestName| Link {
             name: facts::short(results, name).to_owned(),
             place: places.get(name).map(|place| place + 1),
         };
@@ -218,7 +218,7 @@ impl Page {
         let suites = 0..results.suites.len();
         Page {
             scenario: results.scenario.clone(),
-            version: results.version.clone(),
+            version: results.hrdsl.clone(),
             seed: results.seed,
             conclusion: conclusion(results),
             facts: heading(results),
@@ -243,7 +243,7 @@ impl Page {
 fn conclusion(results: &Results) -> Vec<Part> {
     let named = |outcome: Outcome| -> Vec<String> {
         let such = results.requirements.iter().filter(|r| facts::standing(r) == outcome);
-        such.map(|r| r.name.clone()).collect()
+        such.map(|r| r.name.to_string()).collect()
     };
     let mut parts = Vec::new();
     let mut say = |class: &'static str, text: String| parts.push(Part { class, text });
@@ -331,8 +331,8 @@ fn suite(results: &Results, index: usize) -> Suite {
     let info: &SuiteInfo = &results.suites[index];
     let tests = || results.tests.iter().filter(|t| t.suite == info.name);
     Suite {
-        name: info.name.clone(),
-        method: info.method.clone(),
+        name: info.name.to_string(),
+        method: info.method.word(),
         abstract_tests: info.abstract_tests.map(|n| n.to_string()).unwrap_or_else(|| "–".to_owned()),
         tests: info.tests,
         failing: tests().filter(|t| t.has_failed()).count(),
@@ -345,7 +345,7 @@ fn suite(results: &Results, index: usize) -> Suite {
     }
 }
 
-fn rows(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<Row> {
+fn rows(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Row> {
     let mut section = 0;
     let row = |requirement: &Requirement| {
         let standing = facts::standing(requirement);
@@ -354,20 +354,20 @@ fn rows(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<Row> {
         let total = facts::total(requirement);
         let tally = (0..results.suites.len()).map(|s| {
             let tally = requirement.tally.get(s).copied().unwrap_or_default();
-            Outcome::ALL.iter().map(|o| o.count(&tally)).collect()
+            Outcome::ALL.iter().map(|o| tally.of(*o)).collect()
         });
         Row {
             class: standing.letter(),
             symbol: standing.symbol(),
-            name: requirement.name.clone(),
-            kind: requirement.kind.clone(),
+            name: requirement.name.to_string(),
+            kind: facts::kind(requirement),
             title: requirement.title.clone(),
             text: requirement.text.clone(),
             standing: in_words(standing, &total),
             section: if is_violated { section } else { 0 },
             tally: tally.collect(),
             margin: requirement.worst_margin.as_ref().map(|m| WorstMargin {
-                value: text::margin(m.value, m.unit),
+                value: text::margin(m.value, &m.unit),
                 is_negative: m.value < 0.0,
                 test: link(&m.test),
             }),
@@ -388,7 +388,7 @@ fn in_words(standing: Outcome, total: &Tally) -> String {
 }
 
 /// The bins by the cross product that they belong to, in order.
-fn bin_groups(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<BinGroup> {
+fn bin_groups(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<BinGroup> {
     let mut groups: Vec<BinGroup> = Vec::new();
     for bin in &results.bins {
         let row = bin_row(results, bin, link);
@@ -400,7 +400,7 @@ fn bin_groups(results: &Results, link: &dyn Fn(&str) -> Link) -> Vec<BinGroup> {
     groups
 }
 
-fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&str) -> Link) -> BinRow {
+fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&TestName) -> Link) -> BinRow {
     let state = Bin::of(bin);
     let (class, words) = match state {
         Bin::Hit => ("p", "hit"),
@@ -424,18 +424,18 @@ fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&str) -> Link) -> B
         name: bin.bin.clone(),
         cells: (0..results.suites.len()).map(cell).collect(),
         total: bin.hits.iter().sum(),
-        first: bin.first.as_deref().map(link),
+        first: bin.first.as_ref().map(link),
         reason: bin.unreachable.clone().unwrap_or_default(),
     }
 }
 
 fn goals(suite: &SuiteInfo) -> Goals {
     let with = |status: GoalStatus| -> Vec<Goal> {
-        let goal = |g: &GoalReport| Goal { goal: g.goal.clone(), reason: g.reason.clone() };
+        let goal = |g: &GoalReport| Goal { goal: g.goal.to_string(), reason: g.reason.clone() };
         suite.goals.iter().filter(|g| g.status == status).map(goal).collect()
     };
     Goals {
-        suite: suite.name.clone(),
+        suite: suite.name.to_string(),
         reached: with(GoalStatus::Reached),
         unreachable: with(GoalStatus::Unreachable),
         open: with(GoalStatus::Open),

@@ -1,6 +1,6 @@
 //! Untrusted text made harmless, and numbers for people.
 
-use hrdsl_ir::is_steering;
+use hrdsl_source::is_steering;
 
 /// The text without terminal escapes, control characters and marks that change the direction of writing.
 ///

@@ -1,5 +1,7 @@
 use super::*;
-use crate::report::fixture;
+use hrdsl_results::BinName;
+
+use crate::fixture;
 
 /// Whether every element that must be closed is, in the right order, and no attribute runs away.
 fn unbalanced(page: &str) -> Option<String> {
@@ -97,19 +99,19 @@ fn hostile_text_stays_text() {
     let mut results = fixture::campaign(2);
     results.scenario = bad.to_owned();
     results.requirements[0].title = bad.to_owned();
-    results.requirements[0].name = bad.to_owned();
-    results.suites[0].name = bad.to_owned();
+    results.requirements[0].name = bad.into();
+    results.suites[0].name = bad.into();
     results.suites[0].notes = vec![bad.to_owned()];
     results.bins[0].bin = bad.to_owned();
     results.code[0].source = bad.to_owned();
     for test in &mut results.tests {
-        test.name = bad.to_owned();
-        test.suite = bad.to_owned();
+        test.name = bad.into();
+        test.suite = bad.into();
         test.error = Some(format!("</pre></details>{bad}"));
         test.steps = vec![bad.to_owned()];
         test.because = vec![bad.to_owned(), bad.to_owned()];
-        test.bins = vec![bad.to_owned()];
-        for verdict in &mut test.verdicts {
+        test.judgement.bins = vec![BinName::new(bad, bad)];
+        for verdict in &mut test.judgement.verdicts {
             for step in verdict.failure.iter_mut().flat_map(|f| &mut f.witness) {
                 step.text = bad.to_owned();
             }
@@ -140,7 +142,7 @@ fn many_requirements_are_named_instead_of_having_columns() {
     let mut results = fixture::campaign(3);
     for i in 0..20 {
         let mut requirement = results.requirements[5].clone();
-        requirement.name = format!("X{i}");
+        requirement.name = format!("X{i}").into();
         results.requirements.push(requirement);
     }
     let page = html(&results);

@@ -1,0 +1,190 @@
+//! `hrdsl judge`: verdicts and bins from recordings.
+
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::BufReader,
+    path::{Path, PathBuf},
+};
+
+use hrdsl_ir::Program;
+use hrdsl_runtime::{
+    campaign::{CampaignOutcome, FinishedTest},
+    judge::{JudgedRecording, judge_recording},
+    report,
+    results::{BinName, BinResult, Requirement, Results, RunEnd, TestName, TestResult, VerdictResult},
+    tally,
+};
+use serde::Serialize;
+
+use super::report::WIDTH;
+use crate::{
+    color,
+    exit::Exit,
+    input::{self, Fault},
+    terminal,
+};
+
+/// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
+///
+/// A recording is a file that `sim` wrote into traces/, or that another program wrote in the same form (spec/traces.md).
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json"
+)]
+pub struct Args {
+    /// The scenario.
+    file: PathBuf,
+    /// Recordings, or folders with recordings (`.jsonl`) in them.
+    #[arg(required = true)]
+    recordings: Vec<PathBuf>,
+    /// Print the verdicts, failures and bins as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Judge recordings of another scenario, or of other events and signals, too, as long as every name in them is known.
+    #[arg(long)]
+    changed: bool,
+    /// Exit with 0 even if requirements were violated or runs broke off.
+    #[arg(long)]
+    exit_zero: bool,
+}
+
+/// What `--json` prints. The parts of a test are those of `results.json`, byte for byte.
+#[derive(Serialize)]
+struct Document<'a> {
+    format: &'static str,
+    version: u32,
+    scenario: &'a str,
+    requirements: &'a [Requirement],
+    bins: &'a [BinResult],
+    tests: Vec<JudgedTest<'a>>,
+}
+
+#[derive(Serialize)]
+struct JudgedTest<'a> {
+    name: &'a TestName,
+    seed: u64,
+    ended: RunEnd,
+    error: Option<&'a str>,
+    duration: f64,
+    verdicts: &'a [VerdictResult],
+    bins: &'a [BinName],
+}
+
+/// # Errors
+/// A file that cannot be read, or a scenario that has nothing to judge.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let compilation = input::load(&args.file, &[])?;
+    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let mut tests = Vec::new();
+    let mut refused = 0_usize;
+    for path in paths(&args.recordings)? {
+        match judged(program, &path, args.changed) {
+            Ok(result) => tests.push(FinishedTest { result, executed: Vec::new() }),
+            Err(why) => {
+                terminal::say_line(format_args!("error: {}: {why}", terminal::shown(&path)));
+                refused += 1;
+            }
+        }
+    }
+    let planned = tests.len() + refused;
+    let outcome = CampaignOutcome { tests, planned, interrupted: false };
+    let results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
+    if args.json {
+        input::print_data(&json(&results)?)?;
+    } else if !results.tests.is_empty() {
+        input::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
+    }
+    let is_clean =
+        results.tests.iter().all(|t| t.error.is_none() && t.ended != RunEnd::Error && !t.has_failed());
+    Ok(if refused > 0 {
+        Exit::Usage
+    } else if is_clean || args.exit_zero {
+        Exit::Ok
+    } else {
+        Exit::Findings
+    })
+}
+
+/// The recordings: files as they are given, of a folder those in and below it, in order.
+fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
+    let mut all = Vec::new();
+    for path in given {
+        if path.is_dir() {
+            let before = all.len();
+            below(path, &mut all)?;
+            if all.len() == before {
+                return Err(format!("there is no recording (`.jsonl`) in {}", terminal::shown(path)));
+            }
+        } else {
+            all.push(path.clone());
+        }
+    }
+    Ok(all)
+}
+
+fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
+    let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(folder));
+    let entries = std::fs::read_dir(folder).map_err(fault)?.collect::<Result<Vec<_>, _>>().map_err(fault)?;
+    let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
+    paths.sort();
+    for path in paths {
+        // Links are not followed: they may lead in circles.
+        if path.is_symlink() {
+            continue;
+        }
+        if path.is_dir() {
+            below(&path, found)?;
+        } else if path.extension().is_some_and(|e| e == "jsonl") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// What a recording shows, as the result of its test.
+fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, Fault> {
+    let file = File::open(path).map_err(|e| e.to_string())?;
+    let judged = judge_recording(program, BufReader::new(file), changed).map_err(|e| e.to_string())?;
+    let duration = judged.duration();
+    let JudgedRecording { recorded, judgement } = judged;
+    // What is no test is called as its file is.
+    let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = TestName::from(recorded.header.test.unwrap_or_else(stem));
+    let suite = name.within(&program.name).rsplit_once('.').map_or("recordings", |(suite, _)| suite).into();
+    Ok(TestResult {
+        name,
+        suite,
+        seed: recorded.header.seed.unwrap_or(0),
+        ended: recorded.ending.how,
+        error: recorded.ending.error,
+        duration,
+        judgement,
+        ..TestResult::default()
+    })
+}
+
+fn json(results: &Results) -> Result<String, Fault> {
+    fn test(t: &TestResult) -> JudgedTest<'_> {
+        let TestResult { name, seed, ended, error, duration, judgement, .. } = t;
+        JudgedTest {
+            name,
+            seed: *seed,
+            ended: *ended,
+            error: error.as_deref(),
+            duration: *duration,
+            verdicts: &judgement.verdicts,
+            bins: &judgement.bins,
+        }
+    }
+    let document = Document {
+        format: "hrdsl-judgement",
+        version: 1,
+        scenario: &results.scenario,
+        requirements: &results.requirements,
+        bins: &results.bins,
+        tests: results.tests.iter().map(test).collect(),
+    };
+    let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
+    Ok(text + "\n")
+}

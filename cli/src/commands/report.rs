@@ -1,0 +1,80 @@
+//! `hrdsl report`: the reports of a campaign, made again from its results.
+
+use std::path::{Path, PathBuf};
+
+use hrdsl_runtime::{report, results::Results};
+
+use crate::{
+    color,
+    exit::Exit,
+    input::{self, Fault},
+    results_folder::ResultsFolder,
+    terminal,
+};
+
+/// Make the reports of a campaign again from its results, and print the summary.
+///
+/// Writes report.html and junit.xml into the folder of the results, or another one. Nothing is run.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  hrdsl report hrdsl-out/handover\n  hrdsl report hrdsl-out/handover -o public\n  hrdsl report hrdsl-out/handover --print junit > junit.xml\n  hrdsl report --schema"
+)]
+pub struct Args {
+    /// The folder of the results, or a results.json.
+    #[arg(required_unless_present = "schema")]
+    results: Option<PathBuf>,
+    /// The folder to write to, instead of that of the results.
+    #[arg(short, long, value_name = "DIR", conflicts_with = "print")]
+    out: Option<PathBuf>,
+    /// Print one report to standard output, and write nothing.
+    #[arg(long, value_enum, value_name = "REPORT")]
+    print: Option<Printed>,
+    /// Print the JSON Schema of results.json.
+    #[arg(long, exclusive = true)]
+    schema: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Printed {
+    /// What `sim` prints at its end.
+    Summary,
+    /// The page.
+    Html,
+    /// For continuous integration.
+    Junit,
+}
+
+/// The columns of a summary.
+pub const WIDTH: usize = 100;
+
+/// # Errors
+/// Results that cannot be read, or a folder that cannot be written.
+pub fn run(args: &Args) -> Result<Exit, Fault> {
+    let Some(given) = &args.results else {
+        input::print_data(&Results::schema().map_err(|e| e.to_string())?)?;
+        return Ok(Exit::Ok);
+    };
+    let path = if given.is_dir() { given.join("results.json") } else { given.clone() };
+    let text = input::read(&path)?;
+    let results = Results::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
+    match args.print {
+        Some(Printed::Summary) => input::print(&report::summary(&results, WIDTH, color::stdout_has()))?,
+        Some(Printed::Html) => input::print_data(&report::html(&results))?,
+        Some(Printed::Junit) => input::print_data(&report::junit(&results))?,
+        None => {
+            let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let out = args.out.as_deref().unwrap_or(beside);
+            let page = write(&results, out)?;
+            let summary = report::summary(&results, WIDTH, color::stdout_has());
+            input::print(&format!("{summary}report: {}\n", terminal::shown(&page)))?;
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+/// Writes the reports; gives the path of the page.
+fn write(results: &Results, to: &Path) -> Result<PathBuf, Fault> {
+    let mut folder = ResultsFolder::beside(to)?;
+    folder.write(Path::new("junit.xml"), &report::junit(results))?;
+    folder.write(Path::new("report.html"), &report::html(results))
+}

@@ -1,0 +1,97 @@
+//! Judgement: from a [`Program`] and a trace to verdicts and bins, whoever made the trace.
+//!
+//! A campaign judges the trace of each run, and `hrdsl judge` a recording; both do it here, so that a recording has the
+//! verdicts of its run.
+//!
+//! # Steps
+//! 1. [`Judge::new`] readies the requirements' monitors and the coverage points;
+//! 2. the trace is shown to it, step by step ([`Observer`]), in memory that does not grow with the trace;
+//! 3. [`Judge::finish`] gives the [`Judgement`].
+//!
+//! [`judge_recording`] does all three with a recording, which it reads in one pass.
+
+mod recording;
+
+use hrdsl_coverage::Collector;
+use hrdsl_ir::{Nanos, Program, value::seconds};
+use hrdsl_monitor::{Checker, Outcome, SeenStep, Verdict};
+use hrdsl_results::{Failure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+use hrdsl_trace::{Observer, RunEnd, Step, What, print};
+
+pub use recording::{JudgeError, JudgedRecording, judge_recording};
+
+/// Judges one trace.
+#[derive(Clone, Debug)]
+pub struct Judge<'p> {
+    program: &'p Program,
+    checker: Checker,
+    collector: Collector,
+}
+
+impl<'p> Judge<'p> {
+    #[must_use]
+    pub fn new(program: &'p Program) -> Self {
+        Self { program, checker: Checker::new(program), collector: Collector::new(program) }
+    }
+
+    /// The judgement on a run that ended like this. A run that broke off can show a violation, but nothing else.
+    #[must_use]
+    pub fn finish(self, ended: RunEnd) -> Judgement {
+        let verdicts = self.checker.verdicts();
+        let mut judgement = Judgement {
+            verdicts: verdicts.iter().map(|v| verdict_result(self.program, v)).collect(),
+            bins: self.collector.finish().cross_names(&self.program.coverage),
+        };
+        if ended == RunEnd::Error {
+            judgement.break_off();
+        }
+        judgement
+    }
+}
+
+impl Observer for Judge<'_> {
+    fn step(&mut self, index: usize, step: &Step) {
+        self.checker.step(index, step);
+        if let What::Event { event, args } = &step.what {
+            self.collector.event(*event, args);
+        }
+    }
+
+    fn end(&mut self, time: Nanos) {
+        self.checker.end(time);
+    }
+}
+
+fn verdict_result(program: &Program, verdict: &Verdict) -> VerdictResult {
+    let monitor = &program.monitors[verdict.monitor];
+    let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());
+    VerdictResult {
+        requirement: monitor.name.as_str().into(),
+        outcome: match verdict.outcome {
+            Outcome::Pass => VerdictOutcome::Pass,
+            Outcome::Fail => VerdictOutcome::Fail,
+            Outcome::NotChecked => VerdictOutcome::NotChecked,
+            Outcome::Open => VerdictOutcome::Open,
+        },
+        triggered: verdict.triggered,
+        failures: verdict.failures,
+        failure: failure(program, verdict),
+        worst_margin: verdict.worst_margin.map(|(value, _)| (value, unit.to_owned())),
+    }
+}
+
+fn failure(program: &Program, verdict: &Verdict) -> Option<Failure> {
+    let violation = verdict.first_failure.as_ref()?;
+    let step = |seen: &SeenStep| {
+        let (who, what) = print::who_did_what(program, &seen.step.what);
+        WitnessStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
+    };
+    let mut witness: Vec<WitnessStep> = violation.witness.iter().map(step).collect();
+    witness.sort_by_key(|w| w.step);
+    Some(Failure {
+        time: seconds(violation.time),
+        triggered_at: seconds(violation.trigger_time),
+        deadline: violation.step.is_none(),
+        witness,
+    })
+}

@@ -1,0 +1,85 @@
+//! Recordings, judged while they are read.
+
+use std::io::BufRead;
+
+use hrdsl_ir::{Program, value::seconds};
+use hrdsl_results::Judgement;
+use hrdsl_trace::{
+    RunEnd,
+    parse::{ReadError, Recorded, Recording},
+    record::Header,
+    vocabulary,
+};
+use thiserror::Error;
+
+use crate::Judge;
+
+/// A recording with the judgement on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedRecording {
+    pub recorded: Recorded,
+    pub judgement: Judgement,
+}
+
+impl JudgedRecording {
+    /// Simulated seconds, or those of a real run.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        seconds(self.recorded.end)
+    }
+
+    #[must_use]
+    pub fn ended(&self) -> RunEnd {
+        self.recorded.ending.how
+    }
+}
+
+/// Why a recording is not judged.
+#[derive(Debug, Error)]
+pub enum JudgeError {
+    #[error("{0}")]
+    Read(#[from] ReadError),
+    #[error("this is a recording of the scenario `{found}`, not of `{expected}`")]
+    Scenario { expected: String, found: String },
+    #[error(
+        "this is a recording of `{scenario}` with other events or signals (vocabulary {found}, the scenario has {expected}): \
+         the scenario has changed since"
+    )]
+    Vocabulary { scenario: String, expected: String, found: String },
+}
+
+/// Reads a recording in one pass, and judges it. Unless `changed` is allowed, the recording must be of this scenario and its
+/// vocabulary; where it is allowed, every name in the recording must still be known.
+///
+/// # Errors
+/// A recording of another scenario, and the first line that is wrong.
+pub fn judge_recording(
+    program: &Program,
+    source: impl BufRead,
+    changed: bool,
+) -> Result<JudgedRecording, JudgeError> {
+    let recording = Recording::open(source)?;
+    if !changed {
+        is_of(program, recording.header())?;
+    }
+    let mut judge = Judge::new(program);
+    let recorded = recording.replay(program, &mut judge)?;
+    let judgement = judge.finish(recorded.ending.how);
+    Ok(JudgedRecording { recorded, judgement })
+}
+
+/// Whether a recording is of this scenario as it is now. Recordings by other programs need not have a vocabulary.
+fn is_of(program: &Program, header: &Header) -> Result<(), JudgeError> {
+    if header.scenario != program.name {
+        let (expected, found) = (program.name.clone(), header.scenario.clone());
+        return Err(JudgeError::Scenario { expected, found });
+    }
+    let expected = vocabulary::digest(program);
+    match &header.vocabulary {
+        Some(found) if *found != expected => {
+            let (scenario, found) = (header.scenario.clone(), found.clone());
+            Err(JudgeError::Vocabulary { scenario, expected, found })
+        }
+        Some(_) | None => Ok(()),
+    }
+}

@@ -1,0 +1,21 @@
+//! Reports: [`Results`](hrdsl_results::Results) to what people look at, and nothing else: the same results give the same bytes.
+//!
+//! # Map
+//! - [`html`] is a page, [`junit`] XML for continuous integration, [`summary`] for a terminal;
+//! - [`explain_text`] says what a suite's tests are for;
+//! - [`text`] cleans. Whatever comes from a scenario, a test or a robot program is untrusted: it is cleaned and escaped before
+//!   it reaches a terminal, a browser or an XML parser.
+
+mod facts;
+#[cfg(test)]
+mod fixture;
+mod html;
+mod junit;
+mod model;
+mod terminal;
+pub mod text;
+
+pub use html::html;
+pub use junit::junit;
+pub use model::explain_text;
+pub use terminal::{summary, summary_of_recordings};

@@ -1,0 +1,98 @@
+//! The judgement on one run: verdicts and bins.
+
+use hrdsl_ir::coverage::BinName;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::names::RequirementName;
+
+/// What a trace says about the requirements, and what it covers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Judgement {
+    /// One for each requirement, in order.
+    pub verdicts: Vec<VerdictResult>,
+    /// The cross-product bins that were hit, in order.
+    #[schemars(with = "Vec<String>")]
+    pub bins: Vec<BinName>,
+}
+
+/// What a run says about a requirement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VerdictOutcome {
+    /// It was triggered, and held.
+    Pass,
+    /// It was violated at least once.
+    Fail,
+    /// It was never triggered.
+    NotChecked,
+    /// It was not violated, but the run ended while an obligation was pending.
+    Open,
+    /// The run broke off before a violation.
+    Error,
+}
+
+impl VerdictOutcome {
+    pub const ALL: [VerdictOutcome; 5] = [
+        VerdictOutcome::Pass,
+        VerdictOutcome::Fail,
+        VerdictOutcome::NotChecked,
+        VerdictOutcome::Open,
+        VerdictOutcome::Error,
+    ];
+}
+
+/// The verdict on a requirement, with what bears it out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct VerdictResult {
+    pub requirement: RequirementName,
+    pub outcome: VerdictOutcome,
+    /// How often it was triggered.
+    pub triggered: u32,
+    /// How often it was violated.
+    pub failures: u32,
+    /// The first violation.
+    pub failure: Option<Failure>,
+    /// The least margin, with the symbol of its unit.
+    pub worst_margin: Option<(f64, String)>,
+}
+
+/// The first violation in a test.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Failure {
+    /// Seconds.
+    pub time: f64,
+    /// When the violated obligation was made, in seconds.
+    pub triggered_at: f64,
+    /// `true`: a deadline passed; `false`: the last witness violates.
+    pub deadline: bool,
+    /// In order.
+    pub witness: Vec<WitnessStep>,
+}
+
+/// A step of the trace that bears out a verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WitnessStep {
+    /// Its place in the trace's steps, from 0: line `step + 2` of the recording.
+    pub step: usize,
+    /// Seconds.
+    pub time: f64,
+    /// For people.
+    pub text: String,
+}
+
+impl Judgement {
+    /// Whether any requirement was violated.
+    #[must_use]
+    pub fn has_failed(&self) -> bool {
+        self.verdicts.iter().any(|v| v.outcome == VerdictOutcome::Fail)
+    }
+
+    /// The run broke off: it can show a violation, but nothing else. What it did not do, it might have done.
+    pub fn break_off(&mut self) {
+        self.bins.clear();
+        for verdict in self.verdicts.iter_mut().filter(|v| v.outcome != VerdictOutcome::Fail) {
+            verdict.outcome = VerdictOutcome::Error;
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! `Results`: what a campaign found, as data that reads back.
+//!
+//! This is the waist between campaigns, which make it, and everything that people look at (reports, JUnit, the console).
+//! Nothing in it depends on wall-clock time, on the machine or on the number of workers: the same campaign gives the same
+//! bytes. `spec/results.schema.json` is its schema, and `spec/results.md` says what its fields mean.
+//!
+//! # Map
+//! - [`Results`] is the file `results.json`; [`Results::to_json`] writes it, [`Results::from_json`] reads it back.
+//! - [`TestResult`] is one test: how its run ended, and the [`Judgement`] on it.
+//! - [`Requirement`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
+
+mod code;
+mod judgement;
+mod names;
+mod schema;
+mod suite;
+mod tally;
+mod test;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+pub use code::{CodeFile, Ratios};
+pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::ItemKind, test::TestMethod};
+pub use hrdsl_trace::RunEnd;
+pub use judgement::{Failure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+pub use names::{GoalName, RequirementName, SuiteName, TestName};
+pub use suite::{
+    AgentCoverage, Explanation, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteInfo,
+    TestExplanation, Uncovered, Unreached,
+};
+pub use tally::{BinResult, Margin, Requirement, Tally};
+pub use test::{OutputSummary, RunMark, TestResult};
+
+/// What kind of file `results.json` is: its `format`.
+pub const FORMAT: &str = "hrdsl-results";
+/// The version of the format that this crate writes and reads. A field that is added leaves it as it is; one that goes, or
+/// means something else, does not.
+pub const VERSION: u32 = 1;
+
+/// A whole campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Results {
+    /// `hrdsl-results`
+    pub format: String,
+    /// The version of the format, 1.
+    pub version: u32,
+    /// The version of hrdsl that made it.
+    pub hrdsl: String,
+    pub scenario: String,
+    /// The seed of the campaign.
+    pub seed: u64,
+    /// Whether the campaign was interrupted: then `tests` are those that had ended.
+    pub interrupted: bool,
+    /// How many tests were to be run.
+    pub planned: usize,
+    /// The command that runs one test again, up to its name, as it is typed in the folder of the results; empty if there is
+    /// none.
+    pub rerun: String,
+    pub requirements: Vec<Requirement>,
+    /// In the order of their first tests.
+    pub suites: Vec<SuiteInfo>,
+    pub bins: Vec<BinResult>,
+    pub code: Vec<CodeFile>,
+    /// In the order in which they were given.
+    pub tests: Vec<TestResult>,
+}
+
+/// Why a text is not the results of a campaign.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    #[error("these are not the results of a campaign: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error("this is no file of results: its `format` is not \"{FORMAT}\"")]
+    Format,
+    #[error("these results have version {0} of the format; this hrdsl reads version {VERSION}")]
+    Version(u32),
+}
+
+/// What every version of the format begins with.
+#[derive(Deserialize)]
+struct Preamble {
+    #[serde(default)]
+    format: String,
+    #[serde(default)]
+    version: u32,
+}
+
+impl Results {
+    /// The results as `results.json` has them.
+    ///
+    /// # Errors
+    /// A number that JSON cannot hold.
+    pub fn to_json(&self) -> Result<String, ResultsError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Reads what [`to_json`](Self::to_json) has written.
+    ///
+    /// # Errors
+    /// A text that is something else, or of another version of the format.
+    pub fn from_json(text: &str) -> Result<Self, ResultsError> {
+        // Asked first: what another version lacks or has too much of is not what is wrong with it.
+        let Preamble { format, version } = serde_json::from_str(text)?;
+        if format != FORMAT {
+            return Err(ResultsError::Format);
+        }
+        if version != VERSION {
+            return Err(ResultsError::Version(version));
+        }
+        Ok(serde_json::from_str(text)?)
+    }
+
+    /// The schema of `results.json`, as JSON Schema (2020-12).
+    ///
+    /// # Errors
+    /// None that is known: what is written is this crate's own.
+    pub fn schema() -> Result<String, ResultsError> {
+        Ok(serde_json::to_string_pretty(&schemars::schema_for!(Results))? + "\n")
+    }
+
+    /// The command that runs a test again, as it is typed in the folder of the results; `None` if there is none.
+    #[must_use]
+    pub fn rerun_of(&self, test: &TestResult) -> Option<String> {
+        let name = test.name.within(&self.scenario);
+        let plain = name.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_' | '-'));
+        let name = if plain { name.to_owned() } else { format!("'{}'", name.replace('\'', "'\\''")) };
+        (!self.rerun.is_empty()).then(|| format!("{} {name}", self.rerun))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn some() -> Results {
+        Results {
+            format: FORMAT.into(),
+            version: VERSION,
+            hrdsl: "0.1.0".into(),
+            scenario: "s".into(),
+            seed: 3,
+            interrupted: false,
+            planned: 1,
+            rerun: "hrdsl sim s.hri --test".into(),
+            requirements: Vec::new(),
+            suites: Vec::new(),
+            bins: Vec::new(),
+            code: Vec::new(),
+            tests: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let text = some().to_json().unwrap();
+        assert_eq!(Results::from_json(&text).unwrap(), some());
+    }
+
+    #[test]
+    fn something_else_is_refused_with_a_reason() {
+        let refusal = |text: &str| Results::from_json(text).unwrap_err().to_string();
+        assert!(refusal("nothing").starts_with("these are not the results of a campaign: "));
+        assert!(refusal("{}").contains("`format`"));
+        assert!(refusal(r#"{"format":"hrdsl-run","version":1}"#).contains("`format`"));
+        let later = refusal(r#"{"format":"hrdsl-results","version":7,"tests":0}"#);
+        assert_eq!(later, "these results have version 7 of the format; this hrdsl reads version 1");
+    }
+
+    #[test]
+    fn names_of_tests_are_quoted_for_a_shell() {
+        let mut test = TestResult { name: "s.a.t001".into(), ..TestResult::default() };
+        assert_eq!(some().rerun_of(&test).unwrap(), "hrdsl sim s.hri --test a.t001");
+        test.name = "s.it's".into();
+        assert_eq!(some().rerun_of(&test).unwrap(), "hrdsl sim s.hri --test 'it'\\''s'");
+    }
+}

@@ -1,0 +1,89 @@
+//! Requirements and bins over all tests.
+
+use hrdsl_ir::{coverage::BinName, monitor::RequirementKind};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    judgement::VerdictOutcome,
+    names::{RequirementName, TestName},
+    schema,
+};
+
+/// A requirement with its tally in each suite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Requirement {
+    pub name: RequirementName,
+    #[schemars(schema_with = "schema::requirement_kind")]
+    pub kind: RequirementKind,
+    pub title: String,
+    pub text: String,
+    /// One for each suite, in their order.
+    pub tally: Vec<Tally>,
+    /// The tests with a violation, in order.
+    pub failing: Vec<TestName>,
+    /// The least margin over all tests, with its test.
+    pub worst_margin: Option<Margin>,
+}
+
+/// How many tests had each verdict.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Tally {
+    pub pass: u32,
+    pub fail: u32,
+    pub not_checked: u32,
+    pub open: u32,
+    pub error: u32,
+}
+
+impl Tally {
+    /// Counts one more test.
+    pub fn add(&mut self, outcome: VerdictOutcome) {
+        *match outcome {
+            VerdictOutcome::Pass => &mut self.pass,
+            VerdictOutcome::Fail => &mut self.fail,
+            VerdictOutcome::NotChecked => &mut self.not_checked,
+            VerdictOutcome::Open => &mut self.open,
+            VerdictOutcome::Error => &mut self.error,
+        } += 1;
+    }
+
+    /// How many tests had this verdict.
+    #[must_use]
+    pub fn of(self, outcome: VerdictOutcome) -> u32 {
+        match outcome {
+            VerdictOutcome::Pass => self.pass,
+            VerdictOutcome::Fail => self.fail,
+            VerdictOutcome::NotChecked => self.not_checked,
+            VerdictOutcome::Open => self.open,
+            VerdictOutcome::Error => self.error,
+        }
+    }
+}
+
+/// How far a requirement was from being violated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Margin {
+    pub value: f64,
+    /// The symbol.
+    pub unit: String,
+    pub test: TestName,
+}
+
+/// A cross-product bin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BinResult {
+    /// `human_robot.4 legs, bored`
+    #[schemars(with = "String")]
+    pub name: BinName,
+    pub cross: String,
+    pub bin: String,
+    /// Tests that hit it, one number for each suite, in their order.
+    pub hits: Vec<u32>,
+    /// Tests for which the model predicted it, one number for each suite.
+    pub predicted: Vec<u32>,
+    /// The first test that hit it, by the alphabet.
+    pub first: Option<TestName>,
+    /// If the search proved that the model cannot reach it: the reason.
+    pub unreachable: Option<String>,
+}

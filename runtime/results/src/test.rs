@@ -1,0 +1,88 @@
+//! One test of a campaign.
+
+use hrdsl_ir::{coverage::BinName, test::TestMethod};
+use hrdsl_trace::RunEnd;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Judgement, Ratios,
+    names::{SuiteName, TestName},
+    schema,
+};
+
+/// One test.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TestResult {
+    pub name: TestName,
+    pub suite: SuiteName,
+    #[schemars(schema_with = "schema::test_method")]
+    pub method: TestMethod,
+    pub seed: u64,
+    #[schemars(schema_with = "schema::run_end")]
+    pub ended: RunEnd,
+    /// Of a test in error: what happened, with the program's last output.
+    pub error: Option<String>,
+    /// What must be known about the run to trust it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<RunMark>,
+    /// Simulated seconds.
+    pub duration: f64,
+    #[serde(flatten)]
+    pub judgement: Judgement,
+    /// The bins that the model predicted.
+    #[schemars(with = "Vec<String>")]
+    pub predicted: Vec<BinName>,
+    /// Where the test came from.
+    pub because: Vec<String>,
+    pub code: Ratios,
+    /// The test's steps as they are written.
+    pub steps: Vec<String>,
+    /// What the program wrote.
+    pub output: OutputSummary,
+}
+
+/// Something about a run that limits what its verdicts say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RunMark {
+    /// Wall time ended it once, and it came to another end when it ran alone.
+    DependsOnLoad,
+    /// The program started other processes: their clocks and chance are not simulated.
+    OtherProcesses,
+}
+
+impl RunMark {
+    /// The sentence about it.
+    #[must_use]
+    pub fn sentence(self) -> &'static str {
+        match self {
+            RunMark::DependsOnLoad => "depends on load: wall time ended it, and alone it came to another end",
+            RunMark::OtherProcesses => "started other processes: their clocks and chance are not simulated",
+        }
+    }
+}
+
+/// How much a program wrote, and the end of what it complained about.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct OutputSummary {
+    pub stdout_bytes: u64,
+    pub stderr_bytes: u64,
+    /// The last lines on standard error.
+    pub stderr_end: String,
+}
+
+impl TestResult {
+    /// Whether any requirement was violated.
+    #[must_use]
+    pub fn has_failed(&self) -> bool {
+        self.judgement.has_failed()
+    }
+
+    /// The test is in error after all: what befell it besides its run. A violation still counts.
+    pub fn break_off(&mut self, why: String) {
+        self.ended = RunEnd::Error;
+        self.error.get_or_insert(why);
+        self.judgement.break_off();
+    }
+}

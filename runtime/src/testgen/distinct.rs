@@ -1,0 +1,132 @@
+//! Equal abstract tests become one: the first keeps its place and takes over the others' reasons.
+
+use hrdsl_ir::{ArgPattern, Value, test::TestStep};
+use indexmap::IndexMap;
+
+use super::AbstractTest;
+
+/// How many origins of one abstract test are written out.
+const ORIGINS: usize = 3;
+
+/// The different tests, in the order in which each first came.
+pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
+    let mut seen: IndexMap<Identity, AbstractTest> = IndexMap::new();
+    for test in tests {
+        match seen.entry(identity(&test.steps)) {
+            indexmap::map::Entry::Vacant(slot) => {
+                slot.insert(test);
+            }
+            indexmap::map::Entry::Occupied(mut slot) => {
+                let known = slot.get_mut();
+                known.reaches.extend(test.reaches);
+                for line in test.because {
+                    if !known.because.contains(&line) {
+                        known.because.push(line);
+                    }
+                }
+            }
+        }
+    }
+    let mut tests: Vec<AbstractTest> = seen.into_values().collect();
+    for test in &mut tests {
+        let more = test.because.len().saturating_sub(ORIGINS);
+        if more > 0 {
+            test.because.truncate(ORIGINS);
+            test.because.push(format!("and {more} more that lead to the same test"));
+        }
+    }
+    tests
+}
+
+/// A number for each thing that makes a test what it is.
+type Identity = Vec<(u8, u64)>;
+
+/// Equal for equal steps alone: the kind of each step, and how many parts a list of parts has, come before the parts.
+fn identity(steps: &[TestStep]) -> Identity {
+    const KIND: u8 = u8::MAX;
+    let mut parts = Identity::new();
+    let count = |n: usize| (KIND, n as u64);
+    let values = |parts: &mut Identity, values: &[Value]| {
+        parts.push(count(values.len()));
+        parts.extend(values.iter().map(|v| v.key()));
+    };
+    for step in steps {
+        match step {
+            TestStep::Do { event, args, samples } => {
+                parts.extend([(KIND, 0), (KIND, u64::from(event.0))]);
+                values(&mut parts, args);
+                values(&mut parts, samples);
+            }
+            TestStep::Await { events, within } => {
+                parts.extend([(KIND, 1), (KIND, within.unsigned_abs()), count(events.len())]);
+                for pattern in events {
+                    parts.extend([(KIND, u64::from(pattern.event.0)), count(pattern.args.len())]);
+                    parts.extend(pattern.args.iter().map(|arg| match arg {
+                        ArgPattern::Any => (KIND, 0),
+                        ArgPattern::Is(value) => value.key(),
+                    }));
+                }
+            }
+            TestStep::Wait { time } => parts.extend([(KIND, 2), (KIND, time.unsigned_abs())]),
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{EventId, EventPattern};
+
+    use super::*;
+
+    fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
+        AbstractTest {
+            steps: vec![TestStep::Wait { time: wait }],
+            because: vec![because.into()],
+            reaches: reaches.iter().copied().collect(),
+            ..AbstractTest::default()
+        }
+    }
+
+    #[test]
+    fn equal_tests_reach_what_each_of_them_does() {
+        let different = distinct(vec![test(1, "a", &[0]), test(2, "b", &[1]), test(1, "c", &[2])]);
+        assert_eq!(different.len(), 2);
+        assert_eq!(different[0].reaches, [0, 2].into());
+        assert_eq!(different[0].because, ["a", "c"]);
+    }
+
+    #[test]
+    fn whatever_differs_tells_tests_apart() {
+        let done = |event, args: &[Value], samples: &[Value]| TestStep::Do {
+            event: EventId(event),
+            args: args.to_vec(),
+            samples: samples.to_vec(),
+        };
+        let awaits = |args: &[ArgPattern], within| TestStep::Await {
+            events: vec![EventPattern { event: EventId(1), args: args.to_vec() }],
+            within,
+        };
+        let (one, half) = (Value::Int(1), Value::Float(0.5));
+        let all = [
+            vec![],
+            vec![done(1, &[], &[])],
+            vec![done(2, &[], &[])],
+            vec![done(1, &[one], &[])],
+            vec![done(1, &[], &[one])],
+            vec![done(1, &[half], &[])],
+            vec![done(1, &[Value::Bool(true)], &[])],
+            vec![done(1, &[], &[]), done(1, &[], &[])],
+            vec![awaits(&[], 5)],
+            vec![awaits(&[], 6)],
+            vec![awaits(&[ArgPattern::Any], 5)],
+            vec![awaits(&[ArgPattern::Is(one)], 5)],
+            vec![TestStep::Wait { time: 5 }],
+        ];
+        for (i, a) in all.iter().enumerate() {
+            for (j, b) in all.iter().enumerate() {
+                assert_eq!(identity(a) == identity(b), i == j, "{a:?} {b:?}");
+            }
+        }
+    }
+}
