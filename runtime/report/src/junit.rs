@@ -61,7 +61,7 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
         ));
     }
     if let Some(info) = results.suites.iter().find(|s| s.name == name) {
-        suite.add_property(Property::new("hrdsl.method", text::line(&info.method.word())));
+        suite.add_property(Property::new("hrdsl.method", text::line(info.method.word())));
         if let Some(number) = info.abstract_tests {
             suite.add_property(Property::new("hrdsl.abstract_tests", number.to_string()));
         }
