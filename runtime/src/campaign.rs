@@ -10,10 +10,14 @@ use std::{
     time::Duration,
 };
 
+use hrdsl_harness::{
+    Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemFault, SystemFaultKind, SystemPlayer,
+};
 use hrdsl_ir::{Program, system::System, test::Test, value::seconds};
 use hrdsl_judge::Judge;
 use hrdsl_results::{Judgement, OutputSummary, Ratios, RunEnd, RunMark, TestName, TestResult};
-use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, Needs, Process, Reply, SutError};
+use hrdsl_sim::SimWorld;
+use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, LockStep, Needs, Process, Reply, SutError};
 pub use hrdsl_sut::{
     Cells, Hooked, Output, Preparation, ProgramLimits, PythonEnv, StopFlag,
     cell::{Isolation, Supervisor, supervise},
@@ -23,12 +27,7 @@ use hrdsl_trace::{
     record::{self, Ending, Header},
 };
 
-use crate::{
-    harness::{
-        Ended, Fault, Harness, Player, ProgramPlayer, Run, ScriptPlayer, Stage, SutFault, SutFaultKind,
-    },
-    testgen,
-};
+use crate::testgen;
 
 /// How much of the program's output is kept, in bytes for each stream.
 const OUTPUT_KEPT: usize = 64 * 1024;
@@ -87,7 +86,7 @@ struct Attempt {
     finished: FinishedTest,
     recording: String,
     output: Output,
-    fault: Option<SutFaultKind>,
+    fault: Option<SystemFaultKind>,
 }
 
 /// Installs what the program under test needs, into `cache` on first use; `listen` is told what happens. The program
@@ -142,11 +141,11 @@ impl Campaign<'_> {
                     while let Some(test) = self.next_test(tests, &next) {
                         let attempt = self.run_one(system, &tests[test]);
                         match attempt.fault {
-                            Some(SutFaultKind::Interrupted) => return,
-                            Some(SutFaultKind::WallTime) => {
+                            Some(SystemFaultKind::Interrupted) => return,
+                            Some(SystemFaultKind::WallTime) => {
                                 again.lock().unwrap_or_else(PoisonError::into_inner).push((test, attempt));
                             }
-                            Some(SutFaultKind::Program) | None => finish(test, attempt),
+                            Some(SystemFaultKind::Program) | None => finish(test, attempt),
                         }
                     }
                 });
@@ -184,9 +183,9 @@ impl Campaign<'_> {
         }
         let mut second = self.run_one(system, test);
         match second.fault {
-            Some(SutFaultKind::Interrupted) => first,
-            Some(SutFaultKind::WallTime) => second,
-            Some(SutFaultKind::Program) | None => {
+            Some(SystemFaultKind::Interrupted) => first,
+            Some(SystemFaultKind::WallTime) => second,
+            Some(SystemFaultKind::Program) | None => {
                 second.finished.result.marks.push(RunMark::DependsOnLoad);
                 second
             }
@@ -212,17 +211,17 @@ impl Campaign<'_> {
 
     fn execute(&self, system: &System, test: &Test) -> (Run, Option<Finished>) {
         let failed = |fault| (Run { trace: Trace::default(), ended: Ended::Fault(fault) }, None);
-        let stage = match Stage::new(self.program) {
-            Ok(stage) => stage,
-            Err(why) => return failed(Fault::World(why)),
+        let stage = match SimWorld::new(self.program) {
+            Ok(world) => world.map(|world| Stage::new(self.program, Box::new(world))),
+            Err(why) => return failed(Fault::World(why.to_string())),
         };
         let mut process = match Process::spawn(&self.launch(system, test)) {
             Ok(process) => process,
-            Err(error) => return failed(Fault::System(SutFault::from(error))),
+            Err(error) => return failed(Fault::System(SystemFault::from(error))),
         };
         let players: Vec<Box<dyn Player + '_>> = vec![
             Box::new(ScriptPlayer::new(self.program, test)),
-            Box::new(ProgramPlayer::new(self.program, system.actor, &mut process)),
+            Box::new(SystemPlayer::new(self.program, system.actor, LockStep::new(&mut process))),
         ];
         let run = Harness::new(self.program, players, stage, system.limit).run();
         if !matches!(run.ended, Ended::Fault(_)) {

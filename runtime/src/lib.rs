@@ -10,12 +10,13 @@
 //! 5. [`report`] shows them: on a terminal, as JUnit XML, as a page.
 
 pub mod campaign;
-pub mod harness;
+pub mod model_run;
 pub mod prove;
 pub mod reasoning;
 mod tally;
 pub mod testgen;
 
+pub use hrdsl_harness as harness;
 pub use hrdsl_judge as judge;
 pub use hrdsl_report as report;
 pub use hrdsl_results as results;

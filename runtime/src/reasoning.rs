@@ -7,7 +7,9 @@ use hrdsl_ir::{Nanos, Span};
 use hrdsl_report::text;
 use serde::Serialize;
 
-use crate::harness::{Ended, Fault, Inspection, LogLine};
+use hrdsl_harness::{Ended, Fault};
+
+use crate::model_run::{Inspection, LogLine};
 
 /// Of more cycles of an agent in a round than this only the first and last are shown.
 const MANY: usize = 60;

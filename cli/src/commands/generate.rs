@@ -8,7 +8,7 @@ use std::{
 use hrdsl_compiler::Compilation;
 use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
-    harness::{Detail, Inspection},
+    model_run::{Detail, Inspection},
     prove::Settings,
     reasoning::{End, Picked, ending, reasoning},
     report::explain_text,

@@ -6,6 +6,8 @@
 //! 3. [`Sim::advance`] brings it to a time: in physics steps while anything moves, at once while everything rests.
 //! 4. [`Sim::read`] gives a signal's value, [`Sim::finished`] the commands that have ended.
 //!
+//! [`SimWorld`] is such a world for the harness.
+//!
 //! # What is idealised
 //! - Arms compensate their own weight and that of what they carry; each link has a motor's rotor inertia.
 //! - A hand that closes fixes what it takes by a rigid joint instead of by friction, where it is.
@@ -28,6 +30,7 @@ mod mover;
 mod profile;
 mod sense;
 mod stage;
+mod world;
 
 use hrdsl_ir::world::{ArmId, BodyId, GripperId, Motion, Point, Signal, SignalId, Vec3, World, WorldAction};
 use hrdsl_ir::{Expr, Nanos, Value};
@@ -40,6 +43,7 @@ use math::{Frame, V3, arr};
 use mover::Way;
 use sense::View;
 use stage::{Stage, bad, index};
+pub use world::SimWorld;
 
 /// How long nothing may have moved before the world counts as at rest.
 const REST_AFTER: Nanos = 300_000_000;

@@ -7,6 +7,7 @@ use hrdsl_bdi::{
     coverage::Team,
     measure::Measured,
 };
+use hrdsl_harness::Ended;
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
@@ -20,7 +21,7 @@ use super::{
     goals::{Goals, Reached, agents},
     model,
 };
-use crate::harness::{Detail, Ended, How, ModelRun, model_run};
+use crate::model_run::{Detail, How, ModelRun, model_run};
 
 /// Different warnings of runs that are told, at most.
 const WARNINGS: usize = 20;

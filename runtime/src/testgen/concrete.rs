@@ -4,7 +4,7 @@ use hrdsl_ir::{Program, test::TestStep};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::harness::draw_samples;
+use hrdsl_harness::draw_samples;
 
 /// The seed of test `number` of a suite: the number itself with the default seed 0.
 #[must_use]

@@ -9,6 +9,8 @@
 //! 4. [`Process::reply`] answers it with a [`Reply`], which carries the simulated time.
 //! 5. [`Process::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
 //!
+//! [`LockStep`] is such a process as the harness's system.
+//!
 //! Whatever the program does (die, hang, flood its output, write rubbish) is a [`SutError`], never a panic and never a
 //! blocked harness. The protocol is `spec/protocol.md`.
 
@@ -19,6 +21,7 @@ mod environment;
 mod error;
 mod launch;
 mod limits;
+mod lock_step;
 mod output;
 mod patience;
 mod process;
@@ -31,6 +34,7 @@ pub use environment::{Hooked, Needs, Preparation, PythonEnv};
 pub use error::SutError;
 pub use launch::{DEFAULT_VARIABLES, Launch};
 pub use limits::{Overrun, ProgramLimits, StopFlag};
+pub use lock_step::LockStep;
 pub use output::{Captured, Output};
 pub use process::{Exit, Finished, Process};
 pub use protocol::{Answer, Arg, PROTOCOL_VERSION, Reply, Request};

@@ -18,7 +18,10 @@ use hrdsl_ir::{
     suite::{Method, PlayerRef},
     value::SECOND,
 };
-use hrdsl_runtime::harness::{Ended, Fault, How, LogLine, model_run};
+use hrdsl_runtime::{
+    harness::{Ended, Fault},
+    model_run::{How, LogLine, model_run},
+};
 use hrdsl_trace::What;
 
 use crate::page::root;

@@ -12,7 +12,7 @@ use hrdsl_ir::{
     value::nanos,
 };
 use hrdsl_runtime::{
-    harness::{Detail, How, Inspection, LogLine, inspect},
+    model_run::{Detail, How, Inspection, LogLine, inspect},
     reasoning::{End, Picked, ending, reasoning},
     testgen::{self, Options, Origin, generate_with, how_many_sets, seed_of},
 };

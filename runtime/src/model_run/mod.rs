@@ -1,8 +1,13 @@
 //! A run of models alone, in virtual time: agents and automata play all actors.
 
+mod agent;
+mod automaton;
+
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{CYCLE_LIMIT, Detail, Logged, Society, Status, measure::Measured, show};
+use hrdsl_bdi::{CYCLE_LIMIT, Logged, Society, measure::Measured, show};
+pub use hrdsl_bdi::{Detail, Standing, Status};
+use hrdsl_harness::{Ended, Harness, Player, Run};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, Fact},
@@ -10,7 +15,9 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::Trace;
 
-use super::{AgentPlayer, AutomatonPlayer, Company, Ended, Harness, Player, Run, Snapshot, agent::Snapshots};
+use agent::Snapshots;
+pub use agent::{AgentPlayer, Company, Snapshot};
+pub use automaton::AutomatonPlayer;
 
 /// Entries of each agent's log that an inspection keeps.
 const KEPT: usize = 200_000;

@@ -1,30 +1,36 @@
-//! One discrete-event loop in virtual or simulated time: who plays whom, and who hears what.
+//! One discrete-event loop in virtual, simulated or outside time: who plays whom, and who hears what.
 //!
-//! Players (agents, automata, a test script, the program under test) are asked in a fixed order; none sees another.
-//! The stage, when present, is the physical world: it plays the actors that no player plays. Everything that happens is
+//! Players (agents, automata, a test script, the system under test) are asked in a fixed order; none sees another.
+//! The [`Stage`], when present, holds the world: it plays the actors that no player plays. Everything that happens is
 //! recorded in a [`Trace`].
+//!
+//! # Seams
+//! What the loop does not do itself is behind three traits, each with a [double](doubles) for tests:
+//! - a [`World`] holds the bodies, and says when it next changes by itself;
+//! - a [`System`] plays the system actor: it asks, and is answered, by a [`SystemPlayer`];
+//! - a [`Clock`] lets time pass: at once, or as the outside wants.
 
-mod agent;
-mod automaton;
-mod model;
-mod program;
+mod clock;
+pub mod doubles;
 mod script;
 mod stage;
 mod stimulus;
+mod system;
+mod system_player;
+mod world;
 
 use std::collections::VecDeque;
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value, world::WorldAction};
 use hrdsl_trace::{Step, Trace, What};
 
-pub use agent::{AgentPlayer, Company, Snapshot};
-pub use automaton::AutomatonPlayer;
-pub use hrdsl_bdi::{Detail, Standing, Status};
-pub use model::{How, Inspection, LogLine, ModelRun, inspect, model_run};
-pub use program::{ProgramPlayer, SutFault, SutFaultKind};
+pub use clock::{Clock, VirtualClock};
 pub use script::ScriptPlayer;
 pub use stage::Stage;
-pub use stimulus::draw_samples;
+pub use stimulus::{Performance, draw_samples};
+pub use system::{Argument, System, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest, Ticket};
+pub use system_player::SystemPlayer;
+pub use world::{Begun, DeviceOrder, OrderError, OrderId, World};
 
 /// At most so many events at one instant: more is a model in which time cannot pass.
 const EVENTS_AT_AN_INSTANT: usize = 10_000;
@@ -39,7 +45,7 @@ pub enum Message {
 }
 
 /// What a player is given when it is asked.
-pub struct Context<'a> {
+pub struct Context<'a, 'p> {
     pub now: Nanos,
     /// Waits for events may be given up now: nothing else happens any more at this instant by itself.
     pub expire: bool,
@@ -47,7 +53,7 @@ pub struct Context<'a> {
     pub delivery: u64,
     pub out: &'a mut Vec<Message>,
     /// The world, if there is one: only the program under test and the sensors reach for it.
-    pub stage: Option<&'a mut Stage>,
+    pub stage: Option<&'a mut Stage<'p>>,
 }
 
 /// Anything that plays actors.
@@ -58,12 +64,12 @@ pub trait Player {
     ///
     /// # Errors
     /// What ends the run.
-    fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault>;
+    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault>;
     /// An event addressed to its actor happened.
     ///
     /// # Errors
     /// What ends the run.
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault>;
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault>;
     /// When it next wants to be woken.
     fn next_wake(&self) -> Option<Nanos>;
     /// It will do nothing more, whatever happens.
@@ -78,7 +84,7 @@ pub enum Fault {
     #[error("{0}")]
     World(String),
     #[error("{0}")]
-    System(SutFault),
+    System(SystemFault),
 }
 
 /// How a run ended.
@@ -101,7 +107,8 @@ pub struct Run {
 pub struct Harness<'p> {
     program: &'p Program,
     players: Vec<Box<dyn Player + 'p>>,
-    stage: Option<Stage>,
+    stage: Option<Stage<'p>>,
+    clock: Box<dyn Clock + 'p>,
     limit: Nanos,
     now: Nanos,
     trace: Trace,
@@ -119,7 +126,7 @@ impl<'p> Harness<'p> {
     pub fn new(
         program: &'p Program,
         mut players: Vec<Box<dyn Player + 'p>>,
-        stage: Option<Stage>,
+        stage: Option<Stage<'p>>,
         limit: Nanos,
     ) -> Self {
         players.sort_by_key(|p| !plays_the_system(program, p.actors()));
@@ -127,6 +134,7 @@ impl<'p> Harness<'p> {
             program,
             players,
             stage,
+            clock: Box::new(VirtualClock),
             limit,
             now: 0,
             trace: Trace::default(),
@@ -135,6 +143,12 @@ impl<'p> Harness<'p> {
             expire: false,
             delivery: 0,
         }
+    }
+
+    /// The same with another clock than the harness's own.
+    #[must_use]
+    pub fn with_clock(self, clock: Box<dyn Clock + 'p>) -> Self {
+        Self { clock, ..self }
     }
 
     /// Runs to the end.
@@ -161,14 +175,14 @@ impl<'p> Harness<'p> {
                 return Ok(Ended::Quiet);
             }
             let next = self.players.iter().filter_map(|p| p.next_wake());
-            let Some(next) = next.chain(self.stage.as_ref().and_then(Stage::next_wake)).min() else {
+            let due = next.chain(self.stage.as_ref().and_then(Stage::next_wake)).min();
+            let Some(time) = self.clock.advance(self.now, due, self.limit) else {
                 return Ok(Ended::Quiet);
             };
-            if next > self.limit {
-                self.pass_time(self.limit);
+            self.pass_time(time.clamp(self.now, self.limit.max(self.now)));
+            if self.now >= self.limit && due.is_none_or(|due| due > self.limit) {
                 return Ok(Ended::Limit);
             }
-            self.pass_time(next.max(self.now));
             self.wake_players()?;
         }
     }
@@ -191,7 +205,7 @@ impl<'p> Harness<'p> {
             self.expire = expire;
             for index in 0..self.players.len() {
                 let due = self.players[index].next_wake().is_some_and(|t| t <= self.now);
-                let done = self.stage.as_ref().is_some_and(Stage::has_finished_commands);
+                let done = self.stage.as_ref().is_some_and(Stage::has_ended_orders);
                 if due || (done && plays_the_system(self.program, self.players[index].actors())) {
                     self.ask(index, |player, cx| player.wake(cx))?;
                     self.deliver()?;
@@ -206,7 +220,7 @@ impl<'p> Harness<'p> {
     fn ask(
         &mut self,
         index: usize,
-        act: impl FnOnce(&mut dyn Player, &mut Context<'_>) -> Result<(), Fault>,
+        act: impl FnOnce(&mut dyn Player, &mut Context<'_, 'p>) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let mut out = Vec::new();
         let mut cx = Context {

@@ -7,7 +7,7 @@ use hrdsl_ir::{
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Context, Fault, Player, draw_samples, stimulus::Performance};
+use crate::{Context, Fault, Player, draw_samples, stimulus::Performance};
 
 pub struct ScriptPlayer<'p> {
     program: &'p Program,
@@ -38,7 +38,7 @@ impl<'p> ScriptPlayer<'p> {
         Self { program, test, actors, rng, at: 0, state: State::Ready, heard: Vec::new() }
     }
 
-    fn begin(&mut self, step: &'p TestStep, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn begin(&mut self, step: &'p TestStep, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.state = match step {
             TestStep::Do { event, args, samples } => {
                 let drawn = if samples.is_empty() {
@@ -55,7 +55,7 @@ impl<'p> ScriptPlayer<'p> {
     }
 
     /// Goes on as far as it can now.
-    fn go_on(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn go_on(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         loop {
             let over = match &mut self.state {
                 State::Finished => return Ok(()),
@@ -103,11 +103,11 @@ impl Player for ScriptPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.go_on(cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         if matches!(self.state, State::Finished) {
             return Ok(());
         }

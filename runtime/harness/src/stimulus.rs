@@ -8,7 +8,7 @@ use hrdsl_ir::{
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Context, Fault, Message};
+use crate::{Context, Fault, Message};
 
 /// A stimulus under way.
 pub struct Performance {
@@ -112,7 +112,7 @@ impl Performance {
         event: EventId,
         args: &[Value],
         samples: &[Value],
-        cx: &mut Context<'_>,
+        cx: &mut Context<'_, '_>,
     ) -> Result<Self, Fault> {
         cx.out.push(Message::Event { event, args: args.to_vec() });
         let mut this = Self { steps: VecDeque::new(), vars: [args, samples].concat(), until: cx.now };
@@ -127,7 +127,7 @@ impl Performance {
     }
 
     /// Runs steps until one holds beyond now. `is_done` tells whether any are left.
-    pub fn go_on(&mut self, cx: &mut Context<'_>) {
+    pub fn go_on(&mut self, cx: &mut Context<'_, '_>) {
         while self.until <= cx.now {
             match self.steps.pop_front() {
                 None => return,

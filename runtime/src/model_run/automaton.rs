@@ -3,7 +3,7 @@
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, ta::AutomatonId};
 use hrdsl_ta::Player as Machine;
 
-use super::{Context, Fault, Message, Player};
+use hrdsl_harness::{Context, Fault, Message, Player};
 
 pub struct AutomatonPlayer<'p> {
     program: &'p Program,
@@ -21,7 +21,7 @@ impl<'p> AutomatonPlayer<'p> {
         Self { program, name: &declared.name, actors: declared.actor.into_iter().collect(), machine }
     }
 
-    fn go_on(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn go_on(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         let mut sent = Vec::new();
         self.machine
             .run(cx.now, &mut sent)
@@ -39,11 +39,11 @@ impl Player for AutomatonPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.go_on(cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.machine
             .receive(event, args, cx.now)
             .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;

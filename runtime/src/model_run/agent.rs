@@ -7,7 +7,7 @@ use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Context, Fault, Message, Player, draw_samples, is_perceived, stimulus::Performance};
+use hrdsl_harness::{Context, Fault, Message, Performance, Player, draw_samples, is_perceived};
 
 /// From so many agents on they reason on several threads.
 const MANY: usize = 32;
@@ -95,7 +95,7 @@ impl<'p> Company<'p> {
     }
 
     /// Rounds, until nobody says or does anything more.
-    fn reason_in_rounds(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn reason_in_rounds(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         let mut actions = Vec::new();
         loop {
             self.society.settle(cx.now, &mut actions);
@@ -109,14 +109,14 @@ impl<'p> Company<'p> {
     }
 
     /// The same, and how they stand then is noted.
-    fn reason(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn reason(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         let done = self.reason_in_rounds(cx);
         let Some(snapshots) = &mut self.snapshots else { return done };
         snapshots.note(cx.now, &self.society);
         done
     }
 
-    fn begin(&mut self, agent: usize, action: Action, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn begin(&mut self, agent: usize, action: Action, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         let Action { token, event, args } = action;
         if !self.program.event(event).is_stimulus() {
             cx.out.push(Message::Event { event, args });
@@ -152,7 +152,7 @@ impl<'p> Company<'p> {
         Err(Fault::Model(format!("agent `{}`: {what}", self.society.at_fault().join("`, `"))))
     }
 
-    fn wake(&mut self, agent: usize, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn wake(&mut self, agent: usize, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         let mut under_way = Vec::new();
         for (token, mut performance) in std::mem::take(&mut self.members[agent].performances) {
             performance.go_on(cx);
@@ -171,7 +171,7 @@ impl<'p> Company<'p> {
     }
 
     /// The first of them that hears of an event tells all whom it reaches.
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         if self.heard == cx.delivery {
             return Ok(());
         }
@@ -213,11 +213,11 @@ impl Player for AgentPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.company.borrow_mut().wake(self.agent, cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_>) -> Result<(), Fault> {
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
         self.company.borrow_mut().hear(event, args, cx)
     }
 

@@ -1,0 +1,372 @@
+//! The player of the system actor: answers what the system asks, and lets time pass while it waits.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use hrdsl_ir::{
+    ActorId, Event, EventId, Nanos, Param, Program, Type, Value,
+    value::seconds,
+    world::{Signal, SignalId},
+};
+
+use crate::{
+    Argument, Context, Fault, Message, OrderError, OrderId, Player, Stage, System, SystemAnswer, SystemFault,
+    SystemFaultKind, SystemRequest, Ticket, is_perceived,
+};
+
+/// How many events wait in the system's mailbox at most; the oldest are dropped, as in a ROS subscriber's queue.
+const MAILBOX: usize = 1_000;
+/// More requests at one instant are a system that never lets time pass.
+const REQUESTS_AT_AN_INSTANT: usize = 100_000;
+
+/// Plays the system actor by a [`System`].
+pub struct SystemPlayer<'p, S> {
+    program: &'p Program,
+    actors: [ActorId; 1],
+    system: S,
+    /// Its open requests, in the order in which they were made.
+    waits: Vec<(Ticket, Wait)>,
+    mailbox: VecDeque<Mail>,
+    /// How many requests it has made at the instant at which it made the last.
+    at_instant: (Nanos, usize),
+    /// It has come to its end.
+    ended: bool,
+}
+
+struct Mail {
+    event: EventId,
+    args: Vec<Value>,
+    time: Nanos,
+}
+
+/// What an open request waits for.
+enum Wait {
+    Time(Nanos),
+    Events { events: Vec<EventId>, until: Option<Nanos> },
+    Order(OrderId),
+}
+
+/// What a request comes to at once.
+enum Response {
+    Answer(SystemAnswer),
+    Wait(Wait),
+    End,
+}
+
+impl<'p, S: System> SystemPlayer<'p, S> {
+    #[must_use]
+    pub fn new(program: &'p Program, actor: ActorId, system: S) -> Self {
+        Self {
+            program,
+            actors: [actor],
+            system,
+            waits: Vec::new(),
+            mailbox: VecDeque::new(),
+            at_instant: (0, 0),
+            ended: false,
+        }
+    }
+
+    fn answer(&mut self, ticket: Ticket, now: Nanos, answer: SystemAnswer) -> Result<(), Fault> {
+        self.system.answer(ticket, now, answer).map_err(Fault::System)
+    }
+
+    /// Takes requests for as long as it makes some.
+    fn serve(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+        while !self.ended && self.system.is_ready() {
+            let Some((ticket, request)) = self.system.next(cx.now).map_err(Fault::System)? else { break };
+            self.count(cx.now)?;
+            match self.response(request, cx) {
+                Response::Answer(answer) => self.answer(ticket, cx.now, answer)?,
+                Response::Wait(wait) => self.waits.push((ticket, wait)),
+                Response::End => self.ended = true,
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts a request at this instant: waits that end at once let no time pass either, so that the count goes on over
+    /// them, and starts anew only when time has moved.
+    fn count(&mut self, now: Nanos) -> Result<(), Fault> {
+        let (instant, requests) = &mut self.at_instant;
+        if *instant != now {
+            (*instant, *requests) = (now, 0);
+        }
+        *requests += 1;
+        if *requests <= REQUESTS_AT_AN_INSTANT {
+            return Ok(());
+        }
+        let message = format!(
+            "the program made {REQUESTS_AT_AN_INSTANT} requests without letting simulated time pass (at {} s)",
+            seconds(now)
+        );
+        Err(Fault::System(SystemFault { message, kind: SystemFaultKind::Program }))
+    }
+
+    fn response(&mut self, request: SystemRequest, cx: &mut Context<'_, '_>) -> Response {
+        match request {
+            SystemRequest::Now => Response::Answer(SystemAnswer::Ok),
+            SystemRequest::Done => Response::End,
+            SystemRequest::Sleep { time } => Response::Wait(Wait::Time(cx.now.saturating_add(time))),
+            SystemRequest::Emit { event, args } => Response::Answer(match self.emission(&event, &args) {
+                Ok((event, args)) => {
+                    cx.out.push(Message::Event { event, args });
+                    SystemAnswer::Ok
+                }
+                Err(answer) => answer,
+            }),
+            SystemRequest::WaitFor { events, timeout } => self.wait_for(&events, timeout, cx.now),
+            SystemRequest::Drop { events } => Response::Answer(self.drop_mail(&events)),
+            SystemRequest::Read { signal } => Response::Answer(self.read(&signal, cx.stage.as_deref_mut())),
+            SystemRequest::Order(order) => {
+                let Some(stage) = cx.stage.as_deref_mut() else {
+                    return Response::Answer(refuse("there is no world to act in", None));
+                };
+                match stage.order(&order) {
+                    Ok(id) => Response::Wait(Wait::Order(id)),
+                    Err(OrderError::Refused { error, help }) => Response::Answer(refuse(error, help)),
+                    Err(OrderError::Failed(why)) => Response::Answer(SystemAnswer::Ended(Err(why))),
+                }
+            }
+        }
+    }
+
+    fn wait_for(&mut self, names: &[String], timeout: Option<Nanos>, now: Nanos) -> Response {
+        let events = match self.audible(names) {
+            Ok(events) => events,
+            Err(answer) => return Response::Answer(answer),
+        };
+        let at = self.mailbox.iter().position(|m| events.contains(&m.event));
+        if let Some(mail) = at.and_then(|at| self.mailbox.remove(at)) {
+            return Response::Answer(self.event_answer(mail));
+        }
+        let until = timeout.map(|t| now.saturating_add(t));
+        Response::Wait(Wait::Events { events, until })
+    }
+
+    fn drop_mail(&mut self, names: &[String]) -> SystemAnswer {
+        match self.audible(names) {
+            Ok(events) => {
+                self.mailbox.retain(|m| !(names.is_empty() || events.contains(&m.event)));
+                SystemAnswer::Ok
+            }
+            Err(answer) => answer,
+        }
+    }
+
+    fn read(&self, name: &str, stage: Option<&mut Stage<'_>>) -> SystemAnswer {
+        let readable = |s: &&Signal| s.to.contains(&self.actors[0]);
+        let found = self.program.signals.iter().zip(0u16..).find(|(s, _)| s.name == name && readable(s));
+        match (found, stage) {
+            (Some((_, index)), Some(stage)) => SystemAnswer::Value(stage.read(SignalId(index))),
+            (Some(_), None) => refuse("there is no world to read signals from", None),
+            (None, _) => {
+                let known = self.program.signals.iter().filter(readable).map(|s| s.name.as_str());
+                refuse(format!("no signal `{name}` that this actor can read"), list("signals", known))
+            }
+        }
+    }
+
+    /// The ids of events that the program can hear.
+    fn audible(&self, names: &[String]) -> Result<Vec<EventId>, SystemAnswer> {
+        names.iter().map(|name| self.audible_event(name)).collect()
+    }
+
+    fn audible_event(&self, name: &str) -> Result<EventId, SystemAnswer> {
+        let hears = |id: EventId| {
+            is_perceived(self.program, self.actors[0], id) && self.program.event(id).from != self.actors[0]
+        };
+        match self.program.event_named(name) {
+            Some(id) if hears(id) => Ok(id),
+            Some(_) | None => {
+                let ids = (0u16..).map(EventId).take(self.program.events.len());
+                let known = ids.filter(|id| hears(*id)).map(|id| self.program.event(id).name.as_str());
+                Err(refuse(format!("no event `{name}` that this actor can hear"), list("events", known)))
+            }
+        }
+    }
+
+    /// The event and its arguments in order, if the program may make it.
+    fn emission(
+        &self,
+        name: &str,
+        args: &BTreeMap<String, Argument>,
+    ) -> Result<(EventId, Vec<Value>), SystemAnswer> {
+        let own = |e: &&Event| e.from == self.actors[0] && !e.is_stimulus();
+        let id = self.program.event_named(name).filter(|id| own(&self.program.event(*id)));
+        let Some(id) = id else {
+            let known = self.program.events.iter().filter(own).map(|e| e.name.as_str());
+            return Err(refuse(format!("no event `{name}` that this actor makes"), list("events", known)));
+        };
+        let params = &self.program.event(id).params;
+        if let Some(extra) = args.keys().find(|k| params.iter().all(|p| p.name != **k)) {
+            let known = params.iter().map(|p| p.name.as_str());
+            return Err(refuse(format!("`{name}` has no argument `{extra}`"), list("arguments", known)));
+        }
+        let values = params.iter().map(|p| argument(name, p, args.get(&p.name))).collect::<Result<_, _>>()?;
+        Ok((id, values))
+    }
+
+    fn event_answer(&self, mail: Mail) -> SystemAnswer {
+        let event = self.program.event(mail.event);
+        let args = event.params.iter().map(|p| p.name.clone()).zip(mail.args).collect();
+        SystemAnswer::Event { name: event.name.clone(), args, time: mail.time }
+    }
+
+    /// The answer to an open request, if its time has come.
+    fn due(wait: &Wait, cx: &mut Context<'_, '_>) -> Option<SystemAnswer> {
+        match wait {
+            Wait::Time(until) => (*until <= cx.now).then_some(SystemAnswer::Ok),
+            Wait::Events { until, .. } => {
+                (cx.expire && until.is_some_and(|until| until <= cx.now)).then_some(SystemAnswer::TimedOut)
+            }
+            Wait::Order(id) => Some(SystemAnswer::Ended(cx.stage.as_deref_mut()?.take_ended(*id)?)),
+        }
+    }
+}
+
+fn refuse(error: impl Into<String>, help: Option<String>) -> SystemAnswer {
+    SystemAnswer::Refused { error: error.into(), help }
+}
+
+fn list<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
+    let names: Vec<&str> = names.collect();
+    (!names.is_empty()).then(|| format!("{what} it can use: {}", names.join(", ")))
+}
+
+fn argument(event: &str, param: &Param, given: Option<&Argument>) -> Result<Value, SystemAnswer> {
+    let Some(given) = given else {
+        return Err(refuse(format!("`{event}` needs the argument `{}`", param.name), None));
+    };
+    let value = match (param.ty, given) {
+        (Type::Float(_), Argument::Scalar(Value::Int(n))) => Some(Value::Float(*n as f64)),
+        (Type::Enum(e), Argument::Text(name)) => e.symbol(name).map(Value::Symbol),
+        (
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
+            Argument::Scalar(value),
+        ) => Some(*value),
+        (
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
+            Argument::Text(_) | Argument::Numbers(_),
+        ) => None,
+    };
+    value.filter(|v| param.ty.admits(*v)).ok_or_else(|| {
+        let ty = match param.ty {
+            Type::Bool => "a bool".to_owned(),
+            Type::Int { lo, hi } => format!("an integer of {lo}..{hi}"),
+            Type::Float(_) => "a number".to_owned(),
+            Type::Enum(e) => format!("the name of a value of `{e}` ({})", e.listed()),
+            // The checker lets no event have these.
+            Type::Text => "a string".to_owned(),
+            Type::List(_) => "a list".to_owned(),
+        };
+        refuse(format!("`{event}`: `{}` is {given}, but must be {ty}", param.name), None)
+    })
+}
+
+impl<S: System> Player for SystemPlayer<'_, S> {
+    fn actors(&self) -> &[ActorId] {
+        &self.actors
+    }
+
+    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+        let mut at = 0;
+        while let Some((ticket, wait)) = self.waits.get(at) {
+            let ticket = *ticket;
+            match Self::due(wait, cx) {
+                Some(answer) => {
+                    self.waits.remove(at);
+                    self.answer(ticket, cx.now, answer)?;
+                }
+                None => at += 1,
+            }
+        }
+        self.serve(cx)
+    }
+
+    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+        let mail = Mail { event, args: args.to_vec(), time: cx.now };
+        let waits_for = |(_, wait): &(Ticket, Wait)| match wait {
+            Wait::Events { events, .. } => events.contains(&event),
+            Wait::Time(_) | Wait::Order(_) => false,
+        };
+        // Of several that wait for it, the one that has waited longest takes it.
+        if let Some(at) = self.waits.iter().position(waits_for) {
+            let (ticket, _) = self.waits.remove(at);
+            let answer = self.event_answer(mail);
+            self.answer(ticket, cx.now, answer)?;
+            return self.serve(cx);
+        }
+        if self.mailbox.len() == MAILBOX {
+            self.mailbox.pop_front();
+        }
+        self.mailbox.push_back(mail);
+        Ok(())
+    }
+
+    fn next_wake(&self) -> Option<Nanos> {
+        if self.ended {
+            return None;
+        }
+        let until = |(_, wait): &(Ticket, Wait)| match wait {
+            Wait::Time(until) => Some(*until),
+            Wait::Events { until, .. } => *until,
+            Wait::Order(_) => None,
+        };
+        let asks = self.system.is_ready().then_some(0);
+        self.waits.iter().filter_map(until).chain(asks).min()
+    }
+
+    fn is_finished(&self) -> bool {
+        self.ended
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_ir::{Enumeration, Symbol, Unit};
+
+    use super::*;
+
+    fn given(ty: Type, arg: Argument) -> Result<Value, String> {
+        let param = Param { name: "p".into(), ty };
+        argument("e", &param, Some(&arg)).map_err(|answer| match answer {
+            SystemAnswer::Refused { error, .. } => error,
+            other => panic!("{other:?}"),
+        })
+    }
+
+    fn text(text: &str) -> Argument {
+        Argument::Text(text.into())
+    }
+
+    fn scalar(value: Value) -> Argument {
+        Argument::Scalar(value)
+    }
+
+    #[test]
+    fn a_symbol_is_given_by_its_name() {
+        let pace = Enumeration::intern("Pace", &["slow", "fast"]);
+        let ty = Type::Enum(pace);
+        assert_eq!(given(ty, text("fast")), Ok(Value::Symbol(Symbol::intern("fast"))));
+        let numbers = Argument::Numbers(vec![1.5]);
+        let wrong = [text("quick"), text(""), scalar(Value::Int(1)), scalar(Value::Bool(true)), numbers];
+        for (wrong, shown) in wrong.into_iter().zip(["\"quick\"", "\"\"", "1", "true", "[1.5]"]) {
+            let must = "the name of a value of `Pace` (`slow`, `fast`)";
+            assert_eq!(given(ty, wrong), Err(format!("`e`: `p` is {shown}, but must be {must}")));
+        }
+    }
+
+    #[test]
+    fn text_is_no_other_value() {
+        let (int, float) = (Type::Int { lo: 0, hi: 4 }, Type::Float(Unit::Metre));
+        assert_eq!(given(Type::Bool, scalar(Value::Bool(true))), Ok(Value::Bool(true)));
+        assert_eq!(given(int, scalar(Value::Int(4))), Ok(Value::Int(4)));
+        assert_eq!(given(float, scalar(Value::Int(4))), Ok(Value::Float(4.0)));
+        let error = |ty, arg| given(ty, arg).unwrap_err();
+        assert_eq!(error(Type::Bool, text("true")), "`e`: `p` is \"true\", but must be a bool");
+        assert_eq!(error(int, text("1")), "`e`: `p` is \"1\", but must be an integer of 0..4");
+        assert_eq!(error(int, scalar(Value::Int(5))), "`e`: `p` is 5, but must be an integer of 0..4");
+        assert_eq!(error(float, text("nan")), "`e`: `p` is \"nan\", but must be a number");
+        assert_eq!(error(float, Argument::Numbers(vec![0.5])), "`e`: `p` is [0.5], but must be a number");
+    }
+}
