@@ -6,18 +6,16 @@
 //! 2. [`campaign::prepare`] installs what the code under test needs;
 //! 3. [`campaign::Campaign::run`] runs the tests in parallel: each in a [`harness`] whose players make one
 //!    [`Trace`](hrdsl_trace::Trace), which [`judge`] judges;
-//! 4. [`tally`] adds up the tests to [`results`];
+//! 4. [`campaign::tally`] adds up the tests to [`results`];
 //! 5. [`report`] shows them: on a terminal, as JUnit XML, as a page.
+//!
+//! Besides, [`prove`] asks the networks of automata themselves. Each of these is a crate, for a build that leaves out what it
+//! does not need.
 
-pub mod campaign;
-pub mod model_run;
-pub mod prove;
-pub mod reasoning;
-mod tally;
-pub mod testgen;
-
+pub use hrdsl_campaign as campaign;
 pub use hrdsl_harness as harness;
 pub use hrdsl_judge as judge;
+pub use hrdsl_prove as prove;
 pub use hrdsl_report as report;
 pub use hrdsl_results as results;
-pub use tally::tally;
+pub use hrdsl_testgen as testgen;

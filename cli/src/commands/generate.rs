@@ -8,18 +8,23 @@ use std::{
 use hrdsl_compiler::Compilation;
 use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
-    model_run::{Detail, Inspection},
     prove::Settings,
-    reasoning::{End, Picked, ending, reasoning},
     report::explain_text,
     results::{Explanation, GoalReport, GoalStatus, ModelCoverage},
-    testgen::{Generated, Options, generate_with, write},
+    testgen::{
+        Generated, Options, generate_with,
+        model_run::{Detail, Inspection},
+        write,
+    },
 };
 use hrdsl_source::printable;
 use serde::Serialize;
 
 use super::how::{Way, When, Witness};
-use super::inspect::{Chosen, json_lines};
+use super::inspect::{
+    Chosen, json_lines,
+    reasoning::{End, Picked, ending, reasoning},
+};
 use crate::{
     exit::Exit,
     input::{self, Fault},

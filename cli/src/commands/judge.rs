@@ -9,11 +9,10 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
-    campaign::{CampaignOutcome, FinishedTest},
+    campaign::{CampaignOutcome, FinishedTest, tally},
     judge::{JudgedRecording, judge_recording},
     report,
     results::{BinName, BinResult, Requirement, Results, RunEnd, TestName, TestResult, VerdictResult},
-    tally,
 };
 use serde::Serialize;
 

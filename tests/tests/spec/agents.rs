@@ -20,7 +20,7 @@ use hrdsl_ir::{
 };
 use hrdsl_runtime::{
     harness::{Ended, Fault},
-    model_run::{How, LogLine, model_run},
+    testgen::model_run::{How, LogLine, model_run},
 };
 use hrdsl_trace::What;
 

@@ -1,6 +1,7 @@
 //! `hrdsl inspect`: how the agents of a suite reason, cycle by cycle.
 
 mod beliefs;
+pub mod reasoning;
 
 use std::path::PathBuf;
 
@@ -11,14 +12,15 @@ use hrdsl_ir::{
     suite::{Method, PlayerRef, Suite},
     value::nanos,
 };
-use hrdsl_runtime::{
+use hrdsl_runtime::testgen::{
+    self, Options, Origin, generate_with, how_many_sets,
     model_run::{Detail, How, Inspection, LogLine, inspect},
-    reasoning::{End, Picked, ending, reasoning},
-    testgen::{self, Options, Origin, generate_with, how_many_sets, seed_of},
+    seed_of,
 };
 use hrdsl_source::printable_line;
 use serde::Serialize;
 
+use self::reasoning::{End, Picked, ending, reasoning};
 use crate::{
     color,
     exit::Exit,

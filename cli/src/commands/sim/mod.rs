@@ -12,10 +12,9 @@ use std::{
 
 use hrdsl_ir::{Nanos, Program, system::System, test::Test};
 use hrdsl_runtime::{
-    campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare},
+    campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare, tally},
     report,
     results::Results,
-    tally,
     testgen::{Generated, generate},
 };
 use serde::Serialize;

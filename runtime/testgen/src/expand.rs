@@ -9,8 +9,8 @@ use hrdsl_ir::{
 use hrdsl_results::GoalName;
 use hrdsl_ta::{Counter, Goal, GoalKind, StateFormula};
 
-use super::{covers::Shown, flow};
-use crate::prove;
+use crate::{covers::Shown, flow};
+use hrdsl_prove as prove;
 
 /// A goal with its name for people. It is reached if one of the ways to it is.
 pub struct Named {

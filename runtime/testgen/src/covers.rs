@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{Program, coverage::BinName, ta::LocationId};
 use hrdsl_ta::Witness;
 
-use crate::prove;
+use hrdsl_prove as prove;
 
 /// What happened in a run, as goals ask for it.
 pub struct Seen {

@@ -17,7 +17,7 @@ use hrdsl_ta::Witness;
 use super::{Settings, observer::number};
 
 /// A program in which the holds of a network's stimuli take time.
-pub(crate) struct Held {
+pub struct Held {
     pub program: Program,
     places: Vec<Place>,
     /// By member of the network: its name, and where it starts.

@@ -20,6 +20,7 @@ mod flow;
 mod goals;
 mod minimise;
 mod model;
+pub mod model_run;
 mod random;
 mod search;
 mod write;
@@ -30,9 +31,9 @@ use hrdsl_ir::{
     suite::{Delays, Method, Suite, WitnessKind},
     test::{Provenance, Test, TestMethod, TestStep},
 };
+use hrdsl_prove::Settings;
 use hrdsl_results::{Explanation, GoalName, GoalReport, GoalStatus, ModelCoverage, Uncovered};
 
-use crate::prove::Settings;
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
 pub use hrdsl_bdi::choose::BeliefSet;

@@ -10,7 +10,7 @@ use hrdsl_ir::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{AbstractTest, Harvest, extract};
+use crate::{AbstractTest, Harvest, extract};
 
 /// Draws `count` sequences.
 ///

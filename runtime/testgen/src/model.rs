@@ -8,7 +8,7 @@ use hrdsl_ir::{
 };
 use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, Unreached};
 
-use super::{
+use crate::{
     AbstractTest,
     goals::{Reached, agents},
 };

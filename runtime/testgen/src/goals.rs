@@ -15,7 +15,7 @@ use hrdsl_ir::{
 };
 use hrdsl_results::GoalName;
 
-use super::bins;
+use crate::bins;
 
 /// Something that a suite is to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -13,7 +13,7 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_monitor::{Checker, Outcome};
-use hrdsl_runtime::prove::{Fate, Observed, Settings, Watch, decide, of_formula};
+use hrdsl_prove::{Fate, Observed, Settings, Watch, decide, of_formula};
 use hrdsl_trace::{Observer as _, Step, What};
 
 /// A small generator, so that each case is the same everywhere.

@@ -11,7 +11,7 @@
 //! counts. Only if neither decides are they added as automata of their own ([`Observed::restrict`]).
 
 mod goals;
-pub(crate) mod held;
+pub mod held;
 mod matching;
 mod observer;
 mod query;
@@ -171,7 +171,7 @@ fn judged(program: &Program, requirement: &Monitor, monitor: usize, witness: &Wi
 }
 
 /// What the monitors say of a trace.
-pub(crate) fn verdicts(program: &Program, trace: &Trace) -> Vec<hrdsl_monitor::Verdict> {
+pub fn verdicts(program: &Program, trace: &Trace) -> Vec<hrdsl_monitor::Verdict> {
     let mut checker = Checker::new(program);
     for (index, step) in trace.steps.iter().enumerate() {
         checker.step(index, step);
@@ -181,7 +181,7 @@ pub(crate) fn verdicts(program: &Program, trace: &Trace) -> Vec<hrdsl_monitor::V
 }
 
 /// The events of a run, and its end: what it shows may need time after the last of them.
-pub(crate) fn trace(witness: &Witness) -> Trace {
+pub fn trace(witness: &Witness) -> Trace {
     let mut trace = witness.trace();
     trace.end = trace.end.max(witness.end.div_euclid(witness.ticks.max(1)));
     trace

@@ -5,8 +5,8 @@ mod automaton;
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{CYCLE_LIMIT, Logged, Society, measure::Measured, show};
-pub use hrdsl_bdi::{Detail, Standing, Status};
+use hrdsl_bdi::{CYCLE_LIMIT, Logged, Society, measure::Measured};
+pub use hrdsl_bdi::{Detail, Standing, Status, show};
 use hrdsl_harness::{Ended, Harness, Player, Run};
 use hrdsl_ir::{
     Nanos, Program,

@@ -8,10 +8,9 @@ use hrdsl_results::{
     SuiteName, Tally, TestMethod, VERSION, VerdictOutcome,
 };
 
-use crate::{
-    campaign::{CampaignOutcome, FinishedTest},
-    testgen::Generated,
-};
+use hrdsl_testgen::Generated;
+
+use crate::{CampaignOutcome, FinishedTest};
 
 /// Puts the results of a campaign together. `sources` are the texts of the measured files, by name; `rerun` is the command that
 /// runs one test again, up to its name.

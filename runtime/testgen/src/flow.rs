@@ -7,7 +7,7 @@ use hrdsl_ir::{
 };
 use hrdsl_ta::{Goal, GoalKind};
 
-use super::{
+use crate::{
     covers::Shown,
     expand::{Named, declared, edge_name, is_generated},
 };

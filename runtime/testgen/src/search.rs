@@ -11,13 +11,13 @@ use hrdsl_ir::{
 use hrdsl_results::{GoalReport, GoalStatus};
 use hrdsl_ta::{Error, Goal, GoalKind};
 
-use super::{
+use crate::{
     AbstractTest, Harvest,
     covers::{Seen, Shown},
     expand::{Named, counters, goals},
     extract,
 };
-use crate::prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, held::Held, of_formula};
+use hrdsl_prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, held::Held, of_formula};
 
 /// Decides all goals and takes the environment's part of each witness.
 ///

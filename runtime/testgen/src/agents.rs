@@ -16,12 +16,12 @@ use hrdsl_ir::{
 use hrdsl_results::ModelCoverage;
 use rayon::prelude::*;
 
-use super::{
+use crate::model_run::{Detail, How, ModelRun, model_run};
+use crate::{
     AbstractTest, Found, Harvest, Origin, concrete, extract,
     goals::{Goals, Reached, agents},
     model,
 };
-use crate::model_run::{Detail, How, ModelRun, model_run};
 
 /// Different warnings of runs that are told, at most.
 const WARNINGS: usize = 20;

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_bdi::{Standing, Status, show};
 use hrdsl_ir::{Nanos, Span};
-use hrdsl_report::text;
 use serde::Serialize;
 
-use hrdsl_harness::{Ended, Fault};
-
-use crate::model_run::{Inspection, LogLine};
+use hrdsl_runtime::{
+    harness::{Ended, Fault},
+    report::text,
+    testgen::model_run::{Inspection, LogLine, Standing, Status, show},
+};
 
 /// Of more cycles of an agent in a round than this only the first and last are shown.
 const MANY: usize = 60;

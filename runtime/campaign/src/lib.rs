@@ -1,4 +1,6 @@
-//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted.
+//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
+
+mod tally;
 
 use std::{
     ffi::OsString,
@@ -27,7 +29,9 @@ use hrdsl_trace::{
     record::{self, Ending, Header},
 };
 
-use crate::testgen;
+use hrdsl_testgen::step_text;
+
+pub use tally::tally;
 
 /// How much of the program's output is kept, in bytes for each stream.
 const OUTPUT_KEPT: usize = 64 * 1024;
@@ -274,7 +278,7 @@ fn test_result(
         predicted: test.provenance.predicts.clone(),
         because: test.provenance.because.clone(),
         code: ratios(&executed),
-        steps: test.steps.iter().map(|s| testgen::step_text(program, s)).collect(),
+        steps: test.steps.iter().map(|s| step_text(program, s)).collect(),
         output,
     };
     FinishedTest { result, executed }
