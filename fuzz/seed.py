@@ -23,7 +23,7 @@ def texts():
 
 
 for target in ("lexer", "parser", "checker", "formatter"):
-    folder = ROOT / "fuzz" / "corpus" / target
+    folder = ROOT / "fuzz" / "work" / target
     folder.mkdir(parents=True, exist_ok=True)
     for text in texts():
         data = text.encode()
