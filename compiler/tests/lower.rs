@@ -542,6 +542,7 @@ fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<Effect
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a flat list of expectations")]
 fn patterns_become_monitors() {
     use Effect::{Discharge, Fail, ResetClock, Trigger};
     let p = program(&format!(
@@ -620,6 +621,7 @@ fn patterns_become_monitors() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a flat list of expectations")]
 fn coverage_suites_and_tests() {
     let p = program(
         "event e from person\nevent m(ok: bool) from robot\nstimulus s(ok: bool) by person {\n  sample a in 1 m .. 2 m\n  emit e\n}\n\
@@ -874,6 +876,7 @@ fn channels_are_offered_accepted_and_joined() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a flat list of expectations")]
 fn clocks_are_shared_compared_and_set() {
     let p = program(
         "var total: clock\nvar lap: clock[2]\nvar n: 0..4\nvar b: bool\nconst I = 1\n\

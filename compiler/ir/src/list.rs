@@ -216,6 +216,7 @@ pub enum ListFunction {
 ///
 /// # Errors
 /// `Type` if the arguments are of other types, or too few.
+#[expect(clippy::too_many_lines, reason = "a flat match")]
 pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError> {
     use ListFunction as F;
     let list = |v: Vec<Value>| Ok(Some(Value::List(List::of(&v))));

@@ -82,6 +82,7 @@ impl Noun {
         format!("{article} {word}")
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub fn plural(self) -> String {
         match self {
             Noun::Stimulus => "stimuli".to_owned(),
@@ -148,6 +149,7 @@ impl Noun {
 }
 
 impl fmt::Display for Noun {
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Noun::Actor => "actor",

@@ -40,6 +40,7 @@ pub(crate) struct Names<'a, 'p> {
 }
 
 impl Names<'_, '_> {
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn entry(&self, entry: &LogEntry) -> String {
         match &entry.what {
             Logged::Selected { on, args, plan, vars, fresh } => {

@@ -136,6 +136,7 @@ impl<'p> Machine<'p> {
 
     // ── Plain steps ──
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn plain(&mut self, here: Here, step: &'p StepKind) -> Result<Flow, Cause> {
         self.done(here, Outcome::Done);
         let Here { place, .. } = here;

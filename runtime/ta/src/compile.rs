@@ -351,32 +351,44 @@ impl<'p> Compiler<'p> {
         let guard = self.clocks(automaton, &names, first, &locals, &edge.clock_guard)?;
         let data = edge.guard.as_ref().map(|g| self.library.compile(&names, g, Ty::Bool));
         let mut updates = Vec::new();
-        for u in &edge.updates {
-            updates.push(match u {
-                Update::Assign { place, value } => {
-                    let (reach, value) = self.assignment(&names, place, value).ok_or_else(unknown)?;
-                    if matches!(reach.base, At::Local(_)) {
-                        return Err(unknown());
-                    }
-                    Op::Assign(reach, value)
-                }
-                Update::Reset { clock, from, to } => Op::Reset {
-                    clock: self.clock(*clock, first),
-                    from: from.map(|c| self.clock(c, first)),
-                    to: self.times(automaton, &names, &locals, to)?,
-                },
-                Update::Call { function, args } => {
-                    let lib = &self.library;
-                    let routine = lib.routine(*function, names.member).ok_or_else(unknown)?;
-                    Op::Call(routine, lib.arguments(&names, routine, args).ok_or_else(unknown)?)
-                }
-            });
+        for update in &edge.updates {
+            updates.push(self.update(automaton, first, &names, &locals, update)?);
         }
         let selects = edge.selects.iter().map(|v| (v.lo, v.hi)).collect();
         let mut arrow =
             Arrow { edge, number, guard, data, selects, binders, sync, updates, reads: Vec::new() };
         arrow.reads = self.reads(&arrow);
         Ok(arrow)
+    }
+
+    fn update(
+        &self,
+        automaton: &Automaton,
+        first: usize,
+        names: &Names,
+        locals: &[(i64, i64)],
+        update: &Update,
+    ) -> Result<Op> {
+        let unknown = || malformed(&automaton.name, "an edge uses something unknown");
+        Ok(match update {
+            Update::Assign { place, value } => {
+                let (reach, value) = self.assignment(names, place, value).ok_or_else(unknown)?;
+                if matches!(reach.base, At::Local(_)) {
+                    return Err(unknown());
+                }
+                Op::Assign(reach, value)
+            }
+            Update::Reset { clock, from, to } => Op::Reset {
+                clock: self.clock(*clock, first),
+                from: from.map(|c| self.clock(c, first)),
+                to: self.times(automaton, names, locals, to)?,
+            },
+            Update::Call { function, args } => {
+                let lib = &self.library;
+                let routine = lib.routine(*function, names.member).ok_or_else(unknown)?;
+                Op::Call(routine, lib.arguments(names, routine, args).ok_or_else(unknown)?)
+            }
+        })
     }
 
     /// The places of the state that an edge reads.

@@ -54,6 +54,7 @@ pub fn message(of: &Literal) -> Result<Message<'_>, Reason> {
 }
 
 /// The types of an internal action's arguments.
+#[expect(clippy::too_many_lines, reason = "a flat match")]
 pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
     if of.negated {
         return Err("an internal action cannot be negated".to_owned());

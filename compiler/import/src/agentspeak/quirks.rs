@@ -126,6 +126,7 @@ impl<'a> Look<'a> {
     }
 
     /// Steps that change beliefs and do it otherwise.
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn changes(&self, all: &mut Vec<Quirk>) {
         let count = |m: &Mention, what: &What| {
             self.survey

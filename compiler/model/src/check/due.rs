@@ -196,23 +196,7 @@ impl Checker<'_> {
             && let [name] = path.names.as_slice()
             && variable(self, name)
         {
-            if env.broken.contains(&name.text) {
-                self.leaves("", layout, &mut leaves);
-                out.extend(leaves.into_iter().map(|_| Part::Any));
-                return;
-            }
-            if let Some(got) = self.stands_for_other(name, layout, env) {
-                let want = self.shown_layout(layout);
-                self.report(types::other_before(&name.text, &want, &got, name.span));
-                self.leaves("", layout, &mut leaves);
-                out.extend(leaves.into_iter().map(|_| Part::Any));
-                return;
-            }
-            self.leaves(&name.text, layout, &mut leaves);
-            env.declare_layout(&name.text, layout.clone());
-            let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
-            out.extend(leaves.into_iter().map(part));
-            return;
+            return self.spread_variable(name, layout, env, out);
         }
         let item = self.item_for(arg, layout, env);
         self.leaves("", layout, &mut leaves);
@@ -225,6 +209,26 @@ impl Checker<'_> {
         let mut values = Vec::new();
         item.flatten(&mut values);
         out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
+    }
+
+    /// The parts of a variable that is bound here, or was.
+    fn spread_variable(&mut self, name: &Name, layout: &Layout, env: &mut Env, out: &mut Vec<Part<'_>>) {
+        let mut leaves = Vec::new();
+        let is_broken = env.broken.contains(&name.text);
+        let other = if is_broken { None } else { self.stands_for_other(name, layout, env) };
+        if is_broken || other.is_some() {
+            if let Some(got) = other {
+                let want = self.shown_layout(layout);
+                self.report(types::other_before(&name.text, &want, &got, name.span));
+            }
+            self.leaves("", layout, &mut leaves);
+            out.extend(leaves.into_iter().map(|_| Part::Any));
+            return;
+        }
+        self.leaves(&name.text, layout, &mut leaves);
+        env.declare_layout(&name.text, layout.clone());
+        let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
+        out.extend(leaves.into_iter().map(part));
     }
 
     /// What a variable stands for, if it is of another layout.

@@ -12,6 +12,7 @@ use super::{Checker, Declared, given::template};
 use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, Var, VarPlace};
 
 impl Checker<'_> {
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(super) fn places(&mut self) {
         let shared = parts(&self.s.shared);
         for (item, span) in self.each_item() {

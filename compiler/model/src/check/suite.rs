@@ -181,6 +181,7 @@ impl Checker<'_> {
         is == needs
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn member(&mut self, member: &SuiteMember, players: &[Player], by_search: bool, said: &mut Said) {
         match &member.kind {
             Member::Choose { any, belief, agent, per, condition } => {

@@ -110,39 +110,7 @@ impl<'a> Checker<'a> {
                 return all;
             }
             match &member.kind {
-                Member::Part { name, of, args, at, rotated } => {
-                    let inner = self.frame(at, rotated.as_ref());
-                    let full = format!("{prefix}{}", name.text);
-                    let instances = &mut self.in_world.instances;
-                    let noun = Noun::PartInstance;
-                    let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
-                    let Some(part) = self.part(of) else {
-                        self.in_world.broken.insert(full);
-                        continue;
-                    };
-                    let Ok(given) = self.given_part(part, of, args.as_deref(), prefix) else {
-                        self.in_world.broken.insert(full);
-                        continue;
-                    };
-                    if new {
-                        let frame = compose(frame, inner);
-                        let placed = Instance { name: full.clone(), frame, span: member.span };
-                        self.world_mut().parts.push(placed);
-                        let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
-                        let here = Name { text: full.clone(), span: name.span };
-                        let instance = given.is_some().then(|| (here, name.span.to(end)));
-                        let outer = std::mem::replace(&mut self.given, given);
-                        let (before, prefix) = (self.issues.len(), format!("{full}."));
-                        self.open_parts.push(&part.name.text);
-                        let inner = self.flatten(&part.members, &prefix, frame, instance.clone());
-                        self.open_parts.pop();
-                        self.given = outer;
-                        if let Some((name, span)) = &instance {
-                            self.said_in(before, Some((name, *span)));
-                        }
-                        all.extend(inner);
-                    }
-                }
+                Member::Part { .. } => all.extend(self.flatten_part(member, prefix, frame)),
                 Member::Step(_)
                 | Member::Sample(_)
                 | Member::Gravity(_)
@@ -161,6 +129,43 @@ impl<'a> Checker<'a> {
             }
         }
         all
+    }
+
+    /// The members of a part that another, or the world, has.
+    fn flatten_part(&mut self, member: &'a WorldMember, prefix: &str, frame: Frame) -> Vec<Placed<'a>> {
+        let Member::Part { name, of, args, at, rotated } = &member.kind else { return Vec::new() };
+        let inner = self.frame(at, rotated.as_ref());
+        let full = format!("{prefix}{}", name.text);
+        let instances = &mut self.in_world.instances;
+        let noun = Noun::PartInstance;
+        let new = Self::declare_as(&mut self.issues, instances, noun, &full, name.span).is_some();
+        let Some(part) = self.part(of) else {
+            self.in_world.broken.insert(full);
+            return Vec::new();
+        };
+        let Ok(given) = self.given_part(part, of, args.as_deref(), prefix) else {
+            self.in_world.broken.insert(full);
+            return Vec::new();
+        };
+        if !new {
+            return Vec::new();
+        }
+        let frame = compose(frame, inner);
+        let placed = Instance { name: full.clone(), frame, span: member.span };
+        self.world_mut().parts.push(placed);
+        let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
+        let here = Name { text: full.clone(), span: name.span };
+        let instance = given.is_some().then(|| (here, name.span.to(end)));
+        let outer = std::mem::replace(&mut self.given, given);
+        let (before, prefix) = (self.issues.len(), format!("{full}."));
+        self.open_parts.push(&part.name.text);
+        let inner = self.flatten(&part.members, &prefix, frame, instance.clone());
+        self.open_parts.pop();
+        self.given = outer;
+        if let Some((name, span)) = &instance {
+            self.said_in(before, Some((name, *span)));
+        }
+        inner
     }
 
     /// What the arguments give for a part's parameters.
