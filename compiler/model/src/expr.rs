@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use serde::Serialize;
 
-use crate::{ArmId, FunctionId, GripperId, Kind, SignalId, Type, Value, world::BodyRef};
+use crate::{ArmId, BodyRef, FunctionId, GripperId, Kind, SignalId, Type, Value};
 
 /// A typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -14,6 +14,17 @@ use crate::{
     world::{Action, World},
 };
 
+pub use hrdsl_ir::{
+    ActorId, EventId, Role,
+    bdi::{AgentId, Annotation, BeliefId, ContentId, Control, GoalId, Performative, Subject},
+    coverage::{Bin, Condition, Cross, CrossBin, PointId},
+    list::ListFunction,
+    monitor::RequirementKind,
+    suite::{ChoiceKind, Delays, Explore, PlayerRef, WitnessKind},
+    ta::{AutomatonId, ChannelId, ClockId, ClockOp, FunctionId, LocationId},
+    world::{ArmId, BodyId, BodyRef, CurrentId, GripperId, JointId, Motion, SignalId},
+};
+
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
         $(#[$doc])*
@@ -23,50 +34,14 @@ macro_rules! ids {
 }
 
 ids! {
-    /// Index into [`Scenario::actors`].
-    ActorId,
-    /// Index into [`Scenario::events`].
-    EventId,
-    /// Index into [`Scenario::agents`].
-    AgentId,
-    /// Index into [`Agent::beliefs`].
-    BeliefId,
-    /// Index into [`Agent::goals`].
-    GoalId,
-    /// Index into [`Scenario::contents`].
-    ContentId,
-    /// Index into [`Scenario::automata`].
-    AutomatonId,
-    /// Index into [`Automaton::locations`].
-    LocationId,
-    /// The shared clocks first, then those of the automaton.
-    ClockId,
-    /// Index into [`Scenario::functions`].
-    FunctionId,
-    /// Index into [`Scenario::channels`].
-    ChannelId,
     /// Index into [`Scenario::networks`].
     NetworkId,
     /// Index into [`Scenario::queries`].
     QueryId,
     /// Index into [`Scenario::requirements`].
     RequirementId,
-    /// Index into [`Scenario::points`].
-    PointId,
     /// Index into [`Scenario::crosses`].
     CrossId,
-    /// Index into [`World::bodies`].
-    BodyId,
-    /// Index into [`World::joints`].
-    JointId,
-    /// Index into [`World::arms`].
-    ArmId,
-    /// Index into [`World::grippers`].
-    GripperId,
-    /// Index into [`World::currents`].
-    CurrentId,
-    /// Index into [`World::signals`].
-    SignalId,
 }
 
 /// A whole scenario, resolved. If there were errors, what they concern is missing from it.
@@ -148,13 +123,6 @@ pub struct VarPlace {
     pub name: Span,
     /// The whole declaration.
     pub whole: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    Environment,
-    System,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -265,14 +233,6 @@ pub struct Rule {
     pub vars: Vec<String>,
     pub span: Span,
     pub head: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Annotation {
-    Source,
-    /// Index into [`Belief::annotations`].
-    Declared(u16),
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -471,28 +431,6 @@ impl Internal {
     }
 }
 
-/// Functions of lists and strings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ListFunction {
-    Length,
-    Concat,
-    Nth,
-    Reverse,
-    Sort,
-    Min,
-    Max,
-    Delete,
-    Union,
-    Intersection,
-    Difference,
-    ToText,
-    Empty,
-    Prefix,
-    Suffix,
-    Sublist,
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Step {
     pub kind: StepKind,
@@ -627,30 +565,6 @@ impl Step {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Performative {
-    Tell,
-    Untell,
-    Achieve,
-    Unachieve,
-    AskOne,
-    AskAll,
-}
-
-/// What an internal action does to goals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Control {
-    DropIntention,
-    DropDesire,
-    DropEvent,
-    SucceedGoal,
-    FailGoal,
-    Suspend,
-    Resume,
-}
-
 /// What messages are about: a belief or a goal by name and number of arguments.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Content {
@@ -661,13 +575,6 @@ pub struct Content {
     pub of: Vec<Option<Subject>>,
     /// What it is sent with, and by whom; `None` is a question that waits for its answer.
     pub uses: BTreeSet<(Option<Performative>, AgentId)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Subject {
-    Belief(BeliefId),
-    Goal(GoalId),
 }
 
 // ── Automata ──
@@ -777,16 +684,6 @@ impl Time {
     pub fn fixed(&self) -> Option<i64> {
         self.terms.is_empty().then_some(self.nanos)
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ClockOp {
-    Lt,
-    Le,
-    Eq,
-    Ge,
-    Gt,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -960,13 +857,6 @@ pub struct Network {
 
 // ── Requirements ──
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RequirementKind {
-    Safety,
-    Functional,
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Requirement {
     pub name: String,
@@ -1007,31 +897,6 @@ pub struct CoverPoint {
     pub span: Span,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Bin {
-    pub name: String,
-    pub lo: i64,
-    pub hi: Option<i64>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cross {
-    pub name: String,
-    pub points: Vec<PointId>,
-    pub bins: Vec<(String, Condition, Span)>,
-    pub ignore: Vec<Condition>,
-    pub span: Span,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Condition {
-    In(PointId, u16),
-    Not(Box<Condition>),
-    And(Vec<Condition>),
-    Or(Vec<Condition>),
-}
-
 // ── Suites and tests ──
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -1049,7 +914,7 @@ pub struct Suite {
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     Agents {
-        players: Vec<Player>,
+        players: Vec<PlayerRef>,
         choose: Vec<Choice>,
         explore: Explore,
         /// End when so many belief sets in a row reached nothing new.
@@ -1071,13 +936,6 @@ pub enum Method {
     },
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Player {
-    Agent(AgentId),
-    Automaton(AutomatonId),
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Choice {
     pub agent: AgentId,
@@ -1092,24 +950,6 @@ pub struct ChoiceCondition {
     pub context: Context,
     pub vars: Vec<String>,
     pub span: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ChoiceKind {
-    One,
-    OnePer(u16),
-    Any,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Explore {
-    Exhaustive,
-    /// Every so many values occur together.
-    Wise(u8),
-    Random,
-    Learn,
 }
 
 /// What a suite by agents reaches each of.
@@ -1136,26 +976,6 @@ pub enum SearchGoal {
     Trigger(RequirementId),
     /// One that asks `E<>`.
     Query(QueryId),
-}
-
-/// Which witness a search takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WitnessKind {
-    Any,
-    #[default]
-    Shortest,
-    Fastest,
-}
-
-/// When its transitions happen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Delays {
-    #[default]
-    Earliest,
-    Latest,
-    Sampled,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{ActorId, BodyId, CurrentId, EventId, EventPattern, Expr, GripperId, JointId, Type};
+use crate::{ActorId, BodyId, BodyRef, EventId, EventPattern, Expr, GripperId, JointId, Motion, Type};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct World {
@@ -38,14 +38,6 @@ pub struct Instance {
 pub struct Frame {
     pub at: [f64; 3],
     pub yaw: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Motion {
-    Fixed,
-    Dynamic,
-    Kinematic,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -109,14 +101,6 @@ pub struct Current {
     pub name: String,
     pub of: Vec<BodyId>,
     pub by: GripperId,
-}
-
-/// A body, named outright or as a `current`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyRef {
-    Body(BodyId),
-    Current(CurrentId),
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,13 +1,11 @@
 //! Agents.
 
 use hrdsl_ir::{
-    ActorId, EventId, Expr,
+    Expr,
     bdi::{
-        Agent, Annotation, Assertion, Belief, BeliefId, Content, ContentId, Context, Control, Fact, Goal,
-        GoalId, Internal, Literal, Performative, Plan, Rule, Step, StepKind, Subject, Term, Trigger,
-        TriggerOn,
+        Agent, Annotation, Assertion, Belief, Content, Context, Fact, Goal, Internal, Literal, Plan, Rule,
+        Step, StepKind, Term, Trigger, TriggerOn,
     },
-    list::ListFunction,
 };
 use hrdsl_model as model;
 
@@ -18,7 +16,7 @@ pub(crate) fn agent(a: &model::Agent) -> Agent {
         name: b.name.clone(),
         params: expr::params(&b.params),
         annotations: expr::params(&b.annotations),
-        percept: b.percept.map(|e| EventId(e.0)),
+        percept: b.percept,
         origin: b.span,
     };
     let goal = |g: &model::Goal| Goal {
@@ -27,46 +25,30 @@ pub(crate) fn agent(a: &model::Agent) -> Agent {
         params: g.params.as_deref().map(expr::params),
     };
     let fact = |f: &model::Fact| Fact {
-        belief: belief_id(f.belief),
+        belief: f.belief,
         args: expr::values(&f.args),
-        annotations: f.annotations.iter().map(|(a, v)| (annotation(*a), expr::value(*v))).collect(),
+        annotations: f.annotations.iter().map(|(a, v)| (*a, expr::value(*v))).collect(),
     };
     Agent {
         name: a.name.clone(),
-        actor: ActorId(a.actor.0),
+        actor: a.actor,
         beliefs: a.beliefs.iter().map(belief).collect(),
         goals: a.goals.iter().map(goal).collect(),
         rules: a.rules.iter().map(rule).collect(),
         initial_beliefs: a.initial_beliefs.iter().map(fact).collect(),
-        initial_goals: a.initial_goals.iter().map(|(g, args)| (GoalId(g.0), expr::values(args))).collect(),
+        initial_goals: a.initial_goals.iter().map(|(g, args)| (*g, expr::values(args))).collect(),
         plans: a.plans.iter().map(plan).collect(),
         origin: a.span,
     }
 }
 
 pub(crate) fn content(c: &model::Content) -> Content {
-    let subject = |s: &Option<model::Subject>| match s {
-        Some(model::Subject::Belief(b)) => Some(Subject::Belief(belief_id(*b))),
-        Some(model::Subject::Goal(g)) => Some(Subject::Goal(GoalId(g.0))),
-        None => None,
-    };
-    Content { name: c.name.clone(), of: c.of.iter().map(subject).collect() }
-}
-
-fn belief_id(belief: model::BeliefId) -> BeliefId {
-    BeliefId(belief.0)
-}
-
-fn annotation(a: model::Annotation) -> Annotation {
-    match a {
-        model::Annotation::Source => Annotation::Source,
-        model::Annotation::Declared(i) => Annotation::Declared(i),
-    }
+    Content { name: c.name.clone(), of: c.of.clone() }
 }
 
 fn rule(r: &model::Rule) -> Rule {
     Rule {
-        belief: belief_id(r.belief),
+        belief: r.belief,
         args: terms(&r.args),
         body: context(&r.body),
         vars: r.vars.clone(),
@@ -76,13 +58,13 @@ fn rule(r: &model::Rule) -> Rule {
 
 fn plan(p: &model::Plan) -> Plan {
     let on = match p.trigger {
-        model::TriggerOn::Added(b) => TriggerOn::BeliefAdded(belief_id(b)),
-        model::TriggerOn::Removed(b) => TriggerOn::BeliefRemoved(belief_id(b)),
-        model::TriggerOn::Achieve(g) => TriggerOn::GoalAdded(GoalId(g.0)),
-        model::TriggerOn::Failed(g) => TriggerOn::GoalFailed(GoalId(g.0)),
-        model::TriggerOn::Test(b) => TriggerOn::TestAdded(belief_id(b)),
-        model::TriggerOn::TestFailed(b) => TriggerOn::TestFailed(belief_id(b)),
-        model::TriggerOn::Perceived(e) => TriggerOn::Perceived(EventId(e.0)),
+        model::TriggerOn::Added(b) => TriggerOn::BeliefAdded(b),
+        model::TriggerOn::Removed(b) => TriggerOn::BeliefRemoved(b),
+        model::TriggerOn::Achieve(g) => TriggerOn::GoalAdded(g),
+        model::TriggerOn::Failed(g) => TriggerOn::GoalFailed(g),
+        model::TriggerOn::Test(b) => TriggerOn::TestAdded(b),
+        model::TriggerOn::TestFailed(b) => TriggerOn::TestFailed(b),
+        model::TriggerOn::Perceived(e) => TriggerOn::Perceived(e),
     };
     Plan {
         label: p.label.clone(),
@@ -112,19 +94,19 @@ fn terms(args: &[model::Arg]) -> Vec<Term> {
     args.iter().map(term).collect()
 }
 
-fn annotations(all: &[(model::Annotation, model::Arg)]) -> Vec<(Annotation, Term)> {
-    all.iter().map(|(a, arg)| (annotation(*a), term(arg))).collect()
+fn annotations(all: &[(Annotation, model::Arg)]) -> Vec<(Annotation, Term)> {
+    all.iter().map(|(a, arg)| (*a, term(arg))).collect()
 }
 
 fn literal(l: &model::Literal) -> Literal {
-    Literal { belief: belief_id(l.belief), args: terms(&l.args), annotations: annotations(&l.annotations) }
+    Literal { belief: l.belief, args: terms(&l.args), annotations: annotations(&l.annotations) }
 }
 
 fn assertion(a: &model::Assertion) -> Assertion {
     Assertion {
-        belief: belief_id(a.belief),
+        belief: a.belief,
         args: expr::locals(&a.args),
-        annotations: a.annotations.iter().map(|(a, e)| (annotation(*a), expr::local(e))).collect(),
+        annotations: a.annotations.iter().map(|(a, e)| (*a, expr::local(e))).collect(),
     }
 }
 
@@ -155,14 +137,12 @@ fn internal(action: &model::Internal) -> Internal {
             Internal::Member { element: term(element), list: expr::local(list) }
         }
         From::Apply { function: f, args, out } => {
-            Internal::Apply { function: function(*f), args: expr::locals(args), out: term(out) }
+            Internal::Apply { function: *f, args: expr::locals(args), out: term(out) }
         }
-        From::Holds { function: f, args } => {
-            Internal::Holds { function: function(*f), args: expr::locals(args) }
-        }
-        From::Intend { goal, args } => Internal::Intend { goal: GoalId(goal.0), args: terms(args) },
-        From::Desire { goal, args } => Internal::Desire { goal: GoalId(goal.0), args: terms(args) },
-        From::Suspended { goal, args } => Internal::Suspended { goal: GoalId(goal.0), args: terms(args) },
+        From::Holds { function: f, args } => Internal::Holds { function: *f, args: expr::locals(args) },
+        From::Intend { goal, args } => Internal::Intend { goal: *goal, args: terms(args) },
+        From::Desire { goal, args } => Internal::Desire { goal: *goal, args: terms(args) },
+        From::Suspended { goal, args } => Internal::Suspended { goal: *goal, args: terms(args) },
         From::Random { from, out } => {
             Internal::Random { from: from.as_ref().map(expr::local), out: term(out) }
         }
@@ -170,28 +150,6 @@ fn internal(action: &model::Internal) -> Internal {
         From::Time { out } => Internal::Time { out: term(out) },
         From::MyName { out } => Internal::MyName { out: term(out) },
         From::AllNames { out } => Internal::AllNames { out: term(out) },
-    }
-}
-
-fn function(f: model::ListFunction) -> ListFunction {
-    use model::ListFunction as From;
-    match f {
-        From::Length => ListFunction::Length,
-        From::Concat => ListFunction::Concat,
-        From::Nth => ListFunction::Nth,
-        From::Reverse => ListFunction::Reverse,
-        From::Sort => ListFunction::Sort,
-        From::Min => ListFunction::Min,
-        From::Max => ListFunction::Max,
-        From::Delete => ListFunction::Delete,
-        From::Union => ListFunction::Union,
-        From::Intersection => ListFunction::Intersection,
-        From::Difference => ListFunction::Difference,
-        From::ToText => ListFunction::ToText,
-        From::Empty => ListFunction::Empty,
-        From::Prefix => ListFunction::Prefix,
-        From::Suffix => ListFunction::Suffix,
-        From::Sublist => ListFunction::Sublist,
     }
 }
 
@@ -208,11 +166,11 @@ fn optional(e: &Option<model::Expr>) -> Option<Expr> {
 fn step(s: &model::StepKind) -> StepKind {
     use model::StepKind as From;
     match s {
-        From::Do(e, args) => StepKind::Do { event: EventId(e.0), args: expr::locals(args) },
+        From::Do(e, args) => StepKind::Do { event: *e, args: expr::locals(args) },
         From::Achieve(g, args, within) => {
-            StepKind::Achieve { goal: GoalId(g.0), args: expr::locals(args), within: optional(within) }
+            StepKind::Achieve { goal: *g, args: expr::locals(args), within: optional(within) }
         }
-        From::Spawn(g, args) => StepKind::Spawn { goal: GoalId(g.0), args: expr::locals(args) },
+        From::Spawn(g, args) => StepKind::Spawn { goal: *g, args: expr::locals(args) },
         From::Query(l) => StepKind::Query(literal(l)),
         From::Test(c) => StepKind::Test(context(c)),
         From::Add(a) => StepKind::Add(assertion(a)),
@@ -233,54 +191,27 @@ fn step(s: &model::StepKind) -> StepKind {
         From::Fork { branches, all } => {
             StepKind::Fork { branches: branches.iter().map(|b| steps(b)).collect(), all: *all }
         }
-        From::Send { to, performative: p, content, args } => StepKind::Send {
-            to: optional(to),
-            performative: performative(*p),
-            content: ContentId(content.0),
-            args: terms(args),
-        },
+        From::Send { to, performative: p, content, args } => {
+            StepKind::Send { to: optional(to), performative: *p, content: *content, args: terms(args) }
+        }
         From::Ask { to, content, args, within } => StepKind::Ask {
             to: expr::local(to),
-            content: ContentId(content.0),
+            content: *content,
             args: terms(args),
             within: optional(within),
         },
         From::AskAll { to, template, content, args, out, within } => StepKind::AskAll {
             to: expr::local(to),
             template: expr::local(template),
-            content: ContentId(content.0),
+            content: *content,
             args: terms(args),
             out: term(out),
             within: optional(within),
         },
         From::Print(args) => StepKind::Print { args: expr::locals(args) },
-        From::Control(what, goal) => StepKind::Control {
-            what: control(*what),
-            goal: goal.as_ref().map(|(g, args)| (GoalId(g.0), terms(args))),
-        },
+        From::Control(what, goal) => {
+            StepKind::Control { what: *what, goal: goal.as_ref().map(|(g, args)| (*g, terms(args))) }
+        }
         From::Fail => StepKind::Fail,
-    }
-}
-
-fn performative(p: model::Performative) -> Performative {
-    match p {
-        model::Performative::Tell => Performative::Tell,
-        model::Performative::Untell => Performative::Untell,
-        model::Performative::Achieve => Performative::Achieve,
-        model::Performative::Unachieve => Performative::Unachieve,
-        model::Performative::AskOne => Performative::AskOne,
-        model::Performative::AskAll => Performative::AskAll,
-    }
-}
-
-fn control(what: model::Control) -> Control {
-    match what {
-        model::Control::DropIntention => Control::DropIntention,
-        model::Control::DropDesire => Control::DropDesire,
-        model::Control::DropEvent => Control::DropEvent,
-        model::Control::SucceedGoal => Control::SucceedGoal,
-        model::Control::FailGoal => Control::FailGoal,
-        model::Control::Suspend => Control::Suspend,
-        model::Control::Resume => Control::Resume,
     }
 }

@@ -3,7 +3,6 @@
 use hrdsl_ir::{
     self as ir, Expr, Unit,
     expr::{Index, Place},
-    ta::FunctionId,
 };
 use hrdsl_model::{self as model, Dim, ExprKind, Leaf, Term};
 use hrdsl_syntax::ast;
@@ -101,7 +100,7 @@ pub(crate) fn expr(e: &model::Expr, read: &mut dyn FnMut(Source) -> Expr) -> Exp
         }
         ExprKind::Element(of) => Expr::Element(Box::new(place(of, read))),
         ExprKind::Apply(function, args, _) => {
-            Expr::Apply(FunctionId(function.0), args.iter().map(|a| expr(a, read)).collect())
+            Expr::Apply(*function, args.iter().map(|a| expr(a, read)).collect())
         }
         // INVARIANT: a scenario with errors is not lowered.
         ExprKind::Error => Expr::bool(false),

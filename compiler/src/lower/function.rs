@@ -1,13 +1,13 @@
 //! Functions of automata: their slots and statements.
 
-use hrdsl_ir::ta::{Automaton, AutomatonId, Function, FunctionId, Statement, Var};
+use hrdsl_ir::ta::{Automaton, Function, Statement, Var};
 use hrdsl_model::{self as model, Leaf};
 
 use super::ta::{Slots, bounded, count, var};
 
 /// `automata` are lowered already: they may have variables that the source does not name.
 pub(crate) fn function(f: &model::Routine, scenario: &model::Scenario, automata: &[Automaton]) -> Function {
-    let owner = f.owner.map(|a| AutomatonId(a.0));
+    let owner = f.owner;
     let own = owner.and_then(|a| automata.get(usize::from(a.0))).map_or(0, |a| count(a.vars.len()));
     let slots = Slots { shared: count(scenario.shared.len()), own };
     Function {
@@ -31,10 +31,9 @@ fn statement(s: &model::Statement, slots: &Slots) -> Statement {
         model::Statement::Assign(place, value) => {
             Statement::Assign { place: slots.place(place), value: slots.expr(value) }
         }
-        model::Statement::Call(function, args) => Statement::Call {
-            function: FunctionId(function.0),
-            args: args.iter().map(|a| slots.expr(a)).collect(),
-        },
+        model::Statement::Call(function, args) => {
+            Statement::Call { function: *function, args: args.iter().map(|a| slots.expr(a)).collect() }
+        }
         model::Statement::If { condition, then, otherwise } => Statement::If {
             condition: slots.expr(condition),
             then: block(then, slots),

@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     EventPattern, Expr, Nanos, Unit,
     expr::{BinaryOp, Function, UnaryOp},
-    monitor::{Assumption, Edge, Effect, Margin, Monitor, On, RequirementKind, State, StateId},
+    monitor::{Assumption, Edge, Effect, Margin, Monitor, On, State, StateId},
     value::nanos,
     world::SignalId,
 };
@@ -40,10 +40,7 @@ pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signa
     };
     Monitor {
         name: r.name.clone(),
-        kind: match r.kind {
-            model::RequirementKind::Safety => RequirementKind::Safety,
-            model::RequirementKind::Functional => RequirementKind::Functional,
-        },
+        kind: r.kind,
         title: r.title.clone(),
         text: one_line(files.text(r.text)),
         signals: machine.signals,

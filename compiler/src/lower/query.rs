@@ -2,10 +2,7 @@
 
 use hrdsl_ir::{
     Expr,
-    ta::{
-        Ask, Automaton, ClockConstraint, ClockId, ClockOp, Formula, LocationId, Measure, Query, Time,
-        TimeTerm,
-    },
+    ta::{Ask, Automaton, ClockConstraint, Formula, Measure, Query, Time, TimeTerm},
     value::nanos,
 };
 use hrdsl_model::{self as model, Leaf, Scenario};
@@ -65,19 +62,13 @@ impl Slots {
     fn formula(&self, f: &model::Formula) -> Formula {
         match f {
             model::Formula::At { automaton, location } => {
-                Formula::At { automaton: *automaton, location: LocationId(location.0) }
+                Formula::At { automaton: *automaton, location: *location }
             }
             model::Formula::Data(e) => Formula::Data(self.expr(e)),
             model::Formula::Clock(c) => Formula::Clock(ClockConstraint {
-                clock: ClockId(c.clock.0),
-                minus: c.minus.map(|m| ClockId(m.0)),
-                op: match c.op {
-                    model::ClockOp::Lt => ClockOp::Lt,
-                    model::ClockOp::Le => ClockOp::Le,
-                    model::ClockOp::Eq => ClockOp::Eq,
-                    model::ClockOp::Ge => ClockOp::Ge,
-                    model::ClockOp::Gt => ClockOp::Gt,
-                },
+                clock: c.clock,
+                minus: c.minus,
+                op: c.op,
                 bound: self.time(&c.bound),
             }),
             model::Formula::Deadlock => Formula::Deadlock,
@@ -89,7 +80,7 @@ impl Slots {
 
     fn measures(&self, of: &[model::Measure]) -> Vec<Measure> {
         let measure = |m: &model::Measure| match m {
-            model::Measure::Clock(clock) => Measure::Clock(ClockId(clock.0)),
+            model::Measure::Clock(clock) => Measure::Clock(*clock),
             model::Measure::Data(e) => Measure::Data(self.expr(e)),
         };
         of.iter().map(measure).collect()

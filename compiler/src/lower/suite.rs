@@ -1,13 +1,7 @@
 //! Suites.
 
 use hrdsl_ir::{
-    EventId,
-    bdi::{AgentId, BeliefId},
-    suite::{
-        Choice, ChoiceKind, Condition, Delays, Explore, Method, ModelGoal, PlayerRef, SearchGoal, Suite,
-        WitnessKind,
-    },
-    ta::AutomatonId,
+    suite::{Choice, Condition, Method, ModelGoal, SearchGoal, Suite},
     value::nanos,
 };
 use hrdsl_model as model;
@@ -28,14 +22,9 @@ pub(crate) fn suite(s: &model::Suite) -> Suite {
 fn method(m: &model::Method) -> Method {
     match m {
         model::Method::Agents { players, choose, explore, stop_after, goals, minimise } => Method::Agents {
-            players: players.iter().map(|p| player(*p)).collect(),
+            players: players.clone(),
             choose: choose.iter().map(choice).collect(),
-            explore: match explore {
-                model::Explore::Exhaustive => Explore::Exhaustive,
-                model::Explore::Wise(t) => Explore::Wise(*t),
-                model::Explore::Random => Explore::Random,
-                model::Explore::Learn => Explore::Learn,
-            },
+            explore: *explore,
             stop_after: *stop_after,
             goals: goals.iter().map(|g| model_goal(*g)).collect(),
             minimise: *minimise,
@@ -43,19 +32,11 @@ fn method(m: &model::Method) -> Method {
         model::Method::Search { network, goals, witness, delays } => Method::Search {
             network: network.0,
             goals: goals.iter().map(|g| goal(*g)).collect(),
-            witness: match witness {
-                model::WitnessKind::Any => WitnessKind::Any,
-                model::WitnessKind::Shortest => WitnessKind::Shortest,
-                model::WitnessKind::Fastest => WitnessKind::Fastest,
-            },
-            delays: match delays {
-                model::Delays::Earliest => Delays::Earliest,
-                model::Delays::Latest => Delays::Latest,
-                model::Delays::Sampled => Delays::Sampled,
-            },
+            witness: *witness,
+            delays: *delays,
         },
         model::Method::Random { stimuli, awaits, length, pause } => Method::Random {
-            stimuli: stimuli.iter().map(|e| EventId(e.0)).collect(),
+            stimuli: stimuli.clone(),
             awaits: patterns(awaits),
             length_lo: length.0,
             length_hi: length.1,
@@ -65,25 +46,13 @@ fn method(m: &model::Method) -> Method {
     }
 }
 
-fn player(p: model::Player) -> PlayerRef {
-    match p {
-        model::Player::Agent(a) => PlayerRef::Agent(AgentId(a.0)),
-        model::Player::Automaton(a) => PlayerRef::Automaton(AutomatonId(a.0)),
-    }
-}
-
 fn choice(c: &model::Choice) -> Choice {
-    let how = match c.how {
-        model::ChoiceKind::One => ChoiceKind::One,
-        model::ChoiceKind::OnePer(param) => ChoiceKind::OnePer(param),
-        model::ChoiceKind::Any => ChoiceKind::Any,
-    };
     let condition = c.condition.as_ref().map(|c| Condition {
         context: context(&c.context),
         vars: c.vars.clone(),
         origin: c.span,
     });
-    Choice { agent: AgentId(c.agent.0), belief: BeliefId(c.belief.0), how, condition }
+    Choice { agent: c.agent, belief: c.belief, how: c.how, condition }
 }
 
 fn model_goal(g: model::ModelGoal) -> ModelGoal {

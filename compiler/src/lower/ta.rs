@@ -1,12 +1,11 @@
 //! Automata: slots of variables, and what the stimulus of an edge emits.
 
 use hrdsl_ir::{
-    ActorId, ArgPattern, EventId, Expr, Span, Type,
+    ArgPattern, EventId, Expr, Span, Type,
     expr::Place,
     ta::{
-        Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
-        FunctionId, Location, LocationId, LocationKind, Network, Party, ReceiveArg, Sync, Time, TimeTerm,
-        Update, Var,
+        Automaton, Channel, ChannelKind, ClockConstraint, Edge, Location, LocationId, LocationKind, Network,
+        Party, ReceiveArg, Sync, Time, TimeTerm, Update, Var,
     },
 };
 use hrdsl_model::{self as model, Leaf, StimulusStep};
@@ -15,7 +14,7 @@ use hrdsl_syntax::ast;
 use super::expr::{self, Source};
 
 pub(crate) fn network(n: &model::Network) -> Network {
-    let automata = n.automata.iter().map(|a| AutomatonId(a.0)).collect();
+    let automata = n.automata.clone();
     Network { name: n.name.clone(), automata, origin: n.span }
 }
 
@@ -48,7 +47,7 @@ pub(super) fn bounded(name: &str, ty: model::Type) -> Var {
 }
 
 pub(crate) fn channel(c: &model::Channel) -> Channel {
-    let party = |p: &model::Party| Party { automaton: AutomatonId(p.automaton.0), optional: p.optional };
+    let party = |p: &model::Party| Party { automaton: p.automaton, optional: p.optional };
     Channel {
         name: c.name.clone(),
         kind: match &c.kind {
@@ -68,11 +67,11 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
     let slots = Slots { shared, own: count(a.vars.len()) };
     let mut lowered = Automaton {
         name: a.name.clone(),
-        actor: a.actor.map(|actor| ActorId(actor.0)),
+        actor: a.actor,
         clocks: a.clocks.clone(),
         vars: a.vars.iter().map(var).collect(),
         locations: a.locations.iter().map(|l| slots.location(l)).collect(),
-        initial: LocationId(a.initial.0),
+        initial: a.initial,
         edges: Vec::new(),
         origin: a.span,
     };
@@ -158,7 +157,7 @@ fn collect<'a>(
     for step in steps {
         match step {
             StimulusStep::Emit { event, args } => {
-                emissions.push(Emission { conditions: conditions.clone(), event: EventId(event.0), args });
+                emissions.push(Emission { conditions: conditions.clone(), event: *event, args });
             }
             StimulusStep::If { condition, then, otherwise } => {
                 for (steps, holds) in [(then, true), (otherwise, false)] {
@@ -233,15 +232,9 @@ impl Slots {
 
     fn bounds(&self, cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
         let bound = |c: &model::ClockConstraint| ClockConstraint {
-            clock: ClockId(c.clock.0),
-            minus: c.minus.map(|m| ClockId(m.0)),
-            op: match c.op {
-                model::ClockOp::Lt => ClockOp::Lt,
-                model::ClockOp::Le => ClockOp::Le,
-                model::ClockOp::Eq => ClockOp::Eq,
-                model::ClockOp::Ge => ClockOp::Ge,
-                model::ClockOp::Gt => ClockOp::Gt,
-            },
+            clock: c.clock,
+            minus: c.minus,
+            op: c.op,
             bound: self.time(&c.bound),
         };
         cs.iter().map(bound).collect()
@@ -262,17 +255,15 @@ impl Slots {
         let sent = |args: &[model::Expr]| args.iter().map(|a| self.expr(a)).collect();
         match sync {
             model::Sync::Internal => Sync::Internal,
-            model::Sync::Send { event, args } => Sync::Send { event: EventId(event.0), args: sent(args) },
+            model::Sync::Send { event, args } => Sync::Send { event: *event, args: sent(args) },
             model::Sync::Receive { event, args } => {
-                Sync::Receive { event: EventId(event.0), args: args.iter().map(received).collect() }
+                Sync::Receive { event: *event, args: args.iter().map(received).collect() }
             }
-            model::Sync::Offer { channel, args } => {
-                Sync::Offer { channel: ChannelId(channel.0), args: sent(args) }
-            }
+            model::Sync::Offer { channel, args } => Sync::Offer { channel: *channel, args: sent(args) },
             model::Sync::Accept { channel, args } => {
-                Sync::Accept { channel: ChannelId(channel.0), args: args.iter().map(received).collect() }
+                Sync::Accept { channel: *channel, args: args.iter().map(received).collect() }
             }
-            model::Sync::Join { channel } => Sync::Join { channel: ChannelId(channel.0) },
+            model::Sync::Join { channel } => Sync::Join { channel: *channel },
         }
     }
 
@@ -287,17 +278,16 @@ impl Slots {
             model::Update::Element(place, v) => {
                 Update::Assign { place: self.place(place), value: self.expr(v) }
             }
-            model::Update::Call(function, args) => Update::Call {
-                function: FunctionId(function.0),
-                args: args.iter().map(|a| self.expr(a)).collect(),
-            },
+            model::Update::Call(function, args) => {
+                Update::Call { function: *function, args: args.iter().map(|a| self.expr(a)).collect() }
+            }
             model::Update::Reset { clock, from, to } => {
-                Update::Reset { clock: ClockId(clock.0), from: from.map(|f| ClockId(f.0)), to: self.time(to) }
+                Update::Reset { clock: *clock, from: *from, to: self.time(to) }
             }
         };
         Edge {
-            from: LocationId(e.from.0),
-            to: LocationId(e.to.0),
+            from: e.from,
+            to: e.to,
             selects: e.selects.iter().map(|s| bounded(&s.name, s.ty)).collect(),
             clock_guard: self.bounds(&e.clock_guard),
             guard: e.guard.as_ref().map(|g| self.expr(g)),

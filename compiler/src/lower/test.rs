@@ -1,7 +1,6 @@
 //! Tests.
 
 use hrdsl_ir::{
-    EventId,
     coverage::BinName,
     test::{Provenance, Test, TestMethod, TestStep},
     value::nanos,
@@ -33,7 +32,7 @@ pub(crate) fn test(t: &model::Test, scenario: &str) -> Test {
 fn step(s: &model::TestStep) -> TestStep {
     match s {
         model::TestStep::Do { event, args, samples } => {
-            TestStep::Do { event: EventId(event.0), args: expr::values(args), samples: expr::values(samples) }
+            TestStep::Do { event: *event, args: expr::values(args), samples: expr::values(samples) }
         }
         model::TestStep::Await { events, within } => {
             TestStep::Await { events: patterns(events), within: nanos(*within) }

@@ -1,7 +1,7 @@
 //! Actors, events, stimuli, and the system under test.
 
 use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Role,
+    Actor, ArgPattern, Event, EventPattern,
     event::{Sample, Stimulus, StimulusStep},
     system::System,
     value::nanos,
@@ -11,11 +11,7 @@ use hrdsl_model as model;
 use super::{expr, world};
 
 pub(crate) fn actors(scenario: &model::Scenario) -> Vec<Actor> {
-    let role = |role| match role {
-        model::Role::Environment => Role::Environment,
-        model::Role::System => Role::System,
-    };
-    let actor = |a: &model::Actor| Actor { name: a.name.clone(), role: role(a.role), origin: a.span };
+    let actor = |a: &model::Actor| Actor { name: a.name.clone(), role: a.role, origin: a.span };
     scenario.actors.iter().map(actor).collect()
 }
 
@@ -23,8 +19,8 @@ pub(crate) fn events(scenario: &model::Scenario) -> Vec<Event> {
     let event = |e: &model::Event| Event {
         name: e.name.clone(),
         params: expr::params(&e.params),
-        from: ActorId(e.from.0),
-        to: e.to.iter().map(|a| ActorId(a.0)).collect(),
+        from: e.from,
+        to: e.to.clone(),
         stimulus: e.stimulus.as_ref().map(stimulus),
         origin: e.span,
     };
@@ -44,7 +40,7 @@ fn stimulus(s: &model::Stimulus) -> Stimulus {
 fn steps(steps_: &[model::StimulusStep]) -> Vec<StimulusStep> {
     let step = |s: &model::StimulusStep| match s {
         model::StimulusStep::Emit { event, args } => {
-            StimulusStep::Emit { event: EventId(event.0), args: expr::locals(args) }
+            StimulusStep::Emit { event: *event, args: expr::locals(args) }
         }
         model::StimulusStep::Hold(time) => StimulusStep::Hold { seconds: expr::local(time) },
         model::StimulusStep::Act(action) => StimulusStep::Act(world::action(action)),
@@ -62,7 +58,7 @@ pub(crate) fn pattern(p: &model::EventPattern) -> EventPattern {
         Some(v) => ArgPattern::Is(expr::value(*v)),
         None => ArgPattern::Any,
     };
-    EventPattern { event: EventId(p.event.0), args: p.args.iter().map(arg).collect() }
+    EventPattern { event: p.event, args: p.args.iter().map(arg).collect() }
 }
 
 pub(crate) fn patterns(ps: &[model::EventPattern]) -> Vec<EventPattern> {
@@ -71,7 +67,7 @@ pub(crate) fn patterns(ps: &[model::EventPattern]) -> Vec<EventPattern> {
 
 pub(crate) fn system(s: &model::System) -> System {
     System {
-        actor: ActorId(s.actor.0),
+        actor: s.actor,
         run: words(&s.run),
         coverage: s.coverage.clone(),
         limit: nanos(s.limit),

@@ -1,11 +1,11 @@
 //! The world: bodies in world coordinates, signals over primitive measurements, rules.
 
 use hrdsl_ir::{
-    self as ir, ActorId, EventId, Expr, Span, Type, Unit,
+    Expr, Span, Type, Unit,
     value::nanos,
     world::{
-        Arm, Axis, Body, BodyId, BodyRef, Current, CurrentId, Gripper, GripperId, Joint, JointId, Motion,
-        Point, Rule, RuleOn, Shape, Signal, SignalId, Term, World, WorldAction,
+        Arm, Axis, Body, BodyId, BodyRef, Current, Gripper, Joint, Point, Rule, RuleOn, Shape, Signal,
+        SignalId, Term, World, WorldAction,
     },
 };
 use hrdsl_model::{self as model, Leaf, world as from};
@@ -20,7 +20,7 @@ pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
         (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
     let gripper = |g: &from::Gripper| Gripper {
         name: g.name.clone(),
-        palm: BodyId(g.palm.0),
+        palm: g.palm,
         tool: g.tool,
         reach: g.reach,
         delay: nanos(g.delay),
@@ -28,16 +28,12 @@ pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
     };
     let arm = |a: &from::Arm| Arm {
         name: a.name.clone(),
-        joints: a.joints.iter().map(|j| JointId(j.0)).collect(),
-        tip: BodyId(a.tip.0),
+        joints: a.joints.clone(),
+        tip: a.tip,
         tool: a.tool,
         max_speed: a.speed,
     };
-    let current = |c: &from::Current| Current {
-        name: c.name.clone(),
-        of: c.of.iter().map(|b| BodyId(b.0)).collect(),
-        by: GripperId(c.by.0),
-    };
+    let current = |c: &from::Current| Current { name: c.name.clone(), of: c.of.clone(), by: c.by };
     World {
         step: nanos(w.step),
         sample: nanos(w.sample),
@@ -57,11 +53,7 @@ fn body(b: &from::Body) -> Body {
     let [roll, pitch, yaw] = b.rotation;
     Body {
         name: b.name.clone(),
-        motion: match b.motion {
-            from::Motion::Fixed => Motion::Fixed,
-            from::Motion::Dynamic => Motion::Dynamic,
-            from::Motion::Kinematic => Motion::Kinematic,
-        },
+        motion: b.motion,
         shape: match b.shape {
             from::Shape::Box(size) => Shape::Box { size },
             from::Shape::Sphere { radius } => Shape::Sphere { radius },
@@ -80,8 +72,8 @@ fn joint(j: &from::Joint) -> Joint {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     Joint {
         name: j.name.clone(),
-        parent: BodyId(j.parent.0),
-        child: BodyId(j.child.0),
+        parent: j.parent,
+        child: j.child,
         anchor: j.frame.place(j.anchor),
         axis: axis.map(|x| x / length),
         lo: j.lo,
@@ -96,11 +88,11 @@ fn rule(r: &from::Rule, signals: &mut Signals<'_>) -> Rule {
     Rule {
         on: match &r.on {
             from::RuleOn::Event(p) => RuleOn::Event(pattern(p)),
-            from::RuleOn::Closes(g) => RuleOn::Closes(GripperId(g.0)),
-            from::RuleOn::Opens(g) => RuleOn::Opens(GripperId(g.0)),
+            from::RuleOn::Closes(g) => RuleOn::Closes(*g),
+            from::RuleOn::Opens(g) => RuleOn::Opens(*g),
         },
         guard,
-        event: EventId(r.event.0),
+        event: r.event,
         args,
         signals: reader.read(),
         origin: r.span,
@@ -110,17 +102,17 @@ fn rule(r: &from::Rule, signals: &mut Signals<'_>) -> Rule {
 pub(crate) fn action(a: &from::Action) -> WorldAction {
     match a {
         from::Action::Move { body, to, over } => {
-            WorldAction::Move { body: BodyId(body.0), to: point(to), over: expr::local(over) }
+            WorldAction::Move { body: *body, to: point(to), over: expr::local(over) }
         }
         from::Action::Look { body, at, offset, distance, angle } => WorldAction::Look {
-            body: BodyId(body.0),
-            at: body_ref(*at),
+            body: *body,
+            at: *at,
             offset: expr::local(offset),
             distance: expr::local(distance),
             angle: expr::local(angle),
         },
-        from::Action::Grasp(g) => WorldAction::Grasp { gripper: GripperId(g.0) },
-        from::Action::LetGo(g) => WorldAction::LetGo { gripper: GripperId(g.0) },
+        from::Action::Grasp(g) => WorldAction::Grasp { gripper: *g },
+        from::Action::LetGo(g) => WorldAction::LetGo { gripper: *g },
     }
 }
 
@@ -129,29 +121,22 @@ fn point(p: &from::Point) -> Point {
         Some(offset) => offset.each_ref().map(expr::local),
         None => [Expr::float(0.0), Expr::float(0.0), Expr::float(0.0)],
     };
-    Point { of: p.of.map(body_ref), offset }
-}
-
-fn body_ref(b: from::BodyRef) -> BodyRef {
-    match b {
-        from::BodyRef::Body(b) => BodyRef::Body(BodyId(b.0)),
-        from::BodyRef::Current(c) => BodyRef::Current(CurrentId(c.0)),
-    }
+    Point { of: p.of, offset }
 }
 
 fn term(t: model::Term) -> Term {
     match t {
-        model::Term::Distance(a, b) => Term::Distance(body_ref(a), body_ref(b)),
-        model::Term::Range(a, b) => Term::Range(body_ref(a), body_ref(b)),
-        model::Term::Angle(a, b) => Term::Angle(body_ref(a), body_ref(b)),
-        model::Term::Visible(a, b) => Term::Visible(body_ref(a), body_ref(b)),
-        model::Term::Coordinate(b, 0) => Term::Coordinate(body_ref(b), Axis::X),
-        model::Term::Coordinate(b, 1) => Term::Coordinate(body_ref(b), Axis::Y),
-        model::Term::Coordinate(b, _) => Term::Coordinate(body_ref(b), Axis::Z),
-        model::Term::Holds(g, b) => Term::Holds(GripperId(g.0), body_ref(b)),
-        model::Term::HoldsAny(g) => Term::HoldsAny(GripperId(g.0)),
-        model::Term::JointSpeed(a) => Term::JointSpeed(ir::world::ArmId(a.0)),
-        model::Term::Speed(b) => Term::Speed(body_ref(b)),
+        model::Term::Distance(a, b) => Term::Distance(a, b),
+        model::Term::Range(a, b) => Term::Range(a, b),
+        model::Term::Angle(a, b) => Term::Angle(a, b),
+        model::Term::Visible(a, b) => Term::Visible(a, b),
+        model::Term::Coordinate(b, 0) => Term::Coordinate(b, Axis::X),
+        model::Term::Coordinate(b, 1) => Term::Coordinate(b, Axis::Y),
+        model::Term::Coordinate(b, _) => Term::Coordinate(b, Axis::Z),
+        model::Term::Holds(g, b) => Term::Holds(g, b),
+        model::Term::HoldsAny(g) => Term::HoldsAny(g),
+        model::Term::JointSpeed(a) => Term::JointSpeed(a),
+        model::Term::Speed(b) => Term::Speed(b),
     }
 }
 
@@ -167,9 +152,9 @@ fn type_of(t: Term) -> Type {
 
 /// A term as it is written in the scenario, with the full names of what it measures.
 fn written(term: model::Term, world: &from::World) -> String {
-    let body = |b: from::BodyRef| match b {
-        from::BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),
-        from::BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
+    let body = |b: BodyRef| match b {
+        BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),
+        BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
     };
     let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
     match term {
@@ -199,7 +184,7 @@ impl<'a> Signals<'a> {
         let signal = |s: &from::Signal| {
             let mut terms = Vec::new();
             let value = measured(&s.value, declared, &mut terms);
-            let to = s.to.iter().map(|a| ActorId(a.0)).collect();
+            let to = s.to.clone();
             let (name, ty) = (s.name.clone(), expr::ty(s.ty));
             Signal { name, ty, to, terms, value, recorded: false, origin: s.span }
         };

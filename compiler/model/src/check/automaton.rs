@@ -7,7 +7,7 @@ use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sor
 
 use super::{Checker, Declared, Env, env::Elements, table::Table};
 use crate::{
-    ActorId, AutomatonId, Leaf, Location, LocationId, Network, Player, StimulusStep, Sync, noun::Noun,
+    ActorId, AutomatonId, Leaf, Location, LocationId, Network, PlayerRef, StimulusStep, Sync, noun::Noun,
     report::automata, types::Layout,
 };
 
@@ -206,7 +206,7 @@ impl Checker<'_> {
         let mut seen = Table::default();
         for automaton in automata {
             let player = self.players.get(&automaton.text).map(|id| self.player_ids[usize::from(id)]);
-            if let Some(Player::Automaton(id)) = player {
+            if let Some(PlayerRef::Automaton(id)) = player {
                 if Self::declare(&mut self.issues, &mut seen, Noun::Automaton, automaton).is_some() {
                     ids.push(id);
                 }

@@ -10,7 +10,7 @@ use super::{
     table::Table,
 };
 use crate::{
-    Channel, ChannelId, ChannelKind, EventId, Expr, Party, Player, Sync,
+    Channel, ChannelId, ChannelKind, EventId, Expr, Party, PlayerRef, Sync,
     noun::Noun,
     report::{automata, names::duplicate},
 };
@@ -77,7 +77,7 @@ impl Checker<'_> {
         for party in parties {
             let name = &party.automaton;
             let player = self.players.get(&name.text).map(|id| self.player_ids[usize::from(id)]);
-            let Some(Player::Automaton(automaton)) = player else {
+            let Some(PlayerRef::Automaton(automaton)) = player else {
                 let all: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
                 self.unknown(Noun::Automaton, name, &all, None);
                 self.vague_channels.insert(channel.text.clone());

@@ -13,7 +13,7 @@ use super::{
     table::Table,
 };
 use crate::{
-    Bin, Condition, CoverPoint, Cross, EventPattern, PointId, Value,
+    Bin, Condition, CoverPoint, Cross, CrossBin, EventPattern, PointId, Value,
     noun::Noun,
     report::{coverage::overlap, types},
 };
@@ -130,13 +130,14 @@ impl Checker<'_> {
                 Member::Bin { name, when } => {
                     Self::declare_as(&mut self.issues, &mut titles, Noun::Bin, &name.text, name.span);
                     let when = self.cross_condition(when, &points, whole);
-                    bins.extend(when.map(|when| (name.text.clone(), when, member.span)));
+                    let name = name.text.clone();
+                    bins.extend(when.map(|when| CrossBin { name, when, origin: member.span }));
                 }
                 Member::Ignore { when } => ignore.extend(self.cross_condition(when, &points, whole)),
                 Member::Allow(_) | Member::Error => {}
             }
         }
-        Cross { name: cross.name.text.clone(), points, bins, ignore, span }
+        Cross { name: cross.name.text.clone(), points, bins, ignore, origin: span }
     }
 
     /// A formula over `point.bin`.
@@ -197,7 +198,7 @@ impl Checker<'_> {
             self.unknown(Noun::Bin, bin, &bins, Some(Noun::Bin));
             return None;
         };
-        Some(Condition::In(id, u16::try_from(at).unwrap_or(u16::MAX)))
+        Some(Condition::In { point: id, bin: u16::try_from(at).unwrap_or(u16::MAX) })
     }
 }
 

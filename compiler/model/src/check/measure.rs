@@ -5,11 +5,10 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 
 use super::{Checker, Env, expr::FUNCTIONS, given::Given};
 use crate::{
-    ArmId, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    ArmId, BodyRef, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
     nearest::nearest,
     noun::Noun,
     report::{names, types},
-    world::BodyRef,
 };
 
 const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed"];

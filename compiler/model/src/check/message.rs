@@ -13,7 +13,7 @@ use super::{
     terms::literal_of,
 };
 use crate::{
-    AgentId, Arg, BeliefId, Content, ContentId, Expr, ExprKind, GoalId, Kind, Param, Performative, Player,
+    AgentId, Arg, BeliefId, Content, ContentId, Expr, ExprKind, GoalId, Kind, Param, Performative, PlayerRef,
     StepKind, Value,
     noun::Noun,
     report::{
@@ -167,8 +167,8 @@ impl Checker<'_> {
             (_, Some(Value::Symbol(symbol))) => match symbol.name() {
                 "self" => Receiver::One(scope.id),
                 name => match self.players.get(name).map(|id| self.player_ids[usize::from(id)]) {
-                    Some(Player::Agent(agent)) => Receiver::One(agent),
-                    Some(Player::Automaton(_)) | None => {
+                    Some(PlayerRef::Agent(agent)) => Receiver::One(agent),
+                    Some(PlayerRef::Automaton(_)) | None => {
                         let message = format!("`{name}` is no agent that takes messages");
                         self.report(bad_message(e.span, message, "name an agent"));
                         Receiver::Unknown

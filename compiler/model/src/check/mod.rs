@@ -53,7 +53,7 @@ use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
 use crate::{
-    ActorId, EventId, Player, PointId, Role, Scenario,
+    ActorId, EventId, PlayerRef, PointId, Role, Scenario,
     noun::Noun,
     report::{
         names::{duplicate, unknown, wrong_kind},
@@ -194,7 +194,7 @@ pub(crate) struct Checker<'a> {
     event_fields: Vec<Fields>,
     /// Agents and automata.
     players: Table,
-    player_ids: Vec<Player>,
+    player_ids: Vec<PlayerRef>,
     /// The single values of the shared variables.
     shared: Table,
     shared_names: Table,
@@ -432,8 +432,8 @@ impl<'a> Checker<'a> {
         }
         if let Some(id) = self.players.get(text) {
             return Some(match self.player_ids[usize::from(id)] {
-                Player::Agent(_) => Noun::Agent,
-                Player::Automaton(_) => Noun::Automaton,
+                PlayerRef::Agent(_) => Noun::Agent,
+                PlayerRef::Automaton(_) => Noun::Automaton,
             });
         }
         if self.consts.contains_key(text) {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Ask, ClockBound, ClockId, ClockOp, Dim, Expr, ExprKind, Formula, Kind, Leaf, Linear, LocationId, Measure,
-    NetworkId, Player, Query, Value,
+    NetworkId, PlayerRef, Query, Value,
     noun::Noun,
     report::{names, queries},
 };
@@ -181,7 +181,7 @@ impl Checker<'_> {
 
     fn is_automaton(&self, name: &Name) -> bool {
         let id = self.players.get(&name.text).map(|id| self.player_ids[usize::from(id)]);
-        matches!(id, Some(Player::Automaton(_))) && self.enums.get(&name.text).is_none()
+        matches!(id, Some(PlayerRef::Automaton(_))) && self.enums.get(&name.text).is_none()
     }
 
     /// Whether the automaton is in the network and has something of this name, and one thing only.

@@ -5,11 +5,12 @@ use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, SampleRange, S
 
 use super::{Checker, Env, NOBODY, measure::text};
 use crate::{
-    ActorId, Dim, EventId, Expr, GripperId, Kind, Sample, Stimulus, StimulusStep, Type, Value,
+    ActorId, BodyRef, Dim, EventId, Expr, GripperId, Kind, Motion, Sample, Stimulus, StimulusStep, Type,
+    Value,
     noun::Noun,
     report::{names, roles, types, world},
     types::Layout,
-    world::{Action, BodyRef, Motion, Point},
+    world::{Action, Point},
 };
 
 const ACTIONS: [&str; 4] = ["move_to", "look_at", "grasp", "let_go"];

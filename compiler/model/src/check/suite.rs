@@ -8,7 +8,7 @@ use hrdsl_syntax::ast::{
 use super::{Checker, Env, NOBODY, agent::Scope, table::MAX_NAMES};
 use crate::{
     Ask, Choice, ChoiceCondition, ChoiceKind, CrossId, Delays, Dim, EventId, EventPattern, Explore, Kind,
-    Method, ModelGoal, NetworkId, Pattern, Player, QueryId, RequirementId, Role, SearchGoal, Suite, Value,
+    Method, ModelGoal, NetworkId, Pattern, PlayerRef, QueryId, RequirementId, Role, SearchGoal, Suite, Value,
     WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
@@ -98,7 +98,7 @@ impl Checker<'_> {
     }
 
     /// Agents and automata; at most one for an actor.
-    fn suite_players(&mut self, list: &[Name]) -> Vec<Player> {
+    fn suite_players(&mut self, list: &[Name]) -> Vec<PlayerRef> {
         self.unknown_player = list.iter().any(|name| self.players.get(&name.text).is_none());
         let mut players = Vec::new();
         let mut actors = Vec::new();
@@ -110,8 +110,8 @@ impl Checker<'_> {
             };
             let player = self.player_ids[usize::from(id)];
             let actor = match player {
-                Player::Agent(a) => Some(self.s.agents[usize::from(a.0)].actor),
-                Player::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
+                PlayerRef::Agent(a) => Some(self.s.agents[usize::from(a.0)].actor),
+                PlayerRef::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
             };
             let Some(actor) = actor else {
                 let message = format!("`{}` plays no actor: it cannot be a player", name.text);
@@ -182,7 +182,7 @@ impl Checker<'_> {
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn member(&mut self, member: &SuiteMember, players: &[Player], by_search: bool, said: &mut Said) {
+    fn member(&mut self, member: &SuiteMember, players: &[PlayerRef], by_search: bool, said: &mut Said) {
         match &member.kind {
             Member::Choose { any, belief, agent, per, condition } => {
                 let choice = self.choose(*any, belief, agent, per.as_ref(), players);
@@ -352,16 +352,16 @@ impl Checker<'_> {
         belief: &Name,
         agent: &Name,
         per: Option<&Name>,
-        players: &[Player],
+        players: &[PlayerRef],
     ) -> Option<Choice> {
         let player = self.players.get(&agent.text).map(|id| self.player_ids[usize::from(id)]);
-        let Some(Player::Agent(id)) = player else {
+        let Some(PlayerRef::Agent(id)) = player else {
             let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
             self.unknown(Noun::Agent, agent, &all, None);
             return None;
         };
         // A player whose name is wrong may be the one that is missing.
-        if !players.contains(&Player::Agent(id)) && !self.unknown_player {
+        if !players.contains(&PlayerRef::Agent(id)) && !self.unknown_player {
             let message = format!("`{}` does not play in this suite", agent.text);
             self.report(bad_suite(agent.span, message, "add it after `by agents`"));
         }
@@ -399,7 +399,7 @@ impl Checker<'_> {
     /// `where F`: a formula over the beliefs of the agent.
     fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<ChoiceCondition> {
         let player = self.players.get(&agent.text).map(|id| self.player_ids[usize::from(id)]);
-        let Some(Player::Agent(id)) = player else { return None };
+        let Some(PlayerRef::Agent(id)) = player else { return None };
         let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
         let context = self.context(&Scope::of(id), formula, &mut env);
         if env.locals.len() > MAX_NAMES {

@@ -99,8 +99,7 @@ impl Checker<'_> {
             self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
             return;
         };
-        let bins: Vec<String> =
-            self.s.crosses[usize::from(id)].bins.iter().map(|(n, _, _)| n.clone()).collect();
+        let bins: Vec<String> = self.s.crosses[usize::from(id)].bins.iter().map(|b| b.name.clone()).collect();
         if !bins.iter().any(|b| b == bin) {
             let issue = names::unknown(Noun::Bin, bin, text.span, bins.iter().map(String::as_str));
             self.report(issue);

@@ -12,7 +12,7 @@ use super::{
     table::{Map, Table},
 };
 use crate::{
-    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, Player, Role,
+    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, PlayerRef, Role,
     Stimulus, Type, Value, Var,
     noun::Noun,
     report::{names, roles, types},
@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
         self.not_a_template(Sort::Agent, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
-            self.player_ids.push(Player::Agent(id));
+            self.player_ids.push(PlayerRef::Agent(id));
             self.push_agent(&agent, name, span);
             self.agent_decls.push(agent);
         }
@@ -209,7 +209,7 @@ impl<'a> Checker<'a> {
         self.not_a_template(Sort::Automaton, name);
         if Self::declare(&mut self.issues, &mut self.players, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
-            self.player_ids.push(Player::Automaton(id));
+            self.player_ids.push(PlayerRef::Automaton(id));
             self.push_automaton(&automaton, name, span);
             self.automaton_decls.push(automaton);
         }

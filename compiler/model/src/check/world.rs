@@ -10,10 +10,10 @@ use super::{
     world_parts::{Placed, WorldNames},
 };
 use crate::{
-    ActorId, BodyId, Dim, GripperId, JointId, Kind, Value,
+    ActorId, BodyId, Dim, GripperId, JointId, Kind, Motion, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
-    world::{Arm, Body, Current, Frame, Gripper, Joint, Motion, Rule, RuleOn, Shape, Signal, World},
+    world::{Arm, Body, Current, Frame, Gripper, Joint, Rule, RuleOn, Shape, Signal, World},
 };
 
 const LENGTH: Kind = Kind::Float(Dim::LENGTH);

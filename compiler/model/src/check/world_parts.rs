@@ -7,10 +7,10 @@ use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
 
 use super::{Checker, Env, given::Givens, item::Item, table::Table};
 use crate::{
-    BodyId, CurrentId, Dim, Kind,
+    BodyId, BodyRef, CurrentId, Dim, Kind,
     noun::Noun,
     report::{types, world::bad_world},
-    world::{BodyRef, Frame, Instance},
+    world::{Frame, Instance},
 };
 
 /// The most members of the world, those of its parts included each time that they are used.

@@ -7,7 +7,7 @@ use std::{
 
 use super::agent_facts::{Change, Held, all_steps, change};
 use crate::{
-    Agent, AgentId, BeliefId, ChoiceCondition, ChoiceKind, GoalId, Literal, Method, Performative, Player,
+    Agent, AgentId, BeliefId, ChoiceCondition, ChoiceKind, GoalId, Literal, Method, Performative, PlayerRef,
     Scenario, StepKind, Subject, TriggerOn,
 };
 
@@ -82,8 +82,8 @@ pub(crate) fn indices(scenario: &Scenario) -> Vec<AgentIndex<'_>> {
         let playing: BTreeSet<u16> = players
             .iter()
             .filter_map(|p| match p {
-                Player::Agent(agent) => Some(agent.0),
-                Player::Automaton(_) => None,
+                PlayerRef::Agent(agent) => Some(agent.0),
+                PlayerRef::Automaton(_) => None,
             })
             .collect();
         for choice in choose {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hrdsl_source::{Code, Diagnostic};
 
 use super::facts::Facts;
-use crate::{Condition, Cross, PointId, Scenario};
+use crate::{Condition, Cross, CrossBin, PointId, Scenario};
 
 /// Beyond so many combinations of points' bins nothing is said.
 const COMBINATIONS: usize = 1 << 14;
@@ -16,21 +16,21 @@ const WORK: usize = 1 << 21;
 pub(crate) fn empty<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for cross in &scenario.crosses {
         let Some(table) = Table::of(scenario, cross) else { continue };
-        for ((name, _, span), set) in cross.bins.iter().zip(&table.bins) {
+        for (CrossBin { name, origin, .. }, set) in cross.bins.iter().zip(&table.bins) {
             let contradicts = !set.contains(&true);
             if contradicts {
                 let message = format!("no test can fall into the bin `{name}`: its condition is never true");
                 issues.push(
-                    Diagnostic::warning(Code::EMPTY_BIN, *span, message)
+                    Diagnostic::warning(Code::EMPTY_BIN, *origin, message)
                         .help("a point's number is in one of its bins only: join alternatives by `||`")
-                        .fix(format!("delete the bin `{name}`"), *span, "", false),
+                        .fix(format!("delete the bin `{name}`"), *origin, "", false),
                 );
             } else if !table.counted(set).any(|c| c) {
                 let message = format!("no test can fall into the bin `{name}`: all of it is ignored");
                 issues.push(
-                    Diagnostic::warning(Code::EMPTY_BIN, *span, message)
+                    Diagnostic::warning(Code::EMPTY_BIN, *origin, message)
                         .help("delete the bin, or ignore less")
-                        .fix(format!("delete the bin `{name}`"), *span, "", false),
+                        .fix(format!("delete the bin `{name}`"), *origin, "", false),
                 );
             }
         }
@@ -49,11 +49,11 @@ pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
             }
             let same = *first.entry(counted).or_insert(i);
             if same != i {
-                let ((name, _, span), (other, _, before)) = (&cross.bins[i], &cross.bins[same]);
-                let message = format!("the bins `{name}` and `{other}` hold the same tests");
+                let (bin, other) = (&cross.bins[i], &cross.bins[same]);
+                let message = format!("the bins `{}` and `{}` hold the same tests", bin.name, other.name);
                 issues.push(
-                    Diagnostic::warning(Code::EQUAL_BINS, *span, message)
-                        .label(*before, "the same combinations")
+                    Diagnostic::warning(Code::EQUAL_BINS, bin.origin, message)
+                        .label(other.origin, "the same combinations")
                         .help("change one of the conditions, or delete one of the bins"),
                 );
             }
@@ -70,7 +70,7 @@ struct Table {
 impl Table {
     /// `None`: there are too many combinations to look at.
     fn of(scenario: &Scenario, cross: &Cross) -> Option<Self> {
-        let conditions = || cross.bins.iter().map(|(_, c, _)| c).chain(&cross.ignore);
+        let conditions = || cross.bins.iter().map(|b| &b.when).chain(&cross.ignore);
         let mut points: Vec<PointId> = Vec::new();
         conditions().for_each(|c| mentioned(c, &mut points));
         points.sort_unstable();
@@ -84,8 +84,8 @@ impl Table {
         let mut table = Self { bins: vec![Vec::with_capacity(all); cross.bins.len()], ignored: Vec::new() };
         for n in 0..all {
             let chosen = combination(n, &points, &sizes);
-            for (set, (_, condition, _)) in table.bins.iter_mut().zip(&cross.bins) {
-                set.push(holds(condition, &chosen));
+            for (set, bin) in table.bins.iter_mut().zip(&cross.bins) {
+                set.push(holds(&bin.when, &chosen));
             }
             table.ignored.push(cross.ignore.iter().any(|c| holds(c, &chosen)));
         }
@@ -124,7 +124,7 @@ fn combination(mut n: usize, points: &[PointId], sizes: &[usize]) -> Vec<(PointI
 
 fn mentioned(c: &Condition, points: &mut Vec<PointId>) {
     match c {
-        Condition::In(point, _) => points.push(*point),
+        Condition::In { point, .. } => points.push(*point),
         Condition::Not(c) => mentioned(c, points),
         Condition::And(cs) | Condition::Or(cs) => cs.iter().for_each(|c| mentioned(c, points)),
     }
@@ -132,7 +132,7 @@ fn mentioned(c: &Condition, points: &mut Vec<PointId>) {
 
 fn size(c: &Condition) -> usize {
     match c {
-        Condition::In(..) => 1,
+        Condition::In { .. } => 1,
         Condition::Not(c) => 1 + size(c),
         Condition::And(cs) | Condition::Or(cs) => 1 + cs.iter().map(size).sum::<usize>(),
     }
@@ -140,7 +140,7 @@ fn size(c: &Condition) -> usize {
 
 fn holds(c: &Condition, chosen: &[(PointId, usize)]) -> bool {
     match c {
-        Condition::In(point, bin) => {
+        Condition::In { point, bin } => {
             let at = chosen.binary_search_by_key(point, |(p, _)| *p);
             at.is_ok_and(|at| chosen[at].1 == usize::from(*bin))
         }

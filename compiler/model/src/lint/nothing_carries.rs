@@ -6,8 +6,8 @@ use hrdsl_source::{Code, Diagnostic};
 
 use super::facts::Facts;
 use crate::{
-    BodyId, Scenario,
-    world::{Body, Frame, Gripper, Instance, Motion, Shape, World, sin_cos},
+    BodyId, Motion, Scenario,
+    world::{Body, Frame, Gripper, Instance, Shape, World, sin_cos},
 };
 
 /// Beyond so many comparisons nothing is said.

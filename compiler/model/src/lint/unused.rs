@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Performative, Player, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
+    Performative, PlayerRef, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -82,8 +82,8 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
     for suite in &scenario.suites {
         match &suite.method {
             Method::Agents { players, .. } => players.iter().for_each(|p| match p {
-                Player::Agent(a) => set(&mut agents, a.0),
-                Player::Automaton(a) => set(&mut automata, a.0),
+                PlayerRef::Agent(a) => set(&mut agents, a.0),
+                PlayerRef::Automaton(a) => set(&mut automata, a.0),
             }),
             Method::Search { network: NetworkId(n), .. } => set(&mut networks, *n),
             Method::Random { .. } => {}
