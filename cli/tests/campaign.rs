@@ -220,6 +220,30 @@ fn the_robot_code_has_fourteen_states() {
     assert_eq!(text.matches("(RobotState)").count(), 14);
 }
 
+/// The test that the README begins with is generated like this, and found to fail like this.
+#[test]
+fn the_readme_shows_a_test_that_fails() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let block = |with: &str| {
+        let mut blocks = readme.split("```text\n").skip(1).map(|b| b.split_once("```").unwrap().0);
+        blocks.find(|b| b.contains(with)).unwrap_or_else(|| panic!("no block with {with}"))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = sim(&handover(), &out, &["--test", "bdi_tests.t002", "--exit-zero"]);
+    let tests = fs::read_to_string(out.join("tests/bdi_tests.hri")).unwrap();
+    assert!(tests.contains(block("test bdi_tests.t002")), "{tests}");
+    let violation = block("✗ R5").trim_end();
+    assert!(stdout(&run).contains(violation), "{violation}\n{}", stdout(&run));
+    let scenario = fs::read_to_string(handover()).unwrap();
+    assert!(scenario.contains(block("require R5")));
+    let recording = fs::read_to_string(out.join("traces/handover.bdi_tests.t002.jsonl")).unwrap();
+    assert!(
+        recording
+            .contains(r#"{"t":6.77,"signal":"distance(person.hand, robot.finger_right)","value":0.0374"#)
+    );
+}
+
 /// The results that the example comes with. To renew them after a change that is meant to change them:
 /// `HRDSL_RENEW=1 cargo test -p hrdsl --test campaign`, and read the difference.
 #[test]
