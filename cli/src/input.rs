@@ -142,6 +142,14 @@ pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
     })
 }
 
+/// A document as JSON, for people to read and machines to parse.
+///
+/// # Errors
+/// A number that JSON cannot hold.
+pub fn json(document: &impl serde::Serialize) -> Result<String, Fault> {
+    serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(|e| format!("cannot print: {e}"))
+}
+
 /// Compiles a scenario and files of tests; a folder stands for the `.hri` files in it.
 ///
 /// # Errors

@@ -122,8 +122,7 @@ impl ResultsFolder {
     /// A file that cannot be moved or removed.
     pub fn publish(mut self, last: &[&str]) -> Result<(), Fault> {
         let staging = self.staging();
-        let mut new = Vec::new();
-        collect(&staging, Path::new(""), &mut new)?;
+        let new = files_below(&staging)?;
         let old = std::mem::take(&mut self.listed);
         // Whatever happens from here on, what is in the folder is listed.
         self.write_marker(old.iter().chain(&new))?;
@@ -263,7 +262,16 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
     }
 }
 
-/// All files in and below a folder, relative to it, in order.
+/// All files in and below a folder, relative to it, in order; links are files.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn files_below(root: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let mut found = Vec::new();
+    collect(root, Path::new(""), &mut found)?;
+    Ok(found)
+}
+
 fn collect(root: &Path, below: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
     let folder = root.join(below);
     let fault = |e: std::io::Error| format!("cannot read {}: {e}", shown(&folder));
@@ -285,9 +293,7 @@ mod tests {
     use super::*;
 
     fn files(dir: &Path) -> Vec<String> {
-        let mut found = Vec::new();
-        collect(dir, Path::new(""), &mut found).unwrap();
-        found.iter().map(|p| p.display().to_string()).filter(|p| p != MARKER).collect()
+        files_below(dir).unwrap().iter().map(|p| p.display().to_string()).filter(|p| p != MARKER).collect()
     }
 
     fn write(folder: &ResultsFolder, name: &str) {

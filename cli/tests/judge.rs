@@ -213,4 +213,10 @@ fn recordings_of_another_scenario_are_refused_and_the_others_judged() {
         stdout(&out)
     );
     expect_code(&hrdsl_in(folder.path(), "judge s.hri s.hri"), 2);
+    // A run that broke off counts as such, even if nobody says why.
+    let broken = recording("s", "{\"end\":3,\"ended\":\"error\"}");
+    fs::write(folder.path().join("broken.jsonl"), broken).unwrap();
+    let out = hrdsl_in(folder.path(), "judge s.hri broken.jsonl");
+    expect_code(&out, 3);
+    assert!(stdout(&out).contains("1 recording, 0 with violations, 1 error,"), "{}", stdout(&out));
 }

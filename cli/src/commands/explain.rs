@@ -49,19 +49,15 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let colour = color::stdout_has();
     let text = match (&args.code, args.json) {
         (None, false) => list(colour),
-        (None, true) => json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
+        (None, true) => input::json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
         (Some(code), as_json) => {
             let info = find(code)?;
             let page = pages::page(info.code).ok_or_else(|| format!("{} has no page", info.code))?;
-            if as_json { json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
+            if as_json { input::json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
         }
     };
     input::print(&text)?;
     Ok(Exit::Ok)
-}
-
-fn json<T: Serialize>(value: &T) -> Result<String, Fault> {
-    serde_json::to_string_pretty(value).map(|t| t + "\n").map_err(|e| format!("cannot print: {e}"))
 }
 
 /// All codes with their titles, by hundreds.

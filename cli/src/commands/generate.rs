@@ -122,8 +122,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     }
     if args.json {
         let document = Document { format: "hrdsl-gen", version: 1, suites };
-        let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
-        input::print_data(&(text + "\n"))?;
+        input::print_data(&input::json(&document)?)?;
     }
     Ok(Exit::Ok)
 }

@@ -211,8 +211,7 @@ fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
 }
 
 fn print(document: &Document<'_>) -> Result<(), Fault> {
-    let text = serde_json::to_string_pretty(document).map_err(|e| format!("cannot print: {e}"))?;
-    input::print_data(&(text + "\n"))
+    input::print_data(&input::json(document)?)
 }
 
 #[derive(Serialize)]

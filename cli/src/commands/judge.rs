@@ -21,7 +21,7 @@ use crate::{
     color,
     exit::Exit,
     input::{self, Fault},
-    terminal,
+    results_folder, terminal,
 };
 
 /// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
@@ -50,7 +50,7 @@ pub struct Args {
 
 /// What `--json` prints. The parts of a test are those of `results.json`, byte for byte.
 #[derive(Serialize)]
-struct Document<'a> {
+struct JudgementDocument<'a> {
     format: &'static str,
     version: u32,
     scenario: &'a str,
@@ -94,11 +94,9 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     } else if !results.tests.is_empty() {
         input::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
     }
-    let is_clean =
-        results.tests.iter().all(|t| t.error.is_none() && t.ended != RunEnd::Error && !t.has_failed());
     Ok(if refused > 0 {
         Exit::Usage
-    } else if is_clean || args.exit_zero {
+    } else if results.is_clean() || args.exit_zero {
         Exit::Ok
     } else {
         Exit::Findings
@@ -110,8 +108,11 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
     let mut all = Vec::new();
     for path in given {
         if path.is_dir() {
+            let files = results_folder::files_below(path)?;
+            // Links are not followed: they may lead in circles.
+            let is_recording = |p: &PathBuf| p.extension().is_some_and(|e| e == "jsonl") && !p.is_symlink();
             let before = all.len();
-            below(path, &mut all)?;
+            all.extend(files.iter().map(|file| path.join(file)).filter(is_recording));
             if all.len() == before {
                 return Err(format!("there is no recording (`.jsonl`) in {}", terminal::shown(path)));
             }
@@ -120,25 +121,6 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
         }
     }
     Ok(all)
-}
-
-fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
-    let fault = |e: std::io::Error| format!("cannot read {}: {e}", terminal::shown(folder));
-    let entries = std::fs::read_dir(folder).map_err(fault)?.collect::<Result<Vec<_>, _>>().map_err(fault)?;
-    let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
-    paths.sort();
-    for path in paths {
-        // Links are not followed: they may lead in circles.
-        if path.is_symlink() {
-            continue;
-        }
-        if path.is_dir() {
-            below(&path, found)?;
-        } else if path.extension().is_some_and(|e| e == "jsonl") {
-            found.push(path);
-        }
-    }
-    Ok(())
 }
 
 /// What a recording shows, as the result of its test.
@@ -156,7 +138,13 @@ fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, F
         suite,
         seed: recorded.header.seed.unwrap_or(0),
         ended: recorded.ending.how,
-        error: recorded.ending.error,
+        // Other programs need not say why; that it broke off counts all the same.
+        error: match recorded.ending.how {
+            RunEnd::Error => {
+                Some(recorded.ending.error.unwrap_or_else(|| "no reason is recorded".to_owned()))
+            }
+            RunEnd::Quiet | RunEnd::Limit => None,
+        },
         duration,
         judgement,
         ..TestResult::default()
@@ -176,7 +164,7 @@ fn json(results: &Results) -> Result<String, Fault> {
             bins: &judgement.bins,
         }
     }
-    let document = Document {
+    let document = JudgementDocument {
         format: "hrdsl-judgement",
         version: 1,
         scenario: &results.scenario,
@@ -184,6 +172,5 @@ fn json(results: &Results) -> Result<String, Fault> {
         bins: &results.bins,
         tests: results.tests.iter().map(test).collect(),
     };
-    let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
-    Ok(text + "\n")
+    input::json(&document)
 }

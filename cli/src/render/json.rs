@@ -103,8 +103,7 @@ pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault>
         diagnostics: said().map(|(files, d)| shown(files, d)).collect(),
         summary: Summary { errors, warnings: said().count() - errors },
     };
-    let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
-    Ok(text + "\n")
+    crate::input::json(&document)
 }
 
 fn shown<'a>(files: &'a Files, diagnostic: &'a Diagnostic) -> Shown<'a> {

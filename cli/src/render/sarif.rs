@@ -33,8 +33,7 @@ pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault>
             "results": results,
         }],
     });
-    let text = serde_json::to_string_pretty(&log).map_err(|e| format!("cannot print: {e}"))?;
-    Ok(text + "\n")
+    crate::input::json(&log)
 }
 
 /// One rule for each code, in the order of the registry.

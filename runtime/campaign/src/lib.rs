@@ -16,7 +16,7 @@ use hrdsl_harness::{
     Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemFault, SystemFaultKind, SystemPlayer,
 };
 use hrdsl_ir::{Program, system::System, test::Test, value::seconds};
-use hrdsl_judge::Judge;
+use hrdsl_judge::TraceJudge;
 use hrdsl_results::{Judgement, OutputSummary, Ratios, RunEnd, RunMark, TestName, TestResult};
 use hrdsl_sim::SimWorld;
 use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, LockStep, Needs, Process, Reply, SutError};
@@ -285,24 +285,23 @@ fn test_result(
 }
 
 fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> Judgement {
-    let mut judge = Judge::new(program);
+    let mut judge = TraceJudge::new(program);
     trace.replay(&mut judge);
     judge.finish(ended)
 }
 
 /// How a run ended; that a file of its program could not be kept breaks it off, too.
 fn ending(run: &Run, finished: Option<&Finished>) -> Ending {
-    let kept = finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first());
-    let error = match &run.ended {
-        Ended::Fault(fault) => Some(fault.to_string()),
-        Ended::Quiet | Ended::Limit => kept.map(|f| format!("a file of the program could not be kept: {f}")),
+    let broke_off = |error| Ending { how: RunEnd::Error, error: Some(error) };
+    let how = match &run.ended {
+        Ended::Fault(fault) => return broke_off(fault.to_string()),
+        Ended::Quiet => RunEnd::Quiet,
+        Ended::Limit => RunEnd::Limit,
     };
-    let how = match (&error, &run.ended) {
-        (Some(_), _) | (None, Ended::Fault(_)) => RunEnd::Error,
-        (None, Ended::Quiet) => RunEnd::Quiet,
-        (None, Ended::Limit) => RunEnd::Limit,
-    };
-    Ending { how, error }
+    match finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first()) {
+        Some(file) => broke_off(format!("a file of the program could not be kept: {file}")),
+        None => Ending { how, error: None },
+    }
 }
 
 fn summary(output: &Output) -> OutputSummary {

@@ -28,7 +28,7 @@ pub use clock::{Clock, VirtualClock};
 pub use script::ScriptPlayer;
 pub use stage::Stage;
 pub use stimulus::{Performance, draw_samples};
-pub use system::{Argument, System, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest, Ticket};
+pub use system::{System, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest, Ticket};
 pub use system_player::SystemPlayer;
 pub use world::{Begun, DeviceOrder, OrderError, OrderId, World};
 

@@ -35,7 +35,7 @@ pub enum SystemRequest {
     /// What time is it?
     Now,
     /// Make an event of the scenario happen.
-    Emit { event: String, args: BTreeMap<String, Argument> },
+    Emit { event: String, args: BTreeMap<String, SystemArgument> },
     /// Tell it when this time has passed.
     Sleep { time: Nanos },
     /// Take the first of these events out of the mailbox, or tell it when one comes.
@@ -73,7 +73,7 @@ pub enum SystemAnswer {
 
 /// An argument of an event or an order, as the system wrote it: what it means, its declaration tells.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Argument {
+pub enum SystemArgument {
     /// The name of a value of an enumeration, perhaps.
     Text(String),
     /// A place (x, y, z; metres) or joint angles (radians).
@@ -81,12 +81,12 @@ pub enum Argument {
     Scalar(Value),
 }
 
-impl fmt::Display for Argument {
+impl fmt::Display for SystemArgument {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Argument::Text(text) => write!(f, "{text:?}"),
-            Argument::Scalar(value) => write!(f, "{value}"),
-            Argument::Numbers(numbers) => write!(f, "{numbers:?}"),
+            SystemArgument::Text(text) => write!(f, "{text:?}"),
+            SystemArgument::Scalar(value) => write!(f, "{value}"),
+            SystemArgument::Numbers(numbers) => write!(f, "{numbers:?}"),
         }
     }
 }

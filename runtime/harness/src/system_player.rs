@@ -9,8 +9,8 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Argument, Context, Fault, Message, OrderError, OrderId, Player, Stage, System, SystemAnswer, SystemFault,
-    SystemFaultKind, SystemRequest, Ticket, is_perceived,
+    Context, Fault, Message, OrderError, OrderId, Player, Stage, System, SystemAnswer, SystemArgument,
+    SystemFault, SystemFaultKind, SystemRequest, Ticket, is_perceived,
 };
 
 /// How many events wait in the system's mailbox at most; the oldest are dropped, as in a ROS subscriber's queue.
@@ -46,7 +46,7 @@ enum Wait {
 }
 
 /// What a request comes to at once.
-enum Response {
+enum RequestResponse {
     Answer(SystemAnswer),
     Wait(Wait),
     End,
@@ -76,9 +76,9 @@ impl<'p, S: System> SystemPlayer<'p, S> {
             let Some((ticket, request)) = self.system.next(cx.now).map_err(Fault::System)? else { break };
             self.count(cx.now)?;
             match self.response(request, cx) {
-                Response::Answer(answer) => self.answer(ticket, cx.now, answer)?,
-                Response::Wait(wait) => self.waits.push((ticket, wait)),
-                Response::End => self.ended = true,
+                RequestResponse::Answer(answer) => self.answer(ticket, cx.now, answer)?,
+                RequestResponse::Wait(wait) => self.waits.push((ticket, wait)),
+                RequestResponse::End => self.ended = true,
             }
         }
         Ok(())
@@ -102,45 +102,49 @@ impl<'p, S: System> SystemPlayer<'p, S> {
         Err(Fault::System(SystemFault { message, kind: SystemFaultKind::Program }))
     }
 
-    fn response(&mut self, request: SystemRequest, cx: &mut Context<'_, '_>) -> Response {
+    fn response(&mut self, request: SystemRequest, cx: &mut Context<'_, '_>) -> RequestResponse {
         match request {
-            SystemRequest::Now => Response::Answer(SystemAnswer::Ok),
-            SystemRequest::Done => Response::End,
-            SystemRequest::Sleep { time } => Response::Wait(Wait::Time(cx.now.saturating_add(time))),
-            SystemRequest::Emit { event, args } => Response::Answer(match self.emission(&event, &args) {
-                Ok((event, args)) => {
-                    cx.out.push(Message::Event { event, args });
-                    SystemAnswer::Ok
-                }
-                Err(answer) => answer,
-            }),
+            SystemRequest::Now => RequestResponse::Answer(SystemAnswer::Ok),
+            SystemRequest::Done => RequestResponse::End,
+            SystemRequest::Sleep { time } => RequestResponse::Wait(Wait::Time(cx.now.saturating_add(time))),
+            SystemRequest::Emit { event, args } => {
+                RequestResponse::Answer(match self.emission(&event, &args) {
+                    Ok((event, args)) => {
+                        cx.out.push(Message::Event { event, args });
+                        SystemAnswer::Ok
+                    }
+                    Err(answer) => answer,
+                })
+            }
             SystemRequest::WaitFor { events, timeout } => self.wait_for(&events, timeout, cx.now),
-            SystemRequest::Drop { events } => Response::Answer(self.drop_mail(&events)),
-            SystemRequest::Read { signal } => Response::Answer(self.read(&signal, cx.stage.as_deref_mut())),
+            SystemRequest::Drop { events } => RequestResponse::Answer(self.drop_mail(&events)),
+            SystemRequest::Read { signal } => {
+                RequestResponse::Answer(self.read(&signal, cx.stage.as_deref_mut()))
+            }
             SystemRequest::Order(order) => {
                 let Some(stage) = cx.stage.as_deref_mut() else {
-                    return Response::Answer(refuse("there is no world to act in", None));
+                    return RequestResponse::Answer(refuse("there is no world to act in", None));
                 };
                 match stage.order(&order) {
-                    Ok(id) => Response::Wait(Wait::Order(id)),
-                    Err(OrderError::Refused { error, help }) => Response::Answer(refuse(error, help)),
-                    Err(OrderError::Failed(why)) => Response::Answer(SystemAnswer::Ended(Err(why))),
+                    Ok(id) => RequestResponse::Wait(Wait::Order(id)),
+                    Err(OrderError::Refused { error, help }) => RequestResponse::Answer(refuse(error, help)),
+                    Err(OrderError::Failed(why)) => RequestResponse::Answer(SystemAnswer::Ended(Err(why))),
                 }
             }
         }
     }
 
-    fn wait_for(&mut self, names: &[String], timeout: Option<Nanos>, now: Nanos) -> Response {
+    fn wait_for(&mut self, names: &[String], timeout: Option<Nanos>, now: Nanos) -> RequestResponse {
         let events = match self.audible(names) {
             Ok(events) => events,
-            Err(answer) => return Response::Answer(answer),
+            Err(answer) => return RequestResponse::Answer(answer),
         };
         let at = self.mailbox.iter().position(|m| events.contains(&m.event));
         if let Some(mail) = at.and_then(|at| self.mailbox.remove(at)) {
-            return Response::Answer(self.event_answer(mail));
+            return RequestResponse::Answer(self.event_answer(mail));
         }
         let until = timeout.map(|t| now.saturating_add(t));
-        Response::Wait(Wait::Events { events, until })
+        RequestResponse::Wait(Wait::Events { events, until })
     }
 
     fn drop_mail(&mut self, names: &[String]) -> SystemAnswer {
@@ -189,7 +193,7 @@ impl<'p, S: System> SystemPlayer<'p, S> {
     fn emission(
         &self,
         name: &str,
-        args: &BTreeMap<String, Argument>,
+        args: &BTreeMap<String, SystemArgument>,
     ) -> Result<(EventId, Vec<Value>), SystemAnswer> {
         let own = |e: &&Event| e.from == self.actors[0] && !e.is_stimulus();
         let id = self.program.event_named(name).filter(|id| own(&self.program.event(*id)));
@@ -233,20 +237,20 @@ fn list<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Option<String> 
     (!names.is_empty()).then(|| format!("{what} it can use: {}", names.join(", ")))
 }
 
-fn argument(event: &str, param: &Param, given: Option<&Argument>) -> Result<Value, SystemAnswer> {
+fn argument(event: &str, param: &Param, given: Option<&SystemArgument>) -> Result<Value, SystemAnswer> {
     let Some(given) = given else {
         return Err(refuse(format!("`{event}` needs the argument `{}`", param.name), None));
     };
     let value = match (param.ty, given) {
-        (Type::Float(_), Argument::Scalar(Value::Int(n))) => Some(Value::Float(*n as f64)),
-        (Type::Enum(e), Argument::Text(name)) => e.symbol(name).map(Value::Symbol),
+        (Type::Float(_), SystemArgument::Scalar(Value::Int(n))) => Some(Value::Float(*n as f64)),
+        (Type::Enum(e), SystemArgument::Text(name)) => e.symbol(name).map(Value::Symbol),
         (
             Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
-            Argument::Scalar(value),
+            SystemArgument::Scalar(value),
         ) => Some(*value),
         (
             Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_),
-            Argument::Text(_) | Argument::Numbers(_),
+            SystemArgument::Text(_) | SystemArgument::Numbers(_),
         ) => None,
     };
     value.filter(|v| param.ty.admits(*v)).ok_or_else(|| {
@@ -327,7 +331,7 @@ mod tests {
 
     use super::*;
 
-    fn given(ty: Type, arg: Argument) -> Result<Value, String> {
+    fn given(ty: Type, arg: SystemArgument) -> Result<Value, String> {
         let param = Param { name: "p".into(), ty };
         argument("e", &param, Some(&arg)).map_err(|answer| match answer {
             SystemAnswer::Refused { error, .. } => error,
@@ -335,12 +339,12 @@ mod tests {
         })
     }
 
-    fn text(text: &str) -> Argument {
-        Argument::Text(text.into())
+    fn text(text: &str) -> SystemArgument {
+        SystemArgument::Text(text.into())
     }
 
-    fn scalar(value: Value) -> Argument {
-        Argument::Scalar(value)
+    fn scalar(value: Value) -> SystemArgument {
+        SystemArgument::Scalar(value)
     }
 
     #[test]
@@ -348,7 +352,7 @@ mod tests {
         let pace = Enumeration::intern("Pace", &["slow", "fast"]);
         let ty = Type::Enum(pace);
         assert_eq!(given(ty, text("fast")), Ok(Value::Symbol(Symbol::intern("fast"))));
-        let numbers = Argument::Numbers(vec![1.5]);
+        let numbers = SystemArgument::Numbers(vec![1.5]);
         let wrong = [text("quick"), text(""), scalar(Value::Int(1)), scalar(Value::Bool(true)), numbers];
         for (wrong, shown) in wrong.into_iter().zip(["\"quick\"", "\"\"", "1", "true", "[1.5]"]) {
             let must = "the name of a value of `Pace` (`slow`, `fast`)";
@@ -367,6 +371,9 @@ mod tests {
         assert_eq!(error(int, text("1")), "`e`: `p` is \"1\", but must be an integer of 0..4");
         assert_eq!(error(int, scalar(Value::Int(5))), "`e`: `p` is 5, but must be an integer of 0..4");
         assert_eq!(error(float, text("nan")), "`e`: `p` is \"nan\", but must be a number");
-        assert_eq!(error(float, Argument::Numbers(vec![0.5])), "`e`: `p` is [0.5], but must be a number");
+        assert_eq!(
+            error(float, SystemArgument::Numbers(vec![0.5])),
+            "`e`: `p` is [0.5], but must be a number"
+        );
     }
 }

@@ -7,7 +7,7 @@ use hrdsl_ir::{
     world::{RuleOn, SignalId, WorldAction},
 };
 
-use crate::system::Argument;
+use crate::system::SystemArgument;
 
 /// A world in which actors act. Times are those of the harness's clock; the calls come in the order of time.
 pub trait World {
@@ -43,7 +43,7 @@ pub struct DeviceOrder {
     pub device: String,
     /// `move_to`
     pub verb: String,
-    pub args: BTreeMap<String, Argument>,
+    pub args: BTreeMap<String, SystemArgument>,
 }
 
 /// An order under way.

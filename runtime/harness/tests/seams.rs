@@ -3,7 +3,7 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use hrdsl_harness::{
-    Argument, DeviceOrder, Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemAnswer,
+    DeviceOrder, Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemAnswer, SystemArgument,
     SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
     doubles::{ToldClock, ToldOrder, ToldStep, ToldSystem, ToldWorld},
 };
@@ -107,7 +107,7 @@ fn emit(event: &str) -> SystemRequest {
 }
 
 fn order(device: &str, verb: &str) -> SystemRequest {
-    let args = BTreeMap::from([("to".to_owned(), Argument::Numbers(vec![1.0, 2.0]))]);
+    let args = BTreeMap::from([("to".to_owned(), SystemArgument::Numbers(vec![1.0, 2.0]))]);
     SystemRequest::Order(DeviceOrder { device: device.into(), verb: verb.into(), args })
 }
 

@@ -4,9 +4,9 @@
 //! verdicts of its run.
 //!
 //! # Steps
-//! 1. [`Judge::new`] readies the requirements' monitors and the coverage points;
+//! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverage points;
 //! 2. the trace is shown to it, step by step ([`Observer`]), in memory that does not grow with the trace;
-//! 3. [`Judge::finish`] gives the [`Judgement`].
+//! 3. [`TraceJudge::finish`] gives the [`Judgement`].
 //!
 //! [`judge_recording`] does all three with a recording, which it reads in one pass.
 
@@ -22,13 +22,13 @@ pub use recording::{JudgeError, JudgedRecording, judge_recording};
 
 /// Judges one trace.
 #[derive(Clone, Debug)]
-pub struct Judge<'p> {
+pub struct TraceJudge<'p> {
     program: &'p Program,
     checker: Checker,
     collector: Collector,
 }
 
-impl<'p> Judge<'p> {
+impl<'p> TraceJudge<'p> {
     #[must_use]
     pub fn new(program: &'p Program) -> Self {
         Self { program, checker: Checker::new(program), collector: Collector::new(program) }
@@ -49,7 +49,7 @@ impl<'p> Judge<'p> {
     }
 }
 
-impl Observer for Judge<'_> {
+impl Observer for TraceJudge<'_> {
     fn step(&mut self, index: usize, step: &Step) {
         self.checker.step(index, step);
         if let What::Event { event, args } = &step.what {

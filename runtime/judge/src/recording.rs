@@ -12,7 +12,7 @@ use hrdsl_trace::{
 };
 use thiserror::Error;
 
-use crate::Judge;
+use crate::TraceJudge;
 
 /// A recording with the judgement on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub fn judge_recording(
     if !changed {
         is_of(program, recording.header())?;
     }
-    let mut judge = Judge::new(program);
+    let mut judge = TraceJudge::new(program);
     let recorded = recording.replay(program, &mut judge)?;
     let judgement = judge.finish(recorded.ending.how);
     Ok(JudgedRecording { recorded, judgement })

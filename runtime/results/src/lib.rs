@@ -101,15 +101,19 @@ impl Results {
     /// # Errors
     /// A text that is something else, or of another version of the format.
     pub fn from_json(text: &str) -> Result<Self, ResultsError> {
-        // Asked first: what another version lacks or has too much of is not what is wrong with it.
-        let Preamble { format, version } = serde_json::from_str(text)?;
+        let read = serde_json::from_str::<Self>(text);
+        // What another version lacks or has too much of is not what is wrong with it.
+        let Preamble { format, version } = match &read {
+            Ok(results) => Preamble { format: results.format.clone(), version: results.version },
+            Err(_) => serde_json::from_str(text)?,
+        };
         if format != FORMAT {
             return Err(ResultsError::Format);
         }
         if version != VERSION {
             return Err(ResultsError::Version(version));
         }
-        Ok(serde_json::from_str(text)?)
+        Ok(read?)
     }
 
     /// The schema of `results.json`, as JSON Schema (2020-12).
@@ -118,6 +122,12 @@ impl Results {
     /// None that is known: what is written is this crate's own.
     pub fn schema() -> Result<String, ResultsError> {
         Ok(serde_json::to_string_pretty(&schemars::schema_for!(Results))? + "\n")
+    }
+
+    /// Whether no test violated a requirement, and none broke off.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.tests.iter().all(|t| t.error.is_none() && !t.has_failed())
     }
 
     /// The command that runs a test again, as it is typed in the folder of the results; `None` if there is none.

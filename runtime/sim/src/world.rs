@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{Argument, Begun, DeviceOrder, OrderError, OrderId, World};
+use hrdsl_harness::{Begun, DeviceOrder, OrderError, OrderId, SystemArgument, World};
 use hrdsl_ir::{
     Nanos, Program, Value,
     world::{GripperId, RuleOn, SignalId, WorldAction},
@@ -39,14 +39,14 @@ impl SimWorld {
     fn command(&self, order: &DeviceOrder) -> Result<Command, OrderError> {
         let DeviceOrder { device, verb, args } = order;
         let numbers = |name: &str| match args.get(name) {
-            Some(Argument::Numbers(v)) => Ok(v.clone()),
-            Some(Argument::Scalar(_) | Argument::Text(_)) | None => {
+            Some(SystemArgument::Numbers(v)) => Ok(v.clone()),
+            Some(SystemArgument::Scalar(_) | SystemArgument::Text(_)) | None => {
                 Err(refused(format!("`{verb}` needs `{name}`, a list of numbers"), None))
             }
         };
         let max_speed = match args.get("speed") {
-            Some(Argument::Scalar(v)) => v.as_f64(),
-            Some(Argument::Numbers(_) | Argument::Text(_)) | None => None,
+            Some(SystemArgument::Scalar(v)) => v.as_f64(),
+            Some(SystemArgument::Numbers(_) | SystemArgument::Text(_)) | None => None,
         };
         match (self.sim.arm_named(device), self.sim.gripper_named(device), verb.as_str()) {
             (Some(arm), _, "move_to") => match numbers("to")?.as_slice() {

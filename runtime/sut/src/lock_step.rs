@@ -1,7 +1,7 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    Argument, DeviceOrder, System, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest, Ticket,
+    DeviceOrder, System, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest, Ticket,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -58,11 +58,11 @@ fn meant(request: Request) -> SystemRequest {
     }
 }
 
-fn argument(arg: Arg) -> Argument {
+fn argument(arg: Arg) -> SystemArgument {
     match arg {
-        Arg::Text(text) => Argument::Text(text),
-        Arg::Numbers(numbers) => Argument::Numbers(numbers),
-        Arg::Scalar(value) => Argument::Scalar(value),
+        Arg::Text(text) => SystemArgument::Text(text),
+        Arg::Numbers(numbers) => SystemArgument::Numbers(numbers),
+        Arg::Scalar(value) => SystemArgument::Scalar(value),
     }
 }
 

@@ -78,15 +78,7 @@ mod tests {
     use hrdsl_ir::{EventId, EventPattern};
 
     use super::*;
-
-    fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
-        AbstractTest {
-            steps: vec![TestStep::Wait { time: wait }],
-            because: vec![because.into()],
-            reaches: reaches.iter().copied().collect(),
-            ..AbstractTest::default()
-        }
-    }
+    use crate::tests::test;
 
     #[test]
     fn equal_tests_reach_what_each_of_them_does() {

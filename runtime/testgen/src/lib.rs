@@ -248,7 +248,7 @@ mod tests {
 
     use super::*;
 
-    fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
+    pub fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
         AbstractTest {
             steps: vec![TestStep::Wait { time: wait }],
             because: vec![because.into()],

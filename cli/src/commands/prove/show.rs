@@ -114,8 +114,7 @@ pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
         }
     }
     let document = Document { format: "hrdsl-prove", version: 1, scenario: &program.name, networks };
-    let text = serde_json::to_string_pretty(&document).map_err(|e| format!("cannot print: {e}"))?;
-    Ok(text + "\n")
+    crate::input::json(&document)
 }
 
 fn of(row: &Row) -> RowJson<'_> {

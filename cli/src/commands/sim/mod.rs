@@ -142,10 +142,9 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     if let Some(differences) = differences {
         input::print(&differences.text)?;
     }
-    let clean = results.tests.iter().all(|t| t.error.is_none() && !t.has_failed());
     Ok(if interrupted {
         Exit::Interrupted
-    } else if !repeatable || !(clean || args.exit_zero) {
+    } else if !repeatable || !(results.is_clean() || args.exit_zero) {
         Exit::Findings
     } else {
         Exit::Ok
@@ -387,21 +386,16 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
         gaps: &campaign.cells.gaps,
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     };
-    input::write(&to.join("run.json"), &json(&info)?)?;
+    input::write(&to.join("run.json"), &input::json(&info)?)?;
     input::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;
     input::write(&to.join("junit.xml"), &report::junit(results))?;
     input::write(&to.join("report.html"), &report::html(results))?;
     folder.publish(&REPORTS)
 }
 
-fn json(value: &impl Serialize) -> Result<String, Fault> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| format!("cannot write results: {e}"))?;
-    Ok(text + "\n")
-}
-
 /// Prints the summary. Wall time is said here and nowhere else, since it differs between equal runs.
 fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Duration) -> Result<(), Fault> {
-    let summary = report::summary(results, 100, color::stdout_has());
+    let summary = report::summary(results, super::report::WIDTH, color::stdout_has());
     let how = match campaign.cells.isolation {
         Isolation::Namespaces => "in namespaces",
         Isolation::Copies => "in copies of the folder",
@@ -412,7 +406,7 @@ fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Durat
         campaign.jobs,
         wall.as_secs_f64()
     );
-    let again = if results.tests.iter().any(|t| t.error.is_some() || t.has_failed()) {
+    let again = if !results.is_clean() {
         format!("to run one test again: (cd {} && {} NAME)\n", quoted(out), results.rerun)
     } else {
         String::new()
