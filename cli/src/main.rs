@@ -9,6 +9,8 @@
 mod color;
 mod commands;
 mod exit;
+mod fault;
+mod files;
 mod fix;
 mod input;
 mod installing;

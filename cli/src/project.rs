@@ -6,16 +6,41 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile_with, parse};
+use hrdsl_compiler::{Compilation, Input, ast, compile_with, parse};
+use hrdsl_ir::Program;
 use hrdsl_source::FileId;
 
-use crate::{
-    input::{self, Fault, Kind},
-    results_folder, terminal,
-};
+use crate::{fault::Fault, files, reach::Disk, results_folder, terminal};
 
 /// Folders that hold no scenarios of one's own.
 const SKIPPED: [&str; 3] = ["target", "node_modules", "hrdsl-out"];
+
+/// What the text of a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A scenario of its own.
+    Scenario,
+    /// Tests in the vocabulary of a scenario.
+    Tests,
+    /// Declarations that scenarios use.
+    Module,
+}
+
+/// What a file is, by what it holds. A file of tests may begin with the line `scenario NAME` of its scenario; a scenario
+/// without any declaration has nothing that tests could speak of.
+#[must_use]
+pub fn kind_of(file: &ast::File) -> Kind {
+    let is_test = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Test(_));
+    let is_unread = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Error);
+    if file.items.iter().any(is_test) && file.items.iter().all(|item| is_test(item) || is_unread(item)) {
+        Kind::Tests
+    } else if file.scenario.is_some() {
+        Kind::Scenario
+    } else {
+        Kind::Module
+    }
+}
 
 /// One text.
 #[derive(Clone, Debug)]
@@ -37,6 +62,20 @@ pub struct Unit {
     pub tests: Vec<usize>,
 }
 
+/// What became of a unit.
+pub struct Checked {
+    pub unit: Unit,
+    pub compilation: Compilation,
+}
+
+impl Checked {
+    /// The program, if there is neither an error nor a denied warning.
+    #[must_use]
+    pub fn program(&self) -> Option<&Program> {
+        self.compilation.program.as_ref().filter(|_| !self.compilation.has_errors())
+    }
+}
+
 /// All that is checked.
 #[derive(Clone, Debug)]
 pub struct Project {
@@ -55,7 +94,7 @@ impl Project {
         for path in paths {
             if path.as_os_str() == "-" {
                 if sources.iter().all(|s: &Source| s.path.is_some()) {
-                    sources.push(Source::new(None, input::read_stdin()?, true));
+                    sources.push(Source::new(None, files::read_stdin()?, true));
                 }
                 continue;
             }
@@ -65,7 +104,7 @@ impl Project {
                 return Err(format!("no .hri file in {} or the folders in it", terminal::shown(path)));
             }
             for file in files {
-                let text = input::read(&file)?;
+                let text = files::read(&file)?;
                 let place = file.canonicalize().unwrap_or_else(|_| file.clone());
                 match seen.iter().position(|s| *s == place) {
                     Some(_) if folder => {}
@@ -86,7 +125,7 @@ impl Project {
     pub fn compile(&self, unit: &Unit) -> Compilation {
         let input = |i: usize| Input { name: &self.sources[i].name, text: &self.sources[i].text };
         let tests: Vec<Input<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
-        let disk = input::Disk::of(self.sources[unit.head].path.as_deref());
+        let disk = Disk::of(self.sources[unit.head].path.as_deref());
         compile_with(input(unit.head), &tests, &disk)
     }
 
@@ -101,7 +140,7 @@ impl Project {
 impl Source {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let kind = input::kind_of(&parse(FileId(0), &text).0);
+        let kind = kind_of(&parse(FileId(0), &text).0);
         Self { path, name, text, kind, named }
     }
 
@@ -111,7 +150,7 @@ impl Source {
 
     /// The folder that it is in, whole; of standard input the present one.
     fn folder(&self) -> PathBuf {
-        let folder = self.path.as_ref().map_or(PathBuf::from("."), |p| input::folder(p));
+        let folder = self.path.as_ref().map_or(PathBuf::from("."), |p| files::folder(p));
         folder.canonicalize().unwrap_or(folder)
     }
 

@@ -7,8 +7,11 @@ use std::{
     sync::OnceLock,
 };
 
+use hrdsl_compiler::{Loader, Source};
+
 use crate::{
-    input::{self, Fault},
+    fault::Fault,
+    files::{folder as folder_of, read},
     terminal::shown,
 };
 
@@ -40,7 +43,7 @@ impl Reach {
     /// Of a file that was named on the command line, or of standard input.
     #[must_use]
     pub fn of(file: Option<&Path>, endings: &'static [&'static str]) -> Self {
-        let folder = file.map_or_else(|| PathBuf::from("."), input::folder);
+        let folder = file.map_or_else(|| PathBuf::from("."), folder_of);
         let own = folder.canonicalize().unwrap_or(folder);
         let project = own.ancestors().find(|f| f.join(".git").exists()).map(Path::to_owned);
         let allowed = ALLOWED.get().cloned().unwrap_or_default();
@@ -52,7 +55,7 @@ impl Reach {
     /// # Errors
     /// Why it is not read, as the end of a sentence.
     pub fn read(&self, from: &str, path: &str) -> Result<(PathBuf, String), String> {
-        let file = tidy(&input::folder(Path::new(from)).join(path));
+        let file = tidy(&folder_of(Path::new(from)).join(path));
         let Ok(whole) = file.canonicalize() else { return Err(format!("there is no file {}", shown(&file))) };
         if !self.folders.iter().any(|f| whole.starts_with(f)) {
             return Err(format!(
@@ -70,8 +73,35 @@ impl Reach {
             let endings = self.endings.iter().map(|e| format!("`.{e}`")).collect::<Vec<_>>().join(" or ");
             return Err(format!("the name of {} does not end in {endings}", shown(&file)));
         }
-        let text = input::read(&file)?;
+        let text = read(&file)?;
         Ok((file, text))
+    }
+}
+
+/// The files that `use "…"` names, relative to the file that uses them.
+pub struct Disk {
+    reach: Reach,
+    /// That of the file; `None`: standard input has none.
+    folder: Option<PathBuf>,
+}
+
+impl Disk {
+    /// For a file that was named on the command line, or for standard input.
+    #[must_use]
+    pub fn of(file: Option<&Path>) -> Self {
+        let folder = file.and_then(Path::parent).map(Path::to_path_buf);
+        Self { reach: Reach::of(file, &["hri"]), folder }
+    }
+}
+
+impl Loader for Disk {
+    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+        let (file, text) = self.reach.read(from, path)?;
+        Ok(Source { name: file.display().to_string(), text })
+    }
+
+    fn is_file(&self, path: &str) -> Option<bool> {
+        self.folder.as_ref().map(|folder| folder.join(path).is_file())
     }
 }
 

@@ -10,10 +10,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use crate::{
-    input::{self, Fault},
-    terminal::shown,
-};
+use crate::{fault::Fault, files, terminal::shown};
 
 /// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips what it lists.
 pub const MARKER: &str = ".hrdsl-results";
@@ -91,7 +88,7 @@ impl ResultsFolder {
             self.write_marker(listed.iter())?;
         }
         let path = self.dir.join(name);
-        input::write(&path, text)?;
+        files::write(&path, text)?;
         Ok(path)
     }
 

@@ -10,7 +10,7 @@ use std::{
 
 use hrdsl_source::{printable, printable_line};
 
-use crate::{color, input::Fault};
+use crate::{color, fault::Fault};
 
 /// Prints for people, on stdout. That nobody reads on is the reader's choice, and no fault.
 ///

@@ -541,3 +541,30 @@ node.emit('said', n=1)
         assert!(stderr(&out).contains("No space left"), "{}", stderr(&out));
     }
 }
+
+/// What robot code asks of a device is refused in the words of its declaration.
+#[test]
+fn robot_code_hears_what_a_device_can_do() {
+    let world = "\npart hand {\n  body palm: fixed box(4 cm, 8 cm, 8 cm) at (0 m, 0 m, 1 m)\n  gripper grip: palm tool (6 cm, 0 m, 0 m) reach 4 cm delay 100 ms\n}\nworld { part robot = hand at (0 m, 0 m, 0 m) }\n";
+    let asked = [
+        ("grip.command('wave')", "`robot.grip` is a gripper, and cannot `wave`", "a gripper can close, open"),
+        ("grip.command('close', gently=1)", "`close` has no argument `gently`", ""),
+        ("node.arm('robot.arm').move_to((0, 0, 1))", "the world has no device `robot.arm`", "robot.grip"),
+    ];
+    for (call, error, help) in asked {
+        let robot =
+            format!("import hrdsl\nnode = hrdsl.Node('robot')\ngrip = node.gripper('robot.grip')\n{call}\n");
+        let folder = project(&robot, 1);
+        let scenario = folder.path().join("scenario.hri");
+        fs::write(&scenario, format!("{SCENARIO}{world}")).unwrap();
+        expect_code(&sim(folder.path(), ""), 3);
+        let said = &errors(folder.path())[0];
+        assert!(said.contains(error) && said.contains(help), "{call}: {said}");
+    }
+    // Nothing to hold is no error: the code hears why, and goes on.
+    let robot = "import hrdsl\nnode = hrdsl.Node('robot')\ngrip = node.gripper('robot.grip')\nassert not grip.close() and grip.last_error == 'the gripper closed on nothing'\nassert grip.open()\nnode.wait_for('asked')\nnode.emit('said', n=1)\n";
+    let folder = project(robot, 1);
+    fs::write(folder.path().join("scenario.hri"), format!("{SCENARIO}{world}")).unwrap();
+    sim(folder.path(), "");
+    assert_eq!(errors(folder.path()), [""]);
+}

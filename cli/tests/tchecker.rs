@@ -7,7 +7,7 @@ use std::{fs, path::Path};
 
 use support::{expect_code, hrdsl_in, stderr, stdout};
 
-const FISCHER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/import/tests/tchecker/fischer.txt");
+const FISCHER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/interop/tests/tchecker/fischer.txt");
 
 /// Two that shake hands, one that hears a broadcast, a function and an array: every location is told apart by its label.
 const TABLE: &str = "scenario table

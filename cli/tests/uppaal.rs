@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 
 use support::{expect_code, hrdsl_in, stderr, stdout};
 
-const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/import/tests/uppaal");
+const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/interop/tests/uppaal");
 
 /// What the author of `handover.q` states of each query, in order: a verdict, or a bound.
 const STATED: [&str; 16] = [

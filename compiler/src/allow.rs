@@ -191,6 +191,7 @@ fn members<'a>(item: &'a Item, all: &mut Vec<Allowance<'a>>) {
         | ItemKind::Assume(_)
         | ItemKind::Cover(_)
         | ItemKind::Suite(_)
+        | ItemKind::Device(_)
         | ItemKind::System(_)
         | ItemKind::Test(_)
         | ItemKind::Instance(_)

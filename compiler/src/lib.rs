@@ -2,7 +2,7 @@
 //!
 //! # Steps
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
-//! 2. [`modules::load`]: the modules that are used, and those that they use
+//! 2. [`modules::load`]: the modules that are used, and those that they use; [`modules::load_devices`]: what devices can do
 //! 3. [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
 //! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant; `allow` takes away what is
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
@@ -33,7 +33,8 @@ pub struct Input<'a> {
 /// What became of a scenario and its tests.
 #[derive(Clone, Debug)]
 pub struct Compilation {
-    /// The scenario or module (always [`FileId`] 0), the files of tests, then the modules that are used.
+    /// The scenario or module (always [`FileId`] 0), the files of tests, then the modules that are used, and the library's
+    /// devices.
     pub files: Files,
     /// By [`FileId`].
     pub ast: Vec<ast::File>,
@@ -86,9 +87,13 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     }
     let first_module = ast.len();
     modules::load(&mut files, &mut ast, &mut diagnostics, loader);
+    let devices = modules::load_devices(&mut files, &mut ast);
 
     let tests: Vec<&ast::File> = ast[1..first_module].iter().collect();
-    let used: Vec<&ast::File> = ast[first_module..].iter().collect();
+    // The library's devices come first: what a scenario adds to them is what is there twice.
+    let devices = devices.filter(|at| *at >= first_module);
+    let others = (first_module..ast.len()).filter(|at| Some(*at) != devices);
+    let used: Vec<&ast::File> = devices.into_iter().chain(others).map(|at| &ast[at]).collect();
     let alone = modules::is_module(&ast[0]);
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));

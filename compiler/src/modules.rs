@@ -78,6 +78,17 @@ pub fn load(
     }
 }
 
+/// Adds the library's devices, which every scenario has, unless they are there; gives the module's place.
+pub fn load_devices(files: &mut Files, ast: &mut Vec<ast::File>) -> Option<usize> {
+    let text = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES)?;
+    let known = files.iter().position(|(_, file)| file.name == hrdsl_stdlib::DEVICES || file.text == text);
+    known.or_else(|| {
+        let id = files.add(hrdsl_stdlib::DEVICES, text);
+        ast.push(hrdsl_syntax::parse(id, text).0);
+        Some(ast.len() - 1)
+    })
+}
+
 /// Whether a file that stands alone is a module: it has no name, and nothing that only a scenario has.
 #[must_use]
 pub fn is_module(file: &ast::File) -> bool {
@@ -113,6 +124,7 @@ fn only_in_scenario(kind: &ItemKind) -> Option<&'static str> {
         | ItemKind::Cover(_)
         | ItemKind::Cross(_)
         | ItemKind::Part(_)
+        | ItemKind::Device(_)
         | ItemKind::Instance(_)
         | ItemKind::Error => None,
     }

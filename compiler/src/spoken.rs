@@ -40,7 +40,8 @@ impl<'f> Spoken<'f> {
         let is_automaton = |i: &&Item| matches!(i.kind, ItemKind::Automaton(_));
         let automata = ast[0].items.iter().filter(is_automaton).map(|i| i.span).collect();
         let mut spoken = Self { all: BTreeMap::new(), within: BTreeMap::new(), automata };
-        for (id, file) in files.iter() {
+        // The library's devices name nothing of a scenario.
+        for (id, file) in files.iter().filter(|(_, file)| file.name != hrdsl_stdlib::DEVICES) {
             for word in words(&file.text) {
                 let text = &file.text[word.clone()];
                 *spoken.all.entry(text).or_default() += 1;

@@ -123,6 +123,31 @@ const KINDS: &[(&str, &str)] = &[
          }",
     ),
     (
+        "command of a device",
+        "event told from robot
+         device gripper { command @ do open_fingers; command @2 do close_fingers expect holds else \"it is empty\" }
+         device arm { command @(to: length[3]) do reach_point }
+         world {
+           body palm: kinematic sphere(4 cm) at (0 m, 0 m, 1 m)
+           gripper hand: palm tool (0 m, 0 m, 0 m) reach 1 cm delay 1 s
+           on @ hand emit told
+           on @2 hand when holds(hand) emit told
+         }",
+    ),
+    (
+        "gripper",
+        "event told from robot
+         part hand {
+           body palm: kinematic sphere(4 cm) at (0 m, 0 m, 1 m)
+           gripper @: palm tool (0 m, 0 m, 0 m) reach 1 cm delay 1 s
+         }
+         world {
+           part hand = hand at (0 m, 0 m, 0 m)
+           on close hand.@ emit told
+           on open hand.@ when holds(hand.@) emit told
+         }",
+    ),
+    (
         "belief",
         "stimulus ask by cook { hold 1 s }
          agent A plays cook {

@@ -1,6 +1,6 @@
 //! The words of the language, as templates name them.
 
-use hrdsl_model::{Type, UNITS};
+use hrdsl_model::{UNITS, type_names};
 use hrdsl_syntax::token::{Class, KEYWORDS, Keyword};
 
 /// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `units` or `types`. `None`: there is no such list.
@@ -14,7 +14,7 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         "soft" => Some(words(&|k| k.class == Class::Soft)),
         "units" => Some(base_units()),
         // A shared clock is declared as a variable is.
-        "types" => Some(Type::names().chain(["clock"]).collect()),
+        "types" => Some(type_names().chain(["clock"]).collect()),
         other => {
             let place = other.strip_prefix("soft:")?;
             let found: Vec<_> = words(&|k| k.class == Class::Soft && places(k).any(|p| p == place));

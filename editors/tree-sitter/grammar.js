@@ -83,6 +83,7 @@ module.exports = grammar({
         $.cross_declaration,
         $.suite_declaration,
         $.part_declaration,
+        $.device_declaration,
         $.world_declaration,
         $.system_declaration,
         $.test_declaration,
@@ -879,19 +880,38 @@ module.exports = grammar({
       seq(
         keyword($, "on"),
         choice(
-          field("event", choice($.call, alias($._gripper_word_call, $.call))),
-          seq(keyword($, "close"), field("closes", $._path)),
-          seq(keyword($, "open"), field("opens", $._path)),
+          field("event", $.call),
+          seq(field("command", $.identifier), field("device", $._path)),
         ),
         optional(seq(keyword($, "when"), field("condition", $.expression))),
         keyword($, "emit"),
         field("emits", $.call),
       ),
-    // Events may be called `close` and `open`.
-    _gripper_word_call: ($) =>
+
+    // What devices can be told.
+    device_declaration: ($) =>
+      seq(keyword($, "device"), field("kind", $.identifier), field("body", $.device_body)),
+    device_body: ($) => block($, $.command),
+    command: ($) =>
       seq(
-        field("name", choice(alias($._keyword_close, $.identifier), alias($._keyword_open, $.identifier))),
-        optional(field("arguments", $.arguments)),
+        keyword($, "command"),
+        field("name", $.identifier),
+        optional(field("parameters", alias($.command_parameters, $.parameters))),
+        keyword($, "do"),
+        field("primitive", $.identifier),
+        optional($.expectation),
+      ),
+    command_parameters: ($) => seq("(", listed(seq(alias($.command_parameter, $.parameter), optional("?"))), ")"),
+    // Where something is brought is called `to`.
+    command_parameter: ($) =>
+      seq(field("name", choice($.identifier, alias($._keyword_to, $.identifier))), ":", field("type", $.type)),
+    expectation: ($) =>
+      seq(
+        keyword($, "expect"),
+        optional(keyword($, "not")),
+        field("measure", $.identifier),
+        keyword($, "else"),
+        field("otherwise", $.string),
       ),
 
     system_declaration: ($) =>

@@ -1,7 +1,11 @@
 //! The standard modules, embedded: `std.robots.bert2` is `stdlib/robots/bert2.hri`.
 
+/// The module that every scenario has without using it: what devices can be told.
+pub const DEVICES: &str = "std.devices";
+
 /// All modules: path and text, sorted by path.
 pub const MODULES: &[(&str, &str)] = &[
+    (DEVICES, include_str!("../devices.hri")),
     ("std.person", include_str!("../person.hri")),
     ("std.requirements", include_str!("../requirements.hri")),
     ("std.robots.bert2", include_str!("../robots/bert2.hri")),

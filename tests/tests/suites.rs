@@ -4,7 +4,7 @@ use std::fs;
 
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{Program, suite::Method};
-use hrdsl_runtime::testgen::{Options, generate_with};
+use hrdsl_runtime::testgen::{GenerateOptions, generate_with};
 
 fn program(example: &str) -> Program {
     let path = format!("{}/../examples/{example}/scenario.hri", env!("CARGO_MANIFEST_DIR"));
@@ -17,9 +17,9 @@ fn program(example: &str) -> Program {
 fn pairwise(example: &str, bins: usize) -> (usize, usize) {
     let program = program(example);
     let suite = program.suites.iter().find(|s| matches!(s.method, Method::Agents { .. })).unwrap();
-    let options = Options { count: Some(1), ..Options::default() };
+    let options = GenerateOptions { count: Some(1), ..GenerateOptions::default() };
     let whole = generate_with(&program, suite, options).unwrap();
-    let options = Options { minimise: Some(true), count: Some(1000), ..options };
+    let options = GenerateOptions { minimise: Some(true), count: Some(1000), ..options };
     let least = generate_with(&program, suite, options).unwrap();
     let mut predicted: Vec<&hrdsl_ir::coverage::BinName> =
         least.tests.iter().flat_map(|t| &t.provenance.predicts).collect();

@@ -1,6 +1,6 @@
 //! What records, arrays, vectors and enumerations mean when they run: compared with arrays, structures and f64 of Rust.
 
-use hrdsl_bdi::{Action, Society};
+use hrdsl_bdi::{AgentAction, Society};
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
     Program, Symbol, Value,
@@ -9,7 +9,10 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_runtime::testgen::{generate, write};
-use hrdsl_ta::{Budget, Goal, GoalKind, Model, Observe, Options, Outcome, Player, check, explore};
+use hrdsl_ta::{
+    CompiledNetwork, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal, SearchBudget,
+    SearchOptions, VirtualTimePlayer, check, explore,
+};
 
 const ACTORS: &str = "actor person : environment\nactor robot : system\n";
 
@@ -203,7 +206,7 @@ fn assignments_leave_what_they_would_leave_in_arrays() {
         }
         text += "}\nnetwork n = A\n";
         let p = program(&text, &[]);
-        let mut player = Player::new(&p, AutomatonId(0));
+        let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
         player.run(0, &mut Vec::new()).unwrap();
         assert_eq!(player.location(), Some(LocationId(u16::try_from(texts.len()).unwrap())));
         let want = memory.flat();
@@ -211,15 +214,15 @@ fn assignments_leave_what_they_would_leave_in_arrays() {
             (0..want.len()).map(|i| player.variable(u16::try_from(i).unwrap()).unwrap()).collect();
         assert_eq!(got, want, "{text}");
         // The search stores one state for each assignment.
-        let goal = Goal {
+        let goal = ReachabilityGoal {
             what: GoalKind::Location {
                 automaton: 0,
                 location: LocationId(u16::try_from(texts.len()).unwrap()),
             },
             settled: true,
         };
-        let report = check(&p, &p.networks[0], &[goal], &[], &[], Budget::default()).unwrap();
-        assert!(matches!(report.goals[0], Outcome::Reached(_)));
+        let report = check(&p, &p.networks[0], &[goal], &[], &[], SearchBudget::default()).unwrap();
+        assert!(matches!(report.goals[0], GoalOutcome::Reached(_)));
     }
 }
 
@@ -246,8 +249,8 @@ fn arrays_and_single_variables_have_the_same_states() {
     let states = |text: &str| {
         let p = program(text, &[]);
         // What nothing reads is kept, too.
-        let options = Options { reduce: false, ..Options::reference() };
-        let model = Model::new(&p, &p.networks[0], &Observe::default()).unwrap();
+        let options = SearchOptions { reduce: false, ..SearchOptions::reference() };
+        let model = CompiledNetwork::new(&p, &p.networks[0], &ObservationOptions::default()).unwrap();
         let report = explore(&model, &[], &options, &|_| true).unwrap();
         assert!(report.complete);
         (report.states_stored, report.discrete_states)
@@ -279,7 +282,7 @@ fn an_agent_matches_keeps_and_says_records() {
     let mut society = Society::new(&p, &[(AgentId(0), Vec::new())], 0);
     let mut done: Vec<(String, Vec<Value>)> = Vec::new();
     let step = |society: &mut Society<'_>, done: &mut Vec<(String, Vec<Value>)>, now: i64| loop {
-        let mut out: Vec<(usize, Action)> = Vec::new();
+        let mut out: Vec<(usize, AgentAction)> = Vec::new();
         society.run(now, &mut out);
         if out.is_empty() {
             break;

@@ -3,16 +3,14 @@
 use std::{collections::BTreeSet, path::PathBuf};
 
 use clap::ValueEnum;
-use hrdsl_compiler::Compilation;
-use hrdsl_ir::Program;
 use hrdsl_source::{Code, Diagnostic, REGISTRY, Severity, printable_line};
 
 use crate::{
     color,
     exit::Exit,
-    fix,
-    input::{self, Fault},
-    project::{Project, Unit},
+    fault::Fault,
+    files, fix, input,
+    project::{Checked, Project},
     render, terminal,
 };
 
@@ -75,19 +73,6 @@ fn denied(text: &str) -> Result<Deny, String> {
         .ok_or_else(|| "it is `warnings` or a code such as `HR0403`; `hrdsl explain` lists them".to_owned())
 }
 
-/// What became of a unit.
-pub struct Checked {
-    pub unit: Unit,
-    pub compilation: Compilation,
-}
-
-impl Checked {
-    /// The program, if there is neither an error nor a denied warning.
-    fn program(&self) -> Option<&Program> {
-        self.compilation.program.as_ref().filter(|_| !self.compilation.has_errors())
-    }
-}
-
 /// # Errors
 /// A file that cannot be read or written, or tests without a scenario.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
@@ -100,10 +85,10 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         Format::Human => {
             show(&checked, args.max_findings);
             let text = if args.diff { difference(&project) } else { summary(&project, &checked) };
-            input::print(&text)?;
+            terminal::print(&text)?;
         }
-        Format::Json => input::print_data(&render::json(&project, &checked)?)?,
-        Format::Sarif => input::print_data(&render::sarif(&project, &checked)?)?,
+        Format::Json => terminal::print_data(&render::json(&project, &checked)?)?,
+        Format::Sarif => terminal::print_data(&render::sarif(&project, &checked)?)?,
     }
     let failed = checked.iter().any(|c| c.program().is_none());
     Ok(if failed { Exit::Errors } else { Exit::Ok })
@@ -149,7 +134,7 @@ fn mend(project: &mut Project) -> Result<(), Fault> {
     let mut files = 0;
     for (old, new) in before.sources.iter().zip(&project.sources).filter(|(a, b)| a.text != b.text) {
         if let Some(path) = &old.path {
-            input::replace(path, &new.text)?;
+            files::replace(path, &new.text)?;
             files += 1;
         }
     }

@@ -2,10 +2,7 @@
 
 use clap_complete::{Shell, generate};
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-};
+use crate::{exit::Exit, fault::Fault, terminal};
 
 /// Print a shell's completions of hrdsl's commands and options.
 #[derive(clap::Args)]
@@ -24,6 +21,6 @@ pub struct Args {
 pub fn run(args: &Args, mut command: clap::Command) -> Result<Exit, Fault> {
     let mut script = Vec::new();
     generate(args.shell, &mut command, "hrdsl", &mut script);
-    input::print_data(&String::from_utf8_lossy(&script))?;
+    terminal::print_data(&String::from_utf8_lossy(&script))?;
     Ok(Exit::Ok)
 }

@@ -6,10 +6,7 @@ use clap::ValueEnum;
 use hrdsl_compiler::Compilation;
 use serde::Serialize;
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-};
+use crate::{exit::Exit, fault::Fault, input, terminal};
 
 /// Print what the compiler makes of a scenario, at any stop of the way, as JSON.
 #[derive(clap::Args)]
@@ -18,13 +15,13 @@ use crate::{
 )]
 pub struct Args {
     /// Which stop.
-    stage: Stage,
+    stage: Product,
     /// The scenario.
     file: PathBuf,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Stage {
+enum Product {
     /// What was written, before any name is looked up.
     Ast,
     /// What was meant: names resolved, expressions typed.
@@ -47,12 +44,12 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let compilation = input::load(&args.file, &[])?;
     let has_errors = input::report(&compilation).is_none();
     let Some(text) = emit(args.stage, &compilation) else { return Ok(Exit::Errors) };
-    input::print_data(&(text? + "\n"))?;
+    terminal::print_data(&(text? + "\n"))?;
     Ok(if has_errors { Exit::Errors } else { Exit::Ok })
 }
 
 /// `None` if the scenario's errors keep it from getting that far.
-fn emit(stage: Stage, compilation: &Compilation) -> Option<Result<String, Fault>> {
+fn emit(stage: Product, compilation: &Compilation) -> Option<Result<String, Fault>> {
     #[derive(Serialize)]
     struct Ta<'a> {
         shared: &'a [hrdsl_ir::ta::Var],
@@ -72,19 +69,19 @@ fn emit(stage: Stage, compilation: &Compilation) -> Option<Result<String, Fault>
     }
     let program = compilation.program.as_ref();
     match stage {
-        Stage::Ast => Some(json(&compilation.ast)),
-        Stage::Scenario => Some(json(compilation.scenario.as_ref()?)),
-        Stage::Bdi => Some(json(&program?.agents)),
-        Stage::Ta => {
+        Product::Ast => Some(json(&compilation.ast)),
+        Product::Scenario => Some(json(compilation.scenario.as_ref()?)),
+        Product::Bdi => Some(json(&program?.agents)),
+        Product::Ta => {
             let p = program?;
             Some(json(&Ta { shared: &p.shared, automata: &p.automata, networks: &p.networks }))
         }
-        Stage::Monitors => {
+        Product::Monitors => {
             let p = program?;
             Some(json(&Monitors { monitors: &p.monitors, assumptions: &p.assumptions }))
         }
-        Stage::Coverage => Some(json(&program?.coverage)),
-        Stage::World => {
+        Product::Coverage => Some(json(&program?.coverage)),
+        Product::World => {
             let p = program?;
             Some(json(&World { world: &p.world, signals: &p.signals, system: &p.system }))
         }

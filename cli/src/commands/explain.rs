@@ -7,8 +7,8 @@ use serde::Serialize;
 use crate::{
     color::{self, Style, paint},
     exit::Exit,
-    input::{self, Fault},
-    render,
+    fault::Fault,
+    files, render, terminal,
 };
 
 /// Explain a diagnostic code, with an example that fails and the same mended; without a code, list them all.
@@ -49,14 +49,14 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let colour = color::stdout_has();
     let text = match (&args.code, args.json) {
         (None, false) => list(colour),
-        (None, true) => input::json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
+        (None, true) => files::json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
         (Some(code), as_json) => {
             let info = find(code)?;
             let page = pages::page(info.code).ok_or_else(|| format!("{} has no page", info.code))?;
-            if as_json { input::json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
+            if as_json { files::json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
         }
     };
-    input::print(&text)?;
+    terminal::print(&text)?;
     Ok(Exit::Ok)
 }
 

@@ -4,14 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use hrdsl_compiler::Compilation;
-use hrdsl_export::{Obstacle, picture, tchecker, uppaal};
+use hrdsl_interop::{Obstacle, picture, tchecker, uppaal};
 use hrdsl_ir::{Program, ta::Network};
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, files, input, terminal};
 
 /// Write a network of automata as a file of another tool.
 ///
@@ -128,7 +124,7 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
         Ok(exported) => {
             said(&compilation, &exported.left_out, "left out");
             if let Some(path) = &args.queries {
-                input::write(path, &exported.queries)?;
+                files::write(path, &exported.queries)?;
             }
             write(args.out.as_deref(), &exported.text)?;
             Ok(Exit::Ok)
@@ -146,8 +142,8 @@ fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
 /// To the file, or to stdout.
 fn write(out: Option<&Path>, text: &str) -> Result<(), Fault> {
     match out {
-        Some(path) => input::write(path, text),
-        None => input::print_data(text),
+        Some(path) => files::write(path, text),
+        None => terminal::print_data(text),
     }
 }
 

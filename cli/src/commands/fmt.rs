@@ -8,12 +8,7 @@ use std::{
 use hrdsl_compiler::format;
 use hrdsl_source::{Diagnostic, Files, printable_line};
 
-use crate::{
-    color,
-    exit::Exit,
-    input::{self, Fault},
-    project, render, terminal,
-};
+use crate::{color, exit::Exit, fault::Fault, files, project, render, terminal};
 
 /// The text on stdin, among the paths.
 const STDIN: &str = "-";
@@ -101,17 +96,17 @@ fn summary(tally: &Tally, dry: bool) -> String {
 // ── Texts ──
 
 fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
-    let text = input::read_stdin()?;
+    let text = files::read_stdin()?;
     let Some(formatted) = formatted("<stdin>", &text, tally) else { return Ok(()) };
     if args.check || args.diff {
         show(args, "<stdin>", &text, &formatted)
     } else {
-        input::print_data(&formatted)
+        terminal::print_data(&formatted)
     }
 }
 
 fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
-    let text = input::read(path)?;
+    let text = files::read(path)?;
     let name = path.display().to_string();
     let Some(formatted) = formatted(&name, &text, tally) else { return Ok(()) };
     if formatted == text {
@@ -125,7 +120,7 @@ fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
     let written = if readonly {
         Err(format!("cannot write {}: it is read-only", terminal::shown(path)))
     } else {
-        input::replace(path, &formatted)
+        files::replace(path, &formatted)
     };
     written.inspect_err(|_| tally.changed -= 1)
 }
@@ -163,9 +158,9 @@ fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Faul
         return Ok(());
     }
     if args.diff {
-        return input::print(&render::unified(name, text, formatted, color::stdout_has()));
+        return terminal::print(&render::unified(name, text, formatted, color::stdout_has()));
     }
-    input::print(&format!("{}\n", printable_line(name)))
+    terminal::print(&format!("{}\n", printable_line(name)))
 }
 
 // ── Files ──

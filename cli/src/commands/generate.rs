@@ -8,12 +8,12 @@ use std::{
 use hrdsl_compiler::Compilation;
 use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
-    prove::Settings,
+    prove::ProofOptions,
     report::explain_text,
-    results::{Explanation, GoalReport, GoalStatus, ModelCoverage},
+    results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation},
     testgen::{
-        Generated, Options, generate_with,
-        model_run::{Detail, Inspection},
+        GenerateOptions, GeneratedSuite, generate_with,
+        model_run::{LogDetail, ModelInspection},
         write,
     },
 };
@@ -25,12 +25,7 @@ use super::inspect::{
     Chosen, json_lines,
     reasoning::{End, Picked, ending, reasoning},
 };
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    results_folder::ResultsFolder,
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, files, input, results_folder::ResultsFolder, terminal};
 
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
 #[derive(clap::Args)]
@@ -88,16 +83,16 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let mut folder = ResultsFolder::beside(&args.out)?;
     let mut suites = Vec::new();
     for suite in chosen {
-        let options = Options {
+        let options = GenerateOptions {
             count: args.count,
             seed: args.seed,
             minimise,
             witness: args.witness.map(Into::into),
             delays: args.delays.map(Into::into),
-            search: Settings {
+            search: ProofOptions {
                 order: args.order.map(Into::into),
                 threads: usize::from(args.threads),
-                ..Settings::default()
+                ..ProofOptions::default()
             },
         };
         let generated = generate_with(program, suite, options)?;
@@ -118,11 +113,11 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         if let Some(explanation) = generated.explanation.as_ref().filter(|_| args.explain) {
             text += &format!("\n{}\n", explain_text(&suite.name, explanation, generated.coverage.as_ref()));
         }
-        input::print(&printable(&text))?;
+        terminal::print(&printable(&text))?;
     }
     if args.json {
         let document = Document { format: "hrdsl-gen", version: 1, suites };
-        input::print_data(&input::json(&document)?)?;
+        terminal::print_data(&files::json(&document)?)?;
     }
     Ok(Exit::Ok)
 }
@@ -147,7 +142,7 @@ struct Made {
     #[serde(skip_serializing_if = "Option::is_none")]
     coverage: Option<ModelCoverage>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    explanation: Option<Explanation>,
+    explanation: Option<SuiteExplanation>,
 }
 
 #[derive(Serialize)]
@@ -162,7 +157,7 @@ struct MadeTest {
 }
 
 impl Made {
-    fn of(generated: &Generated, path: &Path, traces: &[PathBuf]) -> Self {
+    fn of(generated: &GeneratedSuite, path: &Path, traces: &[PathBuf]) -> Self {
         let test = |(at, test): (usize, &hrdsl_ir::test::Test)| MadeTest {
             name: test.name.clone(),
             seed: test.seed,
@@ -194,7 +189,7 @@ fn trace(
     compilation: &Compilation,
     program: &Program,
     suite: &Suite,
-    generated: &Generated,
+    generated: &GeneratedSuite,
     to: &mut ResultsFolder,
 ) -> Result<Vec<PathBuf>, Fault> {
     let folder = traces_of(&suite.name);
@@ -209,7 +204,7 @@ fn trace(
         let text = match runs.entry(origin.number) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                new.insert(traced(&chosen.inspect(program, Detail::Reasons), args.json, &place)?)
+                new.insert(traced(&chosen.inspect(program, LogDetail::Reasons), args.json, &place)?)
             }
         };
         let (ending, heading) =
@@ -221,7 +216,7 @@ fn trace(
 }
 
 /// The log of a run: for a person with how it ended, or as lines of JSON.
-fn traced(inspection: &Inspection, json: bool, place: &dyn Fn(Span) -> String) -> Result<String, Fault> {
+fn traced(inspection: &ModelInspection, json: bool, place: &dyn Fn(Span) -> String) -> Result<String, Fault> {
     let picked = Picked { all: true, ..Picked::default() };
     if json {
         return json_lines(inspection, &picked, place);
@@ -253,20 +248,20 @@ pub fn chosen<'p>(program: &'p Program, names: &[String]) -> Result<Vec<&'p Suit
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn save(folder: &Path, program: &Program, generated: &Generated) -> Result<PathBuf, Fault> {
+pub fn save(folder: &Path, program: &Program, generated: &GeneratedSuite) -> Result<PathBuf, Fault> {
     let path = folder.join(file_of(generated));
-    input::write(&path, &write(program, &generated.tests))?;
+    files::write(&path, &write(program, &generated.tests))?;
     Ok(path)
 }
 
 /// The file of a suite's tests.
-fn file_of(generated: &Generated) -> PathBuf {
+fn file_of(generated: &GeneratedSuite) -> PathBuf {
     PathBuf::from(format!("{}.hri", generated.suite))
 }
 
 /// What was generated, in a few lines.
 #[must_use]
-pub fn describe(generated: &Generated) -> String {
+pub fn describe(generated: &GeneratedSuite) -> String {
     let mut out = format!(
         "{} (by {}): {} abstract tests, {} concrete\n",
         generated.suite,

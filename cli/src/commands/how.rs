@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use hrdsl_ir::suite::{Delays, WitnessKind};
-use hrdsl_runtime::prove::Order;
+use hrdsl_runtime::prove::SearchOrder;
 
 /// What `--witness` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -59,7 +59,7 @@ pub enum Way {
     Topological,
 }
 
-impl From<Way> for Order {
+impl From<Way> for SearchOrder {
     fn from(way: Way) -> Self {
         match way {
             Way::Breadth => Self::Breadth,

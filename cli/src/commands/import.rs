@@ -3,19 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use hrdsl_import::{
+use hrdsl_interop::{
     Imported, Loader, Note, Severity, Source, SyntaxError,
     agentspeak::{self, Options},
     tchecker, uppaal,
 };
 use serde::Serialize;
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    reach::Reach,
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, files, reach::Reach, terminal};
 
 /// Make a scenario from the programs of another tool.
 ///
@@ -170,7 +165,7 @@ fn from_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
 }
 
 fn source(path: &Path) -> Result<Source, Fault> {
-    Ok(Source { name: path.display().to_string(), text: input::read(path)? })
+    Ok(Source { name: path.display().to_string(), text: files::read(path)? })
 }
 
 fn finished(to: &To, imported: Result<Imported, Vec<SyntaxError>>) -> Result<Exit, Fault> {
@@ -191,7 +186,7 @@ fn finished(to: &To, imported: Result<Imported, Vec<SyntaxError>>) -> Result<Exi
 
 fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
     if let Some(path) = &args.out {
-        input::write(path, &imported.text)?;
+        files::write(path, &imported.text)?;
     }
     if args.json {
         let text = args.out.is_none().then_some(imported.text.as_str());
@@ -199,7 +194,7 @@ fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
         print(&Document { text, notes, ..Document::default() })?;
     } else {
         if args.out.is_none() {
-            input::print_data(&imported.text)?;
+            terminal::print_data(&imported.text)?;
         }
         imported.notes.iter().for_each(terminal::say_line);
     }
@@ -211,7 +206,7 @@ fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
 }
 
 fn print(document: &Document<'_>) -> Result<(), Fault> {
-    input::print_data(&input::json(document)?)
+    terminal::print_data(&files::json(document)?)
 }
 
 #[derive(Serialize)]

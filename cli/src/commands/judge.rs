@@ -12,17 +12,12 @@ use hrdsl_runtime::{
     campaign::{CampaignOutcome, FinishedTest, tally},
     judge::{JudgedRecording, judge_recording},
     report,
-    results::{BinName, BinResult, Requirement, Results, RunEnd, TestName, TestResult, VerdictResult},
+    results::{BinName, BinResult, RequirementResult, Results, RunEnd, TestName, TestResult, VerdictResult},
 };
 use serde::Serialize;
 
 use super::report::WIDTH;
-use crate::{
-    color,
-    exit::Exit,
-    input::{self, Fault},
-    results_folder, terminal,
-};
+use crate::{color, exit::Exit, fault::Fault, files, input, results_folder, terminal};
 
 /// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
 ///
@@ -54,7 +49,7 @@ struct JudgementDocument<'a> {
     format: &'static str,
     version: u32,
     scenario: &'a str,
-    requirements: &'a [Requirement],
+    requirements: &'a [RequirementResult],
     bins: &'a [BinResult],
     tests: Vec<JudgedTest<'a>>,
 }
@@ -90,9 +85,9 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     let outcome = CampaignOutcome { tests, planned, interrupted: false };
     let results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
     if args.json {
-        input::print_data(&json(&results)?)?;
+        terminal::print_data(&json(&results)?)?;
     } else if !results.tests.is_empty() {
-        input::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
+        terminal::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
     }
     Ok(if refused > 0 {
         Exit::Usage
@@ -137,9 +132,9 @@ fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, F
         name,
         suite,
         seed: recorded.header.seed.unwrap_or(0),
-        ended: recorded.ending.how,
+        ended: recorded.ending.kind,
         // Other programs need not say why; that it broke off counts all the same.
-        error: match recorded.ending.how {
+        error: match recorded.ending.kind {
             RunEnd::Error => {
                 Some(recorded.ending.error.unwrap_or_else(|| "no reason is recorded".to_owned()))
             }
@@ -172,5 +167,5 @@ fn json(results: &Results) -> Result<String, Fault> {
         bins: &results.bins,
         tests: results.tests.iter().map(test).collect(),
     };
-    input::json(&document)
+    files::json(&document)
 }

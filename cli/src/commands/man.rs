@@ -4,11 +4,7 @@ use std::path::PathBuf;
 
 use clap_mangen::Man;
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, files, terminal};
 
 /// Print hrdsl's manual page, or write one for each command.
 #[derive(clap::Args)]
@@ -28,15 +24,15 @@ pub fn run(args: &Args, command: clap::Command) -> Result<Exit, Fault> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let Some(dir) = &args.dir else {
-        input::print_data(&page(&man(command))?)?;
+        terminal::print_data(&page(&man(command))?)?;
         return Ok(Exit::Ok);
     };
     let commands = command.get_subcommands().cloned().collect::<Vec<_>>();
     for command in std::iter::once(command).chain(commands) {
         let man = man(command);
         let path = dir.join(man.get_filename());
-        input::write(&path, &page(&man)?)?;
-        input::print(&format!("{}\n", terminal::shown(&path)))?;
+        files::write(&path, &page(&man)?)?;
+        terminal::print(&format!("{}\n", terminal::shown(&path)))?;
     }
     Ok(Exit::Ok)
 }

@@ -8,11 +8,7 @@ use std::{
 
 use hrdsl_compiler::token::{Class, KEYWORDS};
 
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, terminal};
 
 /// Begin a project: a scenario, a robot program, a README.
 ///
@@ -59,7 +55,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         create(&folder.join(file), &template.replace(PLACEHOLDER, name))?;
     }
     let shown = terminal::shown(&folder);
-    input::print(&format!(
+    terminal::print(&format!(
         "made {shown}: scenario.hri, robot.py, README.md, .gitignore\n\nGo on with\n  hrdsl check {shown}\n  hrdsl gen {shown}/scenario.hri -o {shown}/tests\n  hrdsl sim {shown}/scenario.hri\n"
     ))?;
     Ok(Exit::Ok)

@@ -4,13 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hrdsl_runtime::{report, results::Results};
 
-use crate::{
-    color,
-    exit::Exit,
-    input::{self, Fault},
-    results_folder::ResultsFolder,
-    terminal,
-};
+use crate::{color, exit::Exit, fault::Fault, files, results_folder::ResultsFolder, terminal};
 
 /// Make the reports of a campaign again from its results, and print the summary.
 ///
@@ -51,22 +45,22 @@ pub const WIDTH: usize = 100;
 /// Results that cannot be read, or a folder that cannot be written.
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let Some(given) = &args.results else {
-        input::print_data(&Results::schema().map_err(|e| e.to_string())?)?;
+        terminal::print_data(&Results::schema().map_err(|e| e.to_string())?)?;
         return Ok(Exit::Ok);
     };
     let path = if given.is_dir() { given.join("results.json") } else { given.clone() };
-    let text = input::read(&path)?;
+    let text = files::read(&path)?;
     let results = Results::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
     match args.print {
-        Some(Printed::Summary) => input::print(&report::summary(&results, WIDTH, color::stdout_has()))?,
-        Some(Printed::Html) => input::print_data(&report::html(&results))?,
-        Some(Printed::Junit) => input::print_data(&report::junit(&results))?,
+        Some(Printed::Summary) => terminal::print(&report::summary(&results, WIDTH, color::stdout_has()))?,
+        Some(Printed::Html) => terminal::print_data(&report::html(&results))?,
+        Some(Printed::Junit) => terminal::print_data(&report::junit(&results))?,
         None => {
             let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             let out = args.out.as_deref().unwrap_or(beside);
             let page = write(&results, out)?;
             let summary = report::summary(&results, WIDTH, color::stdout_has());
-            input::print(&format!("{summary}report: {}\n", terminal::shown(&page)))?;
+            terminal::print(&format!("{summary}report: {}\n", terminal::shown(&page)))?;
         }
     }
     Ok(Exit::Ok)

@@ -5,9 +5,8 @@ use hrdsl_source::{Diagnostic, Edit, Files, Severity, Span};
 use serde::Serialize;
 
 use crate::{
-    commands::check::Checked,
-    input::{Fault, Kind},
-    project::Project,
+    fault::Fault,
+    project::{Checked, Kind, Project},
 };
 
 #[derive(Serialize)]
@@ -103,7 +102,7 @@ pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault>
         diagnostics: said().map(|(files, d)| shown(files, d)).collect(),
         summary: Summary { errors, warnings: said().count() - errors },
     };
-    crate::input::json(&document)
+    crate::files::json(&document)
 }
 
 fn shown<'a>(files: &'a Files, diagnostic: &'a Diagnostic) -> Shown<'a> {

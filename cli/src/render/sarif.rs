@@ -4,7 +4,10 @@ use hrdsl_compiler::pages;
 use hrdsl_source::{Diagnostic, Files, Fix, REGISTRY, Severity, Span};
 use serde_json::{Value, json};
 
-use crate::{commands::check::Checked, input::Fault, project::Project};
+use crate::{
+    fault::Fault,
+    project::{Checked, Project},
+};
 
 /// The log of a whole check.
 ///
@@ -33,7 +36,7 @@ pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault>
             "results": results,
         }],
     });
-    crate::input::json(&log)
+    crate::files::json(&log)
 }
 
 /// One rule for each code, in the order of the registry.

@@ -2,9 +2,15 @@
 
 use std::sync::LazyLock;
 
+use hrdsl_source::{Span, Symbol};
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, EventId, EventPattern, Expr, Param, Span, Symbol, Value, list::ListFunction};
+use crate::{
+    event::{ActorId, EventId, EventPattern, Param},
+    expr::Expr,
+    list::ListFunction,
+    value::Value,
+};
 
 /// Index into [`Program::agents`](crate::Program::agents).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -24,20 +30,20 @@ pub struct ContentId(pub u16);
 
 /// An agent program: its beliefs, rules, goals and plan library.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Agent {
+pub struct Agent<E = Expr> {
     pub name: String,
     /// The actor it plays.
     pub actor: ActorId,
     pub beliefs: Vec<Belief>,
     pub goals: Vec<Goal>,
     /// Rules, in source order: those of a belief are tried after its facts.
-    pub rules: Vec<Rule>,
+    pub rules: Vec<Rule<E>>,
     /// Beliefs held at the start, in source order.
     pub initial_beliefs: Vec<Fact>,
     /// Goals adopted at the start, in source order.
     pub initial_goals: Vec<(GoalId, Vec<Value>)>,
     /// The plan library, in source order: the first applicable plan is chosen.
-    pub plans: Vec<Plan>,
+    pub plans: Vec<Plan<E>>,
     pub origin: Span,
 }
 
@@ -50,6 +56,9 @@ pub struct Belief {
     pub annotations: Vec<Param>,
     /// `belief b(…) on e`: the arguments of the latest such event that the agent perceived, with the source `percept`.
     pub percept: Option<EventId>,
+    /// It is the strong negation of this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub negates: Option<BeliefId>,
     pub origin: Span,
 }
 
@@ -64,12 +73,14 @@ pub struct Goal {
 /// `rule b(…) when body`: what follows from other beliefs. Once the body has an answer, every variable of the head has a
 /// value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule {
+pub struct Rule<E = Expr> {
     pub belief: BeliefId,
-    pub args: Vec<Term>,
-    pub body: Context,
+    pub args: Vec<Term<E>>,
+    pub body: Context<E>,
     /// The names of the rule's variables.
     pub vars: Vec<String>,
+    /// `b(…)`
+    pub head: Span,
     pub origin: Span,
 }
 
@@ -94,14 +105,14 @@ pub enum Annotation {
 
 /// A plan: `plan trigger when context { body }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct Plan<E = Expr> {
     /// As written (`plan @label +!g`), or made from the trigger and the plan's place: `table#2`.
     pub label: String,
     /// `@label[atomic]`: while it is not finished, and does not wait, no other intention is executed.
     pub atomic: bool,
-    pub trigger: Trigger,
-    pub context: Context,
-    pub body: Vec<Step>,
+    pub trigger: Trigger<E>,
+    pub context: Context<E>,
+    pub body: Vec<Step<E>>,
     /// The names of the plan's variables; `Expr::Var(i)` and `Term::Var(i)` index it.
     pub vars: Vec<String>,
     pub origin: Span,
@@ -109,11 +120,14 @@ pub struct Plan {
 
 /// What makes a plan relevant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trigger {
+pub struct Trigger<E = Expr> {
     pub on: TriggerOn,
-    pub args: Vec<Term>,
+    pub args: Vec<Term<E>>,
     /// Of a goal `source` only: who asked for it.
-    pub annotations: Vec<(Annotation, Term)>,
+    pub annotations: Vec<(Annotation, Term<E>)>,
+    pub origin: Span,
+    /// The name in it.
+    pub name: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -135,140 +149,298 @@ pub enum TriggerOn {
     Perceived(EventId),
 }
 
+impl TriggerOn {
+    /// The belief that it is about.
+    #[must_use]
+    pub fn belief(self) -> Option<BeliefId> {
+        match self {
+            TriggerOn::BeliefAdded(b)
+            | TriggerOn::BeliefRemoved(b)
+            | TriggerOn::TestAdded(b)
+            | TriggerOn::TestFailed(b) => Some(b),
+            TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) | TriggerOn::Perceived(_) => None,
+        }
+    }
+}
+
 /// A term that is matched: in a trigger, in a belief literal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Term {
+pub enum Term<E = Expr> {
     /// `_`
     Any,
     /// A variable: bound here if it is not yet, compared otherwise.
     Var(u16),
     /// A ground or computed value; its variables are bound before.
-    Expr(Expr),
+    Expr(E),
     /// `[A, B | Rest]`: a list that begins so; without a rest, of just these elements.
-    List(Vec<Term>, Option<Box<Term>>),
+    List(Vec<Term<E>>, Option<Box<Term<E>>>),
+}
+
+impl<E> Term<E> {
+    /// Calls `f` with each variable that is bound or compared as a whole.
+    pub fn each_var(&self, f: &mut dyn FnMut(u16)) {
+        match self {
+            Term::Any | Term::Expr(_) => {}
+            Term::Var(i) => f(*i),
+            Term::List(items, rest) => {
+                items.iter().for_each(|t| t.each_var(f));
+                rest.iter().for_each(|t| t.each_var(f));
+            }
+        }
+    }
 }
 
 /// A belief that is matched. Each annotation must be one of the fact's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Literal {
+pub struct Literal<E = Expr> {
     pub belief: BeliefId,
-    pub args: Vec<Term>,
-    pub annotations: Vec<(Annotation, Term)>,
+    pub args: Vec<Term<E>>,
+    pub annotations: Vec<(Annotation, Term<E>)>,
+    pub origin: Span,
 }
 
 /// A belief that is made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Assertion {
+pub struct Assertion<E = Expr> {
     pub belief: BeliefId,
-    pub args: Vec<Expr>,
+    pub args: Vec<E>,
     /// Without a source: `self`.
-    pub annotations: Vec<(Annotation, Expr)>,
+    pub annotations: Vec<(Annotation, E)>,
 }
 
 /// A plan's context, a rule's body, a condition of a step: a formula over the belief base. Its answers are searched
 /// depth first, facts from the oldest, then rules; mostly the first is taken.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Context {
+pub enum Context<E = Expr> {
     True,
-    Belief(Literal),
+    Belief(Literal<E>),
     /// Negation as failure; binds nothing.
-    Not(Box<Context>),
-    And(Vec<Context>),
-    Or(Vec<Context>),
+    Not(Box<Context<E>>),
+    And(Vec<Context<E>>),
+    Or(Vec<Context<E>>),
     /// A boolean expression over variables bound before it.
-    Test(Expr),
+    Test(E),
     /// `X = e`, `[H | T] = e`
-    Unify(Term, Expr),
+    Unify(Term<E>, E),
     /// An internal action that asks, in the place of a belief.
-    Internal(Box<Internal>),
+    Internal(Box<Internal<E>>, Span),
+}
+
+impl<E> Context<E> {
+    /// Calls `f` with the formula and each formula in it, the whole first.
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Context<E>)) {
+        f(self);
+        match self {
+            Context::Not(inner) => inner.each(f),
+            Context::And(all) | Context::Or(all) => all.iter().for_each(|c| c.each(f)),
+            Context::Internal(action, _) => action.formula().iter().for_each(|c| c.each(f)),
+            Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
+        }
+    }
+
+    /// The variables that it may bind.
+    #[must_use]
+    pub fn binds(&self) -> Vec<u16> {
+        let mut vars = Vec::new();
+        let mut add = |var| vars.push(var);
+        match self {
+            Context::True | Context::Not(_) | Context::Test(_) => {}
+            Context::And(all) | Context::Or(all) => return all.iter().flat_map(Context::binds).collect(),
+            Context::Belief(literal) => {
+                literal.args.iter().for_each(|a| a.each_var(&mut add));
+                literal.annotations.iter().for_each(|(_, a)| a.each_var(&mut add));
+            }
+            Context::Unify(term, _) => term.each_var(&mut add),
+            Context::Internal(action, _) => action.terms().into_iter().for_each(|a| a.each_var(&mut add)),
+        }
+        vars
+    }
 }
 
 /// An internal action that asks: it has answers, and changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Internal {
+pub enum Internal<E = Expr> {
     /// `.findall(X, F, L)`, and `.setof`: sorted, without duplicates. F binds nothing outside.
-    FindAll { template: Expr, formula: Context, set: bool, out: Term },
+    FindAll { template: E, formula: Context<E>, set: bool, out: Term<E> },
     /// `.count(F, N)`
-    Count { formula: Context, out: Term },
+    Count { formula: Context<E>, out: Term<E> },
     /// `.member(X, L)`: an answer for each element, in order
-    Member { element: Term, list: Expr },
+    Member { element: Term<E>, list: E },
     /// A function of lists and strings; no answer if it has no value.
-    Apply { function: ListFunction, args: Vec<Expr>, out: Term },
+    Apply { function: ListFunction, args: Vec<E>, out: Term<E> },
     /// `.empty(L)`, `.prefix(A, B)`, …: a function that yields a bool.
-    Holds { function: ListFunction, args: Vec<Expr> },
+    Holds { function: ListFunction, args: Vec<E> },
     /// `.intend(g(…))`: an intention has the goal
-    Intend { goal: GoalId, args: Vec<Term> },
+    Intend { goal: GoalId, args: Vec<Term<E>> },
     /// `.desire(g(…))`: an intention, or an event not yet handled, has the goal
-    Desire { goal: GoalId, args: Vec<Term> },
+    Desire { goal: GoalId, args: Vec<Term<E>> },
     /// `.suspended(g(…))`
-    Suspended { goal: GoalId, args: Vec<Term> },
+    Suspended { goal: GoalId, args: Vec<Term<E>> },
     /// `.random(X)`: evenly in [0, 1); `.random(L, X)`: an element; no answer from an empty list
-    Random { from: Option<Expr>, out: Term },
+    Random { from: Option<E>, out: Term<E> },
     /// `.shuffle(L, M)`
-    Shuffle { list: Expr, out: Term },
+    Shuffle { list: E, out: Term<E> },
     /// `.time(T)`: the virtual time, in seconds
-    Time { out: Term },
+    Time { out: Term<E> },
     /// `.my_name(A)`
-    MyName { out: Term },
+    MyName { out: Term<E> },
     /// `.all_names(L)`: of the agents of this run, in their order
-    AllNames { out: Term },
+    AllNames { out: Term<E> },
+}
+
+impl<E> Internal<E> {
+    /// The formula that it asks.
+    #[must_use]
+    pub fn formula(&self) -> Option<&Context<E>> {
+        match self {
+            Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => Some(formula),
+            Internal::Member { .. }
+            | Internal::Apply { .. }
+            | Internal::Holds { .. }
+            | Internal::Intend { .. }
+            | Internal::Desire { .. }
+            | Internal::Suspended { .. }
+            | Internal::Random { .. }
+            | Internal::Shuffle { .. }
+            | Internal::Time { .. }
+            | Internal::MyName { .. }
+            | Internal::AllNames { .. } => None,
+        }
+    }
+
+    /// What it matches.
+    #[must_use]
+    pub fn terms(&self) -> Vec<&Term<E>> {
+        match self {
+            Internal::FindAll { out, .. }
+            | Internal::Count { out, .. }
+            | Internal::Member { element: out, .. }
+            | Internal::Apply { out, .. }
+            | Internal::Random { out, .. }
+            | Internal::Shuffle { out, .. }
+            | Internal::Time { out }
+            | Internal::MyName { out }
+            | Internal::AllNames { out } => vec![out],
+            Internal::Holds { .. } => Vec::new(),
+            Internal::Intend { args, .. }
+            | Internal::Desire { args, .. }
+            | Internal::Suspended { args, .. } => args.iter().collect(),
+        }
+    }
 }
 
 /// One formula of a plan's body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Step {
-    pub kind: StepKind,
+pub struct Step<E = Expr> {
+    pub kind: StepKind<E>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StepKind {
+pub enum StepKind<E = Expr> {
     /// Do a stimulus, or make an event, of the actor that the agent plays.
-    Do { event: EventId, args: Vec<Expr> },
+    Do { event: EventId, args: Vec<E> },
     /// `!g(…) within D`: achieve it before going on, before the time in seconds is over
-    Achieve { goal: GoalId, args: Vec<Expr>, within: Option<Expr> },
+    Achieve { goal: GoalId, args: Vec<E>, within: Option<E> },
     /// `!!g(…)`: achieve it in an intention of its own
-    Spawn { goal: GoalId, args: Vec<Expr> },
+    Spawn { goal: GoalId, args: Vec<E> },
     /// `?b(…)`: query the belief base, then the plans for the test goal; fails without an answer
-    Query(Literal),
+    Query(Literal<E>),
     /// `?(F)`, `X = e`, an internal action that asks: fails without an answer
-    Test(Context),
+    Test(Context<E>),
     /// `+b(…)`
-    Add(Assertion),
+    Add(Assertion<E>),
     /// `-b(…)`: takes the first belief that matches from one source, `self` unless it is said; none: nothing happens
-    Remove(Literal),
+    Remove(Literal<E>),
     /// `-+b(…)`: removes every belief of that name, then adds
-    Replace(Assertion),
+    Replace(Assertion<E>),
     /// `.abolish(b(…))`: removes every belief that matches, whatever its source
-    Abolish(Literal),
+    Abolish(Literal<E>),
     /// `await e1 | e2 within D`: waits for an event; fails when the time in seconds is over
-    Await { events: Vec<EventPattern>, within: Option<Expr> },
+    Await { events: Vec<EventPattern>, within: Option<E> },
     /// `wait D`: an expression in seconds
-    Wait { seconds: Expr },
+    Wait { seconds: E },
     /// `if F { … } else { … }`
-    If { condition: Context, then: Vec<Step>, otherwise: Vec<Step> },
+    If { condition: Context<E>, then: Vec<Step<E>>, otherwise: Vec<Step<E>> },
     /// `while F { … }`: what F and the body bind is open again each time
-    While { condition: Context, body: Vec<Step> },
+    While { condition: Context<E>, body: Vec<Step<E>> },
     /// `for F { … }`: once for each answer that F has at the start
-    For { condition: Context, body: Vec<Step> },
+    For { condition: Context<E>, body: Vec<Step<E>> },
     /// `fork { … } and { … }`: all at once, until all are done; with `or` until one is
-    Fork { branches: Vec<Vec<Step>>, all: bool },
+    Fork { branches: Vec<Vec<Step<E>>>, all: bool },
     /// `.send(A, tell, b(…))`, `.broadcast(tell, b(…))`
-    Send { to: Option<Expr>, performative: Performative, content: ContentId, args: Vec<Term> },
+    Send { to: Option<E>, performative: Performative, content: ContentId, args: Vec<Term<E>> },
     /// `.ask(A, b(…), D)`: waits for the answer, which binds variables; fails if there is none, or after D
-    Ask { to: Expr, content: ContentId, args: Vec<Term>, within: Option<Expr> },
+    Ask { to: E, content: ContentId, args: Vec<Term<E>>, within: Option<E> },
     /// `.ask_all(A, X, b(X), L, D)`: waits for the list of the template's values for all answers
-    AskAll { to: Expr, template: Expr, content: ContentId, args: Vec<Term>, out: Term, within: Option<Expr> },
+    AskAll { to: E, template: E, content: ContentId, args: Vec<Term<E>>, out: Term<E>, within: Option<E> },
     /// `.print(…)`: into the log
-    Print { args: Vec<Expr> },
+    Print { args: Vec<E> },
     /// Changes what is intended; without a goal of all, or of this intention.
-    Control { what: Control, goal: Option<(GoalId, Vec<Term>)> },
+    Control { what: Control, goal: Option<(GoalId, Vec<Term<E>>)> },
     /// `.fail`
     Fail,
+}
+
+impl<E> Step<E> {
+    /// The steps within it.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<&[Step<E>]> {
+        match &self.kind {
+            StepKind::If { then, otherwise, .. } => vec![then, otherwise],
+            StepKind::While { body, .. } | StepKind::For { body, .. } => vec![body],
+            StepKind::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
+            StepKind::Do { .. }
+            | StepKind::Achieve { .. }
+            | StepKind::Spawn { .. }
+            | StepKind::Query(_)
+            | StepKind::Test(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
+            | StepKind::Fail => Vec::new(),
+        }
+    }
+
+    /// The formula that it asks.
+    #[must_use]
+    pub fn condition(&self) -> Option<&Context<E>> {
+        match &self.kind {
+            StepKind::Test(condition)
+            | StepKind::If { condition, .. }
+            | StepKind::While { condition, .. }
+            | StepKind::For { condition, .. } => Some(condition),
+            StepKind::Do { .. }
+            | StepKind::Achieve { .. }
+            | StepKind::Spawn { .. }
+            | StepKind::Query(_)
+            | StepKind::Add(_)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Abolish(_)
+            | StepKind::Await { .. }
+            | StepKind::Wait { .. }
+            | StepKind::Fork { .. }
+            | StepKind::Send { .. }
+            | StepKind::Ask { .. }
+            | StepKind::AskAll { .. }
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
+            | StepKind::Fail => None,
+        }
+    }
 }
 
 /// Speech acts, after KQML as Jason has it.
@@ -335,33 +507,9 @@ pub fn source_percept() -> Symbol {
 }
 
 /// Calls `f` with each step, those within blocks too, in the order of the text.
-pub fn each_step<'p>(steps: &'p [Step], f: &mut dyn FnMut(&'p Step)) {
+pub fn each_step<'p, E>(steps: &'p [Step<E>], f: &mut dyn FnMut(&'p Step<E>)) {
     for step in steps {
         f(step);
-        match &step.kind {
-            StepKind::If { then, otherwise, .. } => {
-                each_step(then, f);
-                each_step(otherwise, f);
-            }
-            StepKind::While { body, .. } | StepKind::For { body, .. } => each_step(body, f),
-            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
-            StepKind::Do { .. }
-            | StepKind::Achieve { .. }
-            | StepKind::Spawn { .. }
-            | StepKind::Query(_)
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => {}
-        }
+        step.blocks().into_iter().for_each(|block| each_step(block, f));
     }
 }

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{EventPattern, Span};
+use crate::event::EventPattern;
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
@@ -15,6 +16,10 @@ pub struct Coverage {
 /// Index into [`Coverage::points`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct PointId(pub u16);
+
+/// Index into [`Coverage::crosses`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct CrossId(pub u16);
 
 /// A number of a test, sorted into bins: how often any of the events happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

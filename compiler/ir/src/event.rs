@@ -1,8 +1,13 @@
 //! The vocabulary: actors and the events between them.
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{Expr, Span, Type, Value, world::WorldAction};
+use crate::{
+    expr::Expr,
+    value::{Type, Value},
+    world::WorldAction,
+};
 
 /// Index into [`Program::actors`](crate::Program::actors).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -37,7 +42,7 @@ pub struct Param {
 
 /// Something that happens at an instant, made by one actor; or a stimulus, one abstract action of a test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Event {
+pub struct Event<E = Expr> {
     pub name: String,
     pub params: Vec<Param>,
     /// The actor that makes it.
@@ -46,11 +51,11 @@ pub struct Event {
     /// environment actors only, whatever this says.
     pub to: Vec<ActorId>,
     /// `Some` for a stimulus: what happens when the actor does it.
-    pub stimulus: Option<Stimulus>,
+    pub stimulus: Option<Stimulus<E>>,
     pub origin: Span,
 }
 
-impl Event {
+impl<E> Event<E> {
     #[must_use]
     pub fn is_stimulus(&self) -> bool {
         self.stimulus.is_some()
@@ -61,9 +66,9 @@ impl Event {
 ///
 /// In expressions, `Expr::Var(i)` is the i-th parameter for `i < params.len()`, then the samples in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stimulus {
-    pub samples: Vec<Sample>,
-    pub steps: Vec<StimulusStep>,
+pub struct Stimulus<E = Expr> {
+    pub samples: Vec<Sample<E>>,
+    pub steps: Vec<StimulusStep<E>>,
 }
 
 impl Stimulus {
@@ -96,32 +101,32 @@ fn take<'a, E>(
 
 /// A value of the second tier, drawn uniformly from `lo..hi` by the test's seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct Sample<E = Expr> {
     pub name: String,
     pub ty: Type,
-    pub lo: Expr,
-    pub hi: Expr,
+    pub lo: E,
+    pub hi: E,
 }
 
 /// One step of a stimulus.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StimulusStep {
+pub enum StimulusStep<E = Expr> {
     /// Make an event of the same actor.
     Emit {
         event: EventId,
-        args: Vec<Expr>,
+        args: Vec<E>,
     },
     /// The actor is busy for a time (speech, a pause); an expression in seconds.
     Hold {
-        seconds: Expr,
+        seconds: E,
     },
     /// Change the world; does not wait for a motion to end.
-    Act(WorldAction),
+    Act(WorldAction<E>),
     If {
-        condition: Expr,
-        then: Vec<StimulusStep>,
-        otherwise: Vec<StimulusStep>,
+        condition: E,
+        then: Vec<StimulusStep<E>>,
+        otherwise: Vec<StimulusStep<E>>,
     },
 }
 

@@ -10,9 +10,10 @@
 use std::cell::{Cell, RefCell};
 
 use crate::{
-    Expr, Program, Value,
-    expr::{EvalError, Place, Scope},
+    Program,
+    expr::{EvalError, Expr, Place, Scope},
     ta::{AutomatonId, Function, FunctionId, Statement, Var},
+    value::Value,
 };
 
 /// The statements that one call from outside may execute.

@@ -4,7 +4,13 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{List, Value, list, ta::FunctionId};
+pub use hrdsl_source::{BinaryOp, UnaryOp};
+
+use crate::{
+    list::{self, List},
+    ta::FunctionId,
+    value::Value,
+};
 
 /// An expression over constants and the variables of its context.
 ///
@@ -30,24 +36,25 @@ pub enum Expr {
 
 /// A variable, perhaps one that indices choose among several: `slot + Σ at · stride`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Place {
+pub struct Place<E = Expr, V = u16> {
     /// The variable, or the first of the array.
-    pub slot: u16,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub indices: Vec<Index>,
+    pub slot: V,
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+    pub indices: Vec<Index<E>>,
 }
 
-impl Place {
+impl<E, V> Place<E, V> {
+    /// A variable outright.
     #[must_use]
-    pub fn slot(slot: u16) -> Self {
+    pub fn slot(slot: V) -> Self {
         Self { slot, indices: Vec::new() }
     }
 }
 
 /// One index of a place: less than `count` and not negative, or there is no such element, which is an error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Index {
-    pub at: Expr,
+pub struct Index<E = Expr> {
+    pub at: E,
     pub count: u16,
     pub stride: u16,
 }
@@ -74,31 +81,6 @@ impl Scope for Vars<'_> {
     fn var(&self, slot: u16) -> Option<Value> {
         (self.0)(slot)
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum UnaryOp {
-    Not,
-    Neg,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BinaryOp {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    Rem,
-    Eq,
-    Ne,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-    And,
-    Or,
 }
 
 /// Functions on numbers.

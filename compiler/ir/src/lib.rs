@@ -8,10 +8,12 @@
 
 pub mod bdi;
 pub mod coverage;
+pub mod device;
 pub mod event;
 pub mod exec;
 pub mod expr;
 pub mod list;
+pub mod lowering;
 pub mod monitor;
 pub mod suite;
 pub mod system;

@@ -9,10 +9,11 @@ use std::{
     sync::{LazyLock, Mutex, PoisonError},
 };
 
+use hrdsl_source::Symbol;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Symbol, Value, expr::EvalError};
+use crate::{expr::EvalError, value::Value};
 
 /// A string.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -1,8 +1,18 @@
 //! Requirements, each a deterministic timed automaton with one clock over the trace.
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{EventPattern, Expr, Nanos, Span, Unit, world::SignalId};
+use crate::{
+    event::EventPattern,
+    expr::Expr,
+    value::{Nanos, Unit},
+    world::SignalId,
+};
+
+/// Index into [`Program::monitors`](crate::Program::monitors), which are the requirements in source order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct RequirementId(pub u16);
 
 /// A requirement, lowered to a monitor automaton.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

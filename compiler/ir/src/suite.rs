@@ -1,17 +1,22 @@
 //! Suites: how tests are made.
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    EventId, EventPattern, Nanos, Span,
     bdi::{AgentId, BeliefId, Context},
-    ta::AutomatonId,
+    coverage::CrossId,
+    event::{EventId, EventPattern},
+    expr::Expr,
+    monitor::RequirementId,
+    ta::{AutomatonId, NetworkId, QueryId},
+    value::Nanos,
 };
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Suite {
+pub struct Suite<E = Expr> {
     pub name: String,
-    pub method: Method,
+    pub method: Method<E>,
     /// How many concrete tests; abstract tests that are fewer are made concrete several times, with other seeds.
     pub tests: u32,
     /// A model run (by agents) ends at this virtual time.
@@ -23,11 +28,11 @@ pub struct Suite {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum Method<E = Expr> {
     /// Run a multi-agent system once for each chosen set of beliefs.
     Agents {
         players: Vec<PlayerRef>,
-        choose: Vec<Choice>,
+        choose: Vec<Choice<E>>,
         explore: Explore,
         /// End when so many belief sets in a row reached nothing new.
         stop_after: Option<u32>,
@@ -38,7 +43,7 @@ pub enum Method {
     },
     /// Model-check the network for each goal and take the witnesses' stimuli.
     Search {
-        network: u16,
+        network: NetworkId,
         goals: Vec<SearchGoal>,
         #[serde(default)]
         witness: WitnessKind,
@@ -67,19 +72,19 @@ pub enum PlayerRef {
 
 /// Which ground beliefs an agent starts with: one dimension (or several) of the belief space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Choice {
+pub struct Choice<E = Expr> {
     pub agent: AgentId,
     pub belief: BeliefId,
     pub how: ChoiceKind,
     /// `where F`: only sets of beliefs with which the agent has an answer of F are in the space.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub condition: Option<Condition>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub condition: Option<Condition<E>>,
 }
 
 /// What the beliefs that an agent starts with must answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Condition {
-    pub context: Context,
+pub struct Condition<E = Expr> {
+    pub context: Context<E>,
     /// The names of its variables; [`Term::Var`](crate::bdi::Term::Var) counts in them.
     pub vars: Vec<String>,
     pub origin: Span,
@@ -112,7 +117,7 @@ pub enum Explore {
 #[serde(rename_all = "snake_case")]
 pub enum ModelGoal {
     /// `reach each bin of C`
-    Bins { cross: u16 },
+    Bins(CrossId),
     /// `reach each plan`: selected
     Plans,
     /// `reach each context`: true once and false once
@@ -170,11 +175,11 @@ impl ItemKind {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchGoal {
     /// `reach each bin of C`
-    Bins { cross: u16 },
+    Bins(CrossId),
     /// `reach each location`
     Locations,
     /// `reach each edge`
@@ -183,12 +188,12 @@ pub enum SearchGoal {
     Pairs,
     /// `reach each use`: an edge that assigns a variable, and one that reads it with no assignment between
     Uses,
-    /// `reach violation of R`; an index into [`Program::monitors`](crate::Program::monitors)
-    Violation { monitor: u16 },
+    /// `reach violation of R`
+    Violation(RequirementId),
     /// `reach trigger of R`
-    Trigger { monitor: u16 },
-    /// `reach query q`: an index into [`Program::queries`](crate::Program::queries), of one that asks `E<>`
-    Query { query: u16 },
+    Trigger(RequirementId),
+    /// `reach query q`, of one that asks `E<>`
+    Query(QueryId),
 }
 
 /// Which witness of a goal is taken.

@@ -1,8 +1,9 @@
 //! The system under test.
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, Nanos, Span};
+use crate::{event::ActorId, value::Nanos};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct System {

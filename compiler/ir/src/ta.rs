@@ -1,8 +1,15 @@
 //! Timed automata, after Alur and Dill, with UPPAAL's locations, channels, variables and functions.
 
+use hrdsl_source::{Enumeration, Span};
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, ArgPattern, Enumeration, EventId, Expr, Nanos, Span, Value, expr::Place};
+pub use hrdsl_source::LocationKind;
+
+use crate::{
+    event::{ActorId, ArgPattern, EventId},
+    expr::{Expr, Place},
+    value::{Nanos, Type, Value},
+};
 
 /// Index into [`Program::automata`](crate::Program::automata).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -23,6 +30,14 @@ pub struct ChannelId(pub u16);
 /// Index into [`Program::functions`](crate::Program::functions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct FunctionId(pub u16);
+
+/// Index into [`Program::networks`](crate::Program::networks).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct NetworkId(pub u16);
+
+/// Index into [`Program::queries`](crate::Program::queries).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct QueryId(pub u16);
 
 /// A network: the parallel product of automata.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,6 +64,28 @@ pub struct Var {
 }
 
 impl Var {
+    /// A variable of this type that starts with its first value; `None`: the type is not finite.
+    #[must_use]
+    pub fn of_type(name: &str, ty: Type) -> Option<Self> {
+        let (lo, hi, is_bool, enumeration) = match ty {
+            Type::Bool => (0, 1, true, None),
+            Type::Int { lo, hi } => (lo, hi, false, None),
+            Type::Enum(e) => (0, i64::try_from(e.values().len()).ok()? - 1, false, Some(e)),
+            Type::Float(_) | Type::Text | Type::List(_) => return None,
+        };
+        Some(Self { name: name.to_owned(), lo, hi, init: lo, is_bool, enumeration })
+    }
+
+    /// Its type.
+    #[must_use]
+    pub fn ty(&self) -> Type {
+        match self.enumeration {
+            Some(e) => Type::Enum(e),
+            None if self.is_bool => Type::Bool,
+            None => Type::Int { lo: self.lo, hi: self.hi },
+        }
+    }
+
     /// The value that a number kept for the variable stands for. `None`: the enumeration has no such index.
     #[must_use]
     pub fn value(&self, n: i64) -> Option<Value> {
@@ -84,72 +121,81 @@ impl Var {
 /// In its expressions, `Expr::Var(i)` is, in order: the program's shared variables, the automaton's own variables,
 /// then on an edge its binders: first the selects, then the parameters of a received event that the edge binds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Automaton {
+pub struct Automaton<E = Expr, V = u16> {
     pub name: String,
     /// The actor it plays: it can only send this actor's events. `None`: it sends and takes no events, only channels.
     pub actor: Option<ActorId>,
     pub clocks: Vec<String>,
     pub vars: Vec<Var>,
-    pub locations: Vec<Location>,
+    pub locations: Vec<Location<E>>,
     pub initial: LocationId,
-    pub edges: Vec<Edge>,
+    pub edges: Vec<Edge<E, V>>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Location {
+pub struct Location<E = Expr> {
     pub name: String,
     pub kind: LocationKind,
     /// A conjunction of bounds on clocks.
-    pub invariant: Vec<ClockConstraint>,
+    pub invariant: Vec<ClockConstraint<E>>,
     /// The part of the invariant over variables.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub holds: Option<Expr>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds: Option<E>,
     pub origin: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LocationKind {
-    Normal,
-    /// Time does not pass.
-    Urgent,
-    /// Time does not pass, and the next transition must involve a committed location.
-    Committed,
 }
 
 /// `clock - minus op bound`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ClockConstraint {
+pub struct ClockConstraint<E = Expr> {
     pub clock: ClockId,
     pub minus: Option<ClockId>,
     pub op: ClockOp,
-    pub bound: Time,
+    pub bound: Time<E>,
+}
+
+impl<E> ClockConstraint<E> {
+    /// Its clocks.
+    pub fn clocks(&self) -> impl Iterator<Item = ClockId> {
+        std::iter::once(self.clock).chain(self.minus)
+    }
 }
 
 /// A time that variables may have a part in: `nanos + Σ factor · value`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Time {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Time<E = Expr> {
     pub nanos: Nanos,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub terms: Vec<TimeTerm>,
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<TimeTerm<E>>,
 }
 
-impl Time {
-    pub const ZERO: Time = Time { nanos: 0, terms: Vec::new() };
+impl<E> Default for Time<E> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl<E> Time<E> {
+    pub const ZERO: Self = Time { nanos: 0, terms: Vec::new() };
 
     #[must_use]
     pub fn constant(nanos: Nanos) -> Self {
         Self { nanos, terms: Vec::new() }
     }
+
+    /// The nanoseconds, if no variable has a part in it.
+    #[must_use]
+    pub fn fixed(&self) -> Option<Nanos> {
+        self.terms.is_empty().then_some(self.nanos)
+    }
 }
 
 /// `factor · value`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TimeTerm {
+pub struct TimeTerm<E = Expr> {
     pub factor: Nanos,
     /// An integer.
-    pub value: Expr,
+    pub value: E,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -163,17 +209,17 @@ pub enum ClockOp {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Edge {
+pub struct Edge<E = Expr, V = u16> {
     pub from: LocationId,
     pub to: LocationId,
     /// Nondeterministic choices, each an integer of `lo..=hi`, a bool or a symbol, as a variable is.
     pub selects: Vec<Var>,
-    pub clock_guard: Vec<ClockConstraint>,
+    pub clock_guard: Vec<ClockConstraint<E>>,
     /// A boolean expression over variables, selects and received arguments.
-    pub guard: Option<Expr>,
-    pub sync: Sync,
+    pub guard: Option<E>,
+    pub sync: Sync<E>,
     /// In order; each sees the effect of those before it. In a synchronisation the sender's updates come first.
-    pub updates: Vec<Update>,
+    pub updates: Vec<Update<E, V>>,
     pub origin: Span,
 }
 
@@ -181,12 +227,12 @@ pub struct Edge {
 /// receiving edge takes part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sync {
+pub enum Sync<E = Expr> {
     Internal,
     /// The event or stimulus sent, with its arguments.
     Send {
         event: EventId,
-        args: Vec<Expr>,
+        args: Vec<E>,
     },
     Receive {
         event: EventId,
@@ -195,7 +241,7 @@ pub enum Sync {
     /// `c!` of a hand-shake or broadcast channel.
     Offer {
         channel: ChannelId,
-        args: Vec<Expr>,
+        args: Vec<E>,
     },
     /// `c?` of a hand-shake or broadcast channel.
     Accept {
@@ -206,6 +252,19 @@ pub enum Sync {
     Join {
         channel: ChannelId,
     },
+}
+
+impl<E> Sync<E> {
+    /// The channel that it is a part in.
+    #[must_use]
+    pub fn channel(&self) -> Option<ChannelId> {
+        match self {
+            Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => None,
+            Sync::Offer { channel, .. } | Sync::Accept { channel, .. } | Sync::Join { channel } => {
+                Some(*channel)
+            }
+        }
+    }
 }
 
 /// What a receiving edge does with one argument.
@@ -220,13 +279,13 @@ pub enum ReceiveArg {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Update {
+pub enum Update<E = Expr, V = u16> {
     /// Slots count as `Expr::Var` does: shared variables, then own ones. Leaving the range is a model error.
-    Assign { place: Place, value: Expr },
+    Assign { place: Place<E, V>, value: E },
     /// The clock becomes `from + to`; without `from`, just `to`. A negative value is a model error.
-    Reset { clock: ClockId, from: Option<ClockId>, to: Time },
+    Reset { clock: ClockId, from: Option<ClockId>, to: Time<E> },
     /// Calls an update function.
-    Call { function: FunctionId, args: Vec<Expr> },
+    Call { function: FunctionId, args: Vec<E> },
 }
 
 impl Update {
@@ -273,7 +332,7 @@ pub struct Party {
 /// In its body `Expr::Var(i)` is, in order: the program's shared variables, the owner's own variables if it has an owner,
 /// the parameters, the locals. Locals start with their `init`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Function {
+pub struct Function<E = Expr, V = u16> {
     pub name: String,
     /// The automaton whose variables it knows.
     pub owner: Option<AutomatonId>,
@@ -283,97 +342,137 @@ pub struct Function {
     pub result: Option<Var>,
     /// It assigns nothing but its parameters and locals, nor does what it calls.
     pub pure: bool,
-    pub body: Vec<Statement>,
+    pub body: Vec<Statement<E, V>>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Statement {
+pub enum Statement<E = Expr, V = u16> {
     Assign {
-        place: Place,
-        value: Expr,
+        place: Place<E, V>,
+        value: E,
     },
     Call {
         function: FunctionId,
-        args: Vec<Expr>,
+        args: Vec<E>,
     },
     If {
-        condition: Expr,
-        then: Vec<Statement>,
-        otherwise: Vec<Statement>,
+        condition: E,
+        then: Vec<Statement<E, V>>,
+        otherwise: Vec<Statement<E, V>>,
     },
     While {
-        condition: Expr,
-        body: Vec<Statement>,
+        condition: E,
+        body: Vec<Statement<E, V>>,
     },
     /// For each number from `lo` to `hi`, both evaluated once; `slot` is a local.
     For {
-        slot: u16,
-        lo: Expr,
-        hi: Expr,
-        body: Vec<Statement>,
+        slot: V,
+        lo: E,
+        hi: E,
+        body: Vec<Statement<E, V>>,
     },
-    Return(Option<Expr>),
+    Return(Option<E>),
+}
+
+impl<E, V> Statement<E, V> {
+    /// Calls `f` with this statement and each one in it, the outer one first.
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Statement<E, V>)) {
+        f(self);
+        match self {
+            Statement::Assign { .. } | Statement::Call { .. } | Statement::Return(_) => {}
+            Statement::If { then, otherwise, .. } => {
+                then.iter().chain(otherwise).for_each(|s| s.each(f));
+            }
+            Statement::While { body, .. } | Statement::For { body, .. } => {
+                body.iter().for_each(|s| s.each(f));
+            }
+        }
+    }
+
+    /// The expressions of the statement itself, not of those in it; the indices of what it assigns are not among them.
+    #[must_use]
+    pub fn expressions(&self) -> Vec<&E> {
+        match self {
+            Statement::Assign { value: e, .. } | Statement::Return(Some(e)) => vec![e],
+            Statement::Call { args, .. } => args.iter().collect(),
+            Statement::If { condition, .. } | Statement::While { condition, .. } => vec![condition],
+            Statement::For { lo, hi, .. } => vec![lo, hi],
+            Statement::Return(None) => Vec::new(),
+        }
+    }
 }
 
 // ── Queries ──
 
 /// A question about a network, after UPPAAL's query language.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Query {
+pub struct Query<E = Expr> {
     pub name: String,
     pub title: String,
     /// The formal part as written in the source.
     pub text: String,
-    /// Index into [`Program::networks`](crate::Program::networks).
-    pub network: u16,
-    pub ask: Ask,
+    pub network: NetworkId,
+    pub ask: Ask<E>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ask {
+pub enum Ask<E = Expr> {
     /// `E<> f`: some run reaches it.
-    Possibly(Formula),
+    Possibly(Formula<E>),
     /// `A[] f`: no run leaves it.
-    Invariantly(Formula),
+    Invariantly(Formula<E>),
     /// `E[] f`: some maximal run stays in it.
-    PotentiallyAlways(Formula),
+    PotentiallyAlways(Formula<E>),
     /// `A<> f`: every maximal run reaches it.
-    Eventually(Formula),
+    Eventually(Formula<E>),
     /// `f --> g`: `A[] (f imply A<> g)`
-    LeadsTo(Formula, Formula),
+    LeadsTo(Formula<E>, Formula<E>),
     /// The least upper bound of each measure where the formula holds.
-    Sup { of: Vec<Measure>, when: Formula },
+    Sup { of: Vec<Measure<E>>, when: Formula<E> },
     /// The greatest lower bound.
-    Inf { of: Vec<Measure>, when: Formula },
+    Inf { of: Vec<Measure<E>>, when: Formula<E> },
 }
 
 /// A formula over a network's states. Automata are given by their index in the network; clocks are numbered with the
 /// shared ones first, then each automaton's own, in the network's order; so are variables in expressions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Formula {
+pub enum Formula<E = Expr> {
     At {
         automaton: u16,
         location: LocationId,
     },
     /// A boolean expression.
-    Data(Expr),
-    Clock(ClockConstraint),
+    Data(E),
+    Clock(ClockConstraint<E>),
     /// No transition is possible, now or after any delay.
     Deadlock,
-    Not(Box<Formula>),
-    And(Vec<Formula>),
-    Or(Vec<Formula>),
+    Not(Box<Formula<E>>),
+    And(Vec<Formula<E>>),
+    Or(Vec<Formula<E>>),
+}
+
+impl<E> Formula<E> {
+    /// Whether it speaks of `deadlock`.
+    #[must_use]
+    pub fn asks_deadlock(&self) -> bool {
+        match self {
+            Formula::Deadlock => true,
+            Formula::Not(f) => f.asks_deadlock(),
+            Formula::And(fs) | Formula::Or(fs) => fs.iter().any(Formula::asks_deadlock),
+            Formula::At { .. } | Formula::Data(_) | Formula::Clock(_) => false,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Measure {
+pub enum Measure<E = Expr> {
     Clock(ClockId),
     /// An integer.
-    Data(Expr),
+    Data(E),
 }

@@ -1,8 +1,13 @@
 //! Tests: the stimulus of one run, abstract or made concrete.
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{EventId, EventPattern, Nanos, Span, Value, coverage::BinName};
+use crate::{
+    coverage::BinName,
+    event::{EventId, EventPattern},
+    value::{Nanos, Value},
+};
 
 /// A test is a value: everything that a run of it depends on, but the scenario, is in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

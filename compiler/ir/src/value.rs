@@ -5,9 +5,10 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use hrdsl_source::{Enumeration, Symbol};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Enumeration, List, Symbol, Text};
+use crate::list::{List, Text};
 
 /// Simulated or virtual time since the start of a run, or a duration, in nanoseconds.
 pub type Nanos = i64;
@@ -137,6 +138,34 @@ impl Type {
             Type::Int { lo, hi } => Some((lo..=hi).map(Value::Int).collect()),
             Type::Enum(e) => Some(e.values().iter().copied().map(Value::Symbol).collect()),
             Type::Float(_) | Type::Text | Type::List(_) => None,
+        }
+    }
+
+    /// The smallest and largest value of an integer type.
+    #[must_use]
+    pub fn range(self) -> Option<(i64, i64)> {
+        match self {
+            Type::Int { lo, hi } => Some((lo, hi)),
+            Type::Bool | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_) => None,
+        }
+    }
+
+    /// Whether its values can be enumerated.
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        match self {
+            Type::Int { lo, hi } => (lo, hi) != (i64::MIN, i64::MAX),
+            Type::Bool | Type::Enum(_) => true,
+            Type::Float(_) | Type::Text | Type::List(_) => false,
+        }
+    }
+
+    /// Whether it is known to agents only: a string or a list.
+    #[must_use]
+    pub fn is_of_agents(self) -> bool {
+        match self {
+            Type::Text | Type::List(_) => true,
+            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) => false,
         }
     }
 

@@ -3,9 +3,15 @@
 //! Lengths in metres, angles in radians; x forward, y left, z up; orientations as roll, pitch, yaw about the fixed axes
 //! (the convention of URDF).
 
+use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
-use crate::{ActorId, EventId, Expr, Nanos, Span, Type};
+use crate::{
+    device::{Device, DeviceCommand, DeviceKind},
+    event::{ActorId, EventId},
+    expr::Expr,
+    value::{Nanos, Type},
+};
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
@@ -24,6 +30,12 @@ ids! {
     ArmId,
     /// Index into [`World::grippers`].
     GripperId,
+    /// Index into [`World::devices`].
+    DeviceId,
+    /// Index into [`World::device_kinds`].
+    DeviceKindId,
+    /// Index into [`DeviceKind::commands`].
+    DeviceCommandId,
     /// Index into [`World::currents`].
     CurrentId,
     /// Index into [`Program::signals`](crate::Program::signals).
@@ -43,9 +55,38 @@ pub struct World {
     pub joints: Vec<Joint>,
     pub arms: Vec<Arm>,
     pub grippers: Vec<Gripper>,
+    /// What the system can command: the arms, then the grippers.
+    pub devices: Vec<Device>,
+    /// What it can tell them.
+    pub device_kinds: Vec<DeviceKind>,
     pub currents: Vec<Current>,
     pub rules: Vec<Rule>,
     pub origin: Span,
+}
+
+impl World {
+    #[must_use]
+    pub fn device(&self, id: DeviceId) -> &Device {
+        &self.devices[usize::from(id.0)]
+    }
+
+    /// The device of this name.
+    #[must_use]
+    pub fn device_named(&self, name: &str) -> Option<DeviceId> {
+        let at = self.devices.iter().position(|d| d.name == name)?;
+        u16::try_from(at).ok().map(DeviceId)
+    }
+
+    #[must_use]
+    pub fn kind_of(&self, device: &Device) -> &DeviceKind {
+        &self.device_kinds[usize::from(device.kind.0)]
+    }
+
+    /// A command that a device knows.
+    #[must_use]
+    pub fn command(&self, device: DeviceId, command: DeviceCommandId) -> &DeviceCommand {
+        &self.kind_of(self.device(device)).commands[usize::from(command.0)]
+    }
 }
 
 /// A rigid body with one shape.
@@ -170,11 +211,12 @@ pub struct Rule {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RuleOn {
-    Event(crate::EventPattern),
-    /// A gripper was told to close.
-    Closes(GripperId),
-    /// A gripper was told to open.
-    Opens(GripperId),
+    Event(crate::event::EventPattern),
+    /// The system told a device to do this.
+    Commanded {
+        device: DeviceId,
+        command: DeviceCommandId,
+    },
 }
 
 /// A named quantity of the world, read by the robot code, by rules, and by requirements.
@@ -228,26 +270,26 @@ pub enum Axis {
 
 /// A point: a place in the world, or relative to a body's centre (in world axes) at the time of the action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct Point<E = Expr> {
     pub of: Option<BodyRef>,
     /// Metres.
-    pub offset: [Expr; 3],
+    pub offset: [E; 3],
 }
 
 /// A change of the world by an environment actor; variables are those of the stimulus.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum WorldAction {
+pub enum WorldAction<E = Expr> {
     /// `move(b, to, over)`: a kinematic body goes to the point on a straight line, in the given seconds; the body keeps
     /// its rotation.
-    Move { body: BodyId, to: Point, over: Expr },
+    Move { body: BodyId, to: Point<E>, over: E },
     /// `look(b, at, offset, distance, angle)`: a kinematic body goes, in half a second, to look at a target. The line of
     /// sight runs level through the target's centre, along the body's own x axis at the start of the run. The body goes
     /// to that end of it where it is now, then `offset` to the left as seen from the target, at its present height but
     /// no lower than the target and no more than 10 cm above it, so that `range` is exactly `distance`. It turns
     /// its x axis to the target and then, about the vertical and to its left, until `angle` is what was asked for.
     /// All of this for where the target is at the time of the action. Metres and radians.
-    Look { body: BodyId, at: BodyRef, offset: Expr, distance: Expr, angle: Expr },
+    Look { body: BodyId, at: BodyRef, offset: E, distance: E, angle: E },
     /// `grasp(g)`: the gripper closes, and holds the first thing it can from then on.
     Grasp { gripper: GripperId },
     /// `let_go(g)`

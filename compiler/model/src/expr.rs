@@ -1,10 +1,11 @@
 //! Typed expressions: names resolved, units converted, constants folded, with the spans of the source.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 use serde::Serialize;
 
-use crate::{ArmId, BodyRef, FunctionId, GripperId, Kind, SignalId, Type, Value};
+use crate::{FunctionId, Kind, SignalId, Term, Type, Value};
+
+pub use hrdsl_ir::expr::{BinaryOp, EvalError, Function as NumberFunction, UnaryOp};
 
 /// A typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,7 +25,7 @@ pub enum ExprKind {
     Unary(UnaryOp, Box<Expr>),
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     If(Box<Expr>, Box<Expr>, Box<Expr>),
-    Call(Function, Vec<Expr>),
+    Call(NumberFunction, Vec<Expr>),
     /// `[a, b | rest]`
     List(Vec<Expr>, Option<Box<Expr>>),
     /// `a[i]`: an element of an array of variables that is chosen at run time. Automata only.
@@ -35,36 +36,22 @@ pub enum ExprKind {
     Error,
 }
 
-/// A variable, perhaps one that indices choose among several: `leaf + Σ at · stride`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Place {
-    /// The variable, or the first of the array.
-    pub leaf: Leaf,
-    pub indices: Vec<Index>,
-}
+/// A variable, perhaps one that indices choose among several.
+pub type Place = hrdsl_ir::expr::Place<Expr, Leaf>;
+pub type Index = hrdsl_ir::expr::Index<Expr>;
 
-/// One index of a place: of `0..count`, or there is no such element.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Index {
-    pub at: Expr,
-    pub count: u16,
-    pub stride: u16,
-}
-
-impl Place {
-    /// All variables that it may stand for.
-    #[must_use]
-    pub fn leaves(&self) -> Vec<Leaf> {
-        let mut leaves = vec![self.leaf];
-        for index in &self.indices {
-            let steps = |l: &Leaf| {
-                let l = *l;
-                (0..index.count).map(move |n| l.plus(n.saturating_mul(index.stride)))
-            };
-            leaves = leaves.iter().flat_map(steps).collect();
-        }
-        leaves
+/// All variables that a place may stand for.
+#[must_use]
+pub fn leaves(place: &Place) -> Vec<Leaf> {
+    let mut leaves = vec![place.slot];
+    for index in &place.indices {
+        let steps = |l: &Leaf| {
+            let l = *l;
+            (0..index.count).map(move |n| l.plus(n.saturating_mul(index.stride)))
+        };
+        leaves = leaves.iter().flat_map(steps).collect();
     }
+    leaves
 }
 
 /// A name that has a value at run time.
@@ -91,33 +78,6 @@ impl Leaf {
             Leaf::Signal(_) => self,
         }
     }
-}
-
-/// A function on numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Function {
-    Abs,
-    Min,
-    Max,
-    /// The square root of the sum of the squares.
-    Norm,
-}
-
-/// A primitive measurement of the world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Term {
-    Distance(BodyRef, BodyRef),
-    Range(BodyRef, BodyRef),
-    Angle(BodyRef, BodyRef),
-    Visible(BodyRef, BodyRef),
-    /// Axis 0, 1, 2: x, y, z
-    Coordinate(BodyRef, u8),
-    Holds(GripperId, BodyRef),
-    HoldsAny(GripperId),
-    JointSpeed(ArmId),
-    Speed(BodyRef),
 }
 
 impl Expr {
@@ -151,7 +111,7 @@ impl Expr {
     pub fn each_leaf(&self, f: &mut dyn FnMut(Leaf)) {
         self.each(&mut |e| match &e.kind {
             ExprKind::Leaf(leaf) => f(*leaf),
-            ExprKind::Element(place) => place.leaves().into_iter().for_each(&mut *f),
+            ExprKind::Element(place) => leaves(place).into_iter().for_each(&mut *f),
             ExprKind::Const(_)
             | ExprKind::Term(_)
             | ExprKind::Unary(..)

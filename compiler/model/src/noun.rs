@@ -64,6 +64,16 @@ pub(crate) enum Noun {
     Joint,
     Arm,
     Gripper,
+    /// An arm or gripper.
+    Device,
+    /// Of which devices are.
+    DeviceKind,
+    /// What a device can be told.
+    Command,
+    /// What a command does.
+    Primitive,
+    /// What a device can say of itself.
+    DeviceMeasure,
     Current,
     Signal,
     Action,
@@ -102,6 +112,9 @@ impl Noun {
             Noun::Delays => "kinds of delays".to_owned(),
             Noun::Cross => "cross products".to_owned(),
             Noun::Motion => "kinds of body".to_owned(),
+            Noun::DeviceKind => "kinds of device".to_owned(),
+            Noun::Device => "arms and grippers".to_owned(),
+            Noun::DeviceMeasure => "measurements of this kind of device".to_owned(),
             Noun::PartInstance => "parts of the world".to_owned(),
             Noun::Coordinate
             | Noun::Actor
@@ -138,6 +151,8 @@ impl Noun {
             | Noun::Joint
             | Noun::Arm
             | Noun::Gripper
+            | Noun::Command
+            | Noun::Primitive
             | Noun::Current
             | Noun::Signal
             | Noun::Annotation
@@ -207,6 +222,11 @@ impl fmt::Display for Noun {
             Noun::Joint => "joint",
             Noun::Arm => "arm",
             Noun::Gripper => "gripper",
+            Noun::Device => "arm or gripper",
+            Noun::DeviceKind => "kind of device",
+            Noun::Command => "command",
+            Noun::Primitive => "primitive",
+            Noun::DeviceMeasure => "measurement of this kind of device",
             Noun::Current => "current body",
             Noun::Signal => "signal",
             Noun::Action => "action",

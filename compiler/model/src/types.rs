@@ -7,6 +7,7 @@ use std::{
 
 use serde::Serialize;
 
+use hrdsl_ir::{Type, Unit as SiUnit, Value, ta::Var};
 use hrdsl_source::Enumeration;
 
 /// A physical dimension: exponents of metre, kilogram, second, radian and byte.
@@ -25,21 +26,26 @@ const fn dim(m: i8, kg: i8, s: i8, rad: i8) -> Dim {
 }
 
 /// The dimensions that have a name: its type's name, the name in a sentence, its SI unit.
-const NAMED: &[(Dim, &str, &str, &str)] = &[
-    (Dim::NUMBER, "number", "a bare number", ""),
-    (Dim::LENGTH, "length", "a length", "m"),
-    (Dim::TIME, "time", "a time", "s"),
-    (Dim::ANGLE, "angle", "an angle", "rad"),
-    (Dim::MASS, "mass", "a mass", "kg"),
-    (Dim::FORCE, "force", "a force", "N"),
-    (Dim::SPEED, "speed", "a speed", "m/s"),
-    (Dim::ANGULAR_SPEED, "angular_speed", "an angular speed", "rad/s"),
-    (Dim::ACCELERATION, "acceleration", "an acceleration", "m/s^2"),
-    (Dim::ANGULAR_ACCELERATION, "angular_acceleration", "an angular acceleration", "rad/s^2"),
-    (Dim::PRESSURE, "pressure", "a pressure", "Pa"),
-    (Dim::TORQUE, "torque", "a torque", "Nm"),
-    (Dim::FREQUENCY, "frequency", "a frequency", "Hz"),
-    (Dim::DATA, "data", "an amount of data", "B"),
+const NAMED: &[(Dim, &str, &str, SiUnit)] = &[
+    (Dim::NUMBER, "number", "a bare number", SiUnit::None),
+    (Dim::LENGTH, "length", "a length", SiUnit::Metre),
+    (Dim::TIME, "time", "a time", SiUnit::Second),
+    (Dim::ANGLE, "angle", "an angle", SiUnit::Radian),
+    (Dim::MASS, "mass", "a mass", SiUnit::Kilogram),
+    (Dim::FORCE, "force", "a force", SiUnit::Newton),
+    (Dim::SPEED, "speed", "a speed", SiUnit::MetrePerSecond),
+    (Dim::ANGULAR_SPEED, "angular_speed", "an angular speed", SiUnit::RadianPerSecond),
+    (Dim::ACCELERATION, "acceleration", "an acceleration", SiUnit::MetrePerSecondSquared),
+    (
+        Dim::ANGULAR_ACCELERATION,
+        "angular_acceleration",
+        "an angular acceleration",
+        SiUnit::RadianPerSecondSquared,
+    ),
+    (Dim::PRESSURE, "pressure", "a pressure", SiUnit::Pascal),
+    (Dim::TORQUE, "torque", "a torque", SiUnit::NewtonMetre),
+    (Dim::FREQUENCY, "frequency", "a frequency", SiUnit::Hertz),
+    (Dim::DATA, "data", "an amount of data", SiUnit::Byte),
 ];
 
 impl Dim {
@@ -80,10 +86,22 @@ impl Dim {
         }
     }
 
+    /// The dimension that is counted in this unit.
+    #[must_use]
+    pub fn of(unit: SiUnit) -> Dim {
+        NAMED.iter().find(|n| n.3 == unit).map_or(Dim::NUMBER, |n| n.0)
+    }
+
+    /// Its SI unit; none, if it is a bare number or has no name of its own.
+    #[must_use]
+    pub fn unit(self) -> SiUnit {
+        NAMED.iter().find(|n| n.0 == self).map_or(SiUnit::None, |n| n.3)
+    }
+
     /// The SI unit's symbol; `None` for a dimension without a name.
     #[must_use]
     pub fn symbol(self) -> Option<&'static str> {
-        NAMED.iter().find(|n| n.0 == self).map(|n| n.3)
+        NAMED.iter().find(|n| n.0 == self).map(|n| n.3.symbol())
     }
 }
 
@@ -104,26 +122,6 @@ impl fmt::Display for Dim {
         }
         Ok(())
     }
-}
-
-/// A declared type of one value: of a parameter, variable, belief argument or signal.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Type {
-    Bool,
-    /// An integer of `lo..=hi`.
-    Int {
-        lo: i64,
-        hi: i64,
-    },
-    /// A quantity, in SI units.
-    Float(Dim),
-    /// One of the values of an enumeration.
-    Enum(Enumeration),
-    /// A string; of agents only.
-    Text,
-    /// A list of values of one type; of agents only.
-    List(Of<Type>),
 }
 
 /// What the elements of a list are, kept once, so that a type stays as small as a number.
@@ -159,20 +157,7 @@ fn kept<T: PartialEq>(known: &Mutex<Vec<&'static T>>, of: T) -> Of<T> {
     Of(of)
 }
 
-static TYPES: Mutex<Vec<&'static Type>> = Mutex::new(Vec::new());
 static KINDS: Mutex<Vec<&'static Kind>> = Mutex::new(Vec::new());
-
-impl Of<Type> {
-    #[must_use]
-    pub fn new(of: Type) -> Self {
-        kept(&TYPES, of)
-    }
-
-    #[must_use]
-    pub fn element(self) -> Type {
-        *self.0
-    }
-}
 
 impl Of<Kind> {
     #[must_use]
@@ -198,63 +183,33 @@ pub(crate) enum Layout {
     Unknown,
 }
 
-impl Type {
-    #[must_use]
-    pub fn kind(self) -> Kind {
-        match self {
-            Type::Bool => Kind::Bool,
-            Type::Int { .. } => Kind::Int,
-            Type::Float(dim) => Kind::Float(dim),
-            Type::Enum(id) => Kind::Enum(id),
-            Type::Text => Kind::Text,
-            Type::List(of) => Kind::list(of.element().kind()),
-        }
+/// The type of this name that is not a range.
+#[must_use]
+pub fn type_named(name: &str) -> Option<Type> {
+    match name {
+        "bool" => Some(Type::Bool),
+        "float" => Some(Type::Float(SiUnit::None)),
+        "int" => Some(Type::Int { lo: i64::MIN, hi: i64::MAX }),
+        "string" => Some(Type::Text),
+        _ => NAMED.iter().find(|n| n.1 == name).map(|n| Type::Float(n.3)),
     }
+}
 
-    /// The smallest and largest value of an integer type.
-    #[must_use]
-    pub fn range(self) -> Option<(i64, i64)> {
-        match self {
-            Type::Int { lo, hi } => Some((lo, hi)),
-            Type::Bool | Type::Float(_) | Type::Enum(_) | Type::Text | Type::List(_) => None,
-        }
-    }
+/// A variable of a finite type. INVARIANT: one whose type is not finite has a diagnostic, and its scenario is never run.
+pub(crate) fn finite_var(name: &str, ty: Type) -> Var {
+    let flag = || Var { name: name.to_owned(), lo: 0, hi: 1, init: 0, is_bool: true, enumeration: None };
+    Var::of_type(name, ty).unwrap_or_else(flag)
+}
 
-    /// Whether its values can be enumerated.
-    #[must_use]
-    pub fn is_finite(self) -> bool {
-        match self {
-            Type::Int { lo, hi } => (lo, hi) != (i64::MIN, i64::MAX),
-            Type::Bool | Type::Enum(_) => true,
-            Type::Float(_) | Type::Text | Type::List(_) => false,
-        }
-    }
+/// The same, with what it starts with.
+pub(crate) fn starting_var(name: &str, ty: Type, init: Value) -> Var {
+    let var = finite_var(name, ty);
+    Var { init: var.number(init).unwrap_or(var.init), ..var }
+}
 
-    /// Whether it is known to agents only: a string or a list.
-    #[must_use]
-    pub fn is_of_agents(self) -> bool {
-        match self {
-            Type::Text | Type::List(_) => true,
-            Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) => false,
-        }
-    }
-
-    /// The type of this name that is not a range.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Type> {
-        match name {
-            "bool" => Some(Type::Bool),
-            "float" => Some(Type::Float(Dim::NUMBER)),
-            "int" => Some(Type::Int { lo: i64::MIN, hi: i64::MAX }),
-            "string" => Some(Type::Text),
-            _ => NAMED.iter().find(|n| n.1 == name).map(|n| Type::Float(n.0)),
-        }
-    }
-
-    /// The names that [`Type::named`] knows.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        ["bool", "int", "float", "string"].into_iter().chain(NAMED.iter().map(|n| n.1))
-    }
+/// The names that [`type_named`] knows.
+pub fn type_names() -> impl Iterator<Item = &'static str> {
+    ["bool", "int", "float", "string"].into_iter().chain(NAMED.iter().map(|n| n.1))
 }
 
 /// What an expression yields, as far as the checker can tell.
@@ -272,6 +227,19 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// What a value of this type is.
+    #[must_use]
+    pub fn of(ty: Type) -> Kind {
+        match ty {
+            Type::Bool => Kind::Bool,
+            Type::Int { .. } => Kind::Int,
+            Type::Float(unit) => Kind::Float(Dim::of(unit)),
+            Type::Enum(id) => Kind::Enum(id),
+            Type::Text => Kind::Text,
+            Type::List(of) => Kind::list(Kind::of(of.element())),
+        }
+    }
+
     /// A list of such elements.
     #[must_use]
     pub fn list(of: Kind) -> Kind {
@@ -299,7 +267,7 @@ impl Kind {
     }
 
     /// The type's name, as it is declared.
-    fn type_name(self) -> String {
+    pub(crate) fn type_name(self) -> String {
         match self {
             Kind::Bool => "bool".to_owned(),
             Kind::Int => "int".to_owned(),

@@ -1,9 +1,10 @@
 //! The resolved world: parts instantiated, bodies by id. Poses are still in the coordinates of their part, with its frame.
 
+use hrdsl_ir::{device::DeviceBody, world::DeviceCommandId};
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{ActorId, BodyId, BodyRef, EventId, EventPattern, Expr, GripperId, JointId, Motion, Type};
+use crate::{ActorId, BodyId, Current, EventId, EventPattern, Expr, JointId, Motion, Shape, Type};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct World {
@@ -17,7 +18,7 @@ pub struct World {
     pub grippers: Vec<Gripper>,
     pub currents: Vec<Current>,
     pub signals: Vec<Signal>,
-    pub rules: Vec<Rule>,
+    pub rules: Vec<WorldRule>,
     /// The parts that are put into it; what they are made of is in the lists above.
     #[serde(skip)]
     pub parts: Vec<Instance>,
@@ -38,15 +39,6 @@ pub struct Instance {
 pub struct Frame {
     pub at: [f64; 3],
     pub yaw: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
-    Box([f64; 3]),
-    Sphere { radius: f64 },
-    Capsule { radius: f64, length: f64 },
-    Cylinder { radius: f64, length: f64 },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,13 +89,6 @@ pub struct Gripper {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Current {
-    pub name: String,
-    pub of: Vec<BodyId>,
-    pub by: GripperId,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Signal {
     pub name: String,
     pub ty: Type,
@@ -114,7 +99,7 @@ pub struct Signal {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rule {
+pub struct WorldRule {
     pub on: RuleOn,
     /// Over terms and signals.
     pub guard: Option<Expr>,
@@ -123,30 +108,12 @@ pub struct Rule {
     pub span: Span,
 }
 
+/// What a rule waits for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RuleOn {
     Event(EventPattern),
-    Closes(GripperId),
-    Opens(GripperId),
-}
-
-/// A place: fixed, or relative to a body.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Point {
-    pub of: Option<BodyRef>,
-    /// `None`: the body's own place.
-    pub offset: Option<Box<[Expr; 3]>>,
-}
-
-/// What a stimulus does to the world.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Action {
-    Move { body: BodyId, to: Point, over: Expr },
-    Look { body: BodyId, at: BodyRef, offset: Expr, distance: Expr, angle: Expr },
-    Grasp(GripperId),
-    LetGo(GripperId),
+    Commanded { device: DeviceBody, command: DeviceCommandId },
 }
 
 impl Frame {

@@ -136,6 +136,7 @@ codes! {
     BAD_WORLD = 801 "a world that cannot be built",
     NOTHING_CARRIES = 802 "a body that nothing carries",
     NO_SUCH_FILE = 803 "a file that does not exist",
+    BAD_COMMAND = 804 "a command that the world cannot do",
     BAD_TEST = 901 "a test that cannot run",
 }
 

@@ -4,6 +4,7 @@ mod codes;
 mod diagnostic;
 mod files;
 mod printable;
+mod shared_words;
 mod span;
 mod symbol;
 
@@ -11,5 +12,6 @@ pub use codes::{Code, CodeInfo, GROUPS, REGISTRY};
 pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
 pub use files::{Files, Position, SourceFile};
 pub use printable::{is_steering, printable, printable_char, printable_line};
+pub use shared_words::{BinaryOp, LocationKind, UnaryOp};
 pub use span::{FileId, Span};
 pub use symbol::{Enumeration, Symbol};

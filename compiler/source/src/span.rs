@@ -1,3 +1,5 @@
+//! Files by number, and ranges of bytes in them.
+
 use serde::{Deserialize, Serialize};
 
 /// A source file of a compilation, by its index in [`Files`](crate::Files).

@@ -11,11 +11,7 @@ use hrdsl_model::{self as model, ExprKind, Kind, Pattern};
 use hrdsl_source::Files;
 use hrdsl_syntax::ast;
 
-use super::{
-    expr,
-    vocabulary::patterns,
-    world::{Reader, Signals},
-};
+use super::world::{Reader, Signals};
 use Effect::{Discharge, Fail, ResetClock, Trigger};
 
 /// The part of a monitor that its pattern decides.
@@ -30,12 +26,12 @@ struct Machine {
 pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signals<'_>) -> Monitor {
     let machine = match &r.pattern {
         Pattern::Causes { trigger, response, within } => {
-            causes(patterns(trigger), patterns(response), within.map(nanos))
+            causes(trigger.clone(), response.clone(), within.map(nanos))
         }
         Pattern::Forbids { trigger, forbidden, until } => {
-            forbids(patterns(trigger), patterns(forbidden), patterns(until))
+            forbids(trigger.clone(), forbidden.clone(), until.clone())
         }
-        Pattern::NeverWhile { events, condition } => never(patterns(events), condition.as_ref(), signals),
+        Pattern::NeverWhile { events, condition } => never(events.clone(), condition.as_ref(), signals),
         Pattern::Globally(condition) => globally(condition, signals),
     };
     Monitor {
@@ -55,7 +51,7 @@ pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signa
 pub(crate) fn assumption(a: &model::Assumption, files: &Files) -> Assumption {
     Assumption {
         text: one_line(files.text(a.span)),
-        events: patterns(&a.events),
+        events: a.events.clone(),
         at_most: a.at_most,
         within: a.within.map(nanos),
         origin: a.span,
@@ -148,28 +144,28 @@ fn not(e: Expr) -> Expr {
 fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Option<(Expr, Unit)> {
     match &e.kind {
         ExprKind::Unary(ast::UnaryOp::Not, a) => margin(a, !positive, reader),
-        ExprKind::Binary(op @ (ast::BinaryOp::And | ast::BinaryOp::Or), a, b) => {
+        ExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => {
             let ((a, unit), (b, other)) = (margin(a, positive, reader)?, margin(b, positive, reader)?);
-            let least = (*op == ast::BinaryOp::And) == positive;
+            let least = (*op == BinaryOp::And) == positive;
             let pick = if least { Function::Min } else { Function::Max };
             (unit == other).then(|| (Expr::Call(pick, vec![a, b]), unit))
         }
         ExprKind::Binary(op, a, b) => {
             let smaller_first = match op {
-                ast::BinaryOp::Lt | ast::BinaryOp::Le => true,
-                ast::BinaryOp::Gt | ast::BinaryOp::Ge => false,
-                ast::BinaryOp::Add
-                | ast::BinaryOp::Sub
-                | ast::BinaryOp::Mul
-                | ast::BinaryOp::Div
-                | ast::BinaryOp::Rem
-                | ast::BinaryOp::Eq
-                | ast::BinaryOp::Ne
-                | ast::BinaryOp::And
-                | ast::BinaryOp::Or => return None,
+                BinaryOp::Lt | BinaryOp::Le => true,
+                BinaryOp::Gt | BinaryOp::Ge => false,
+                BinaryOp::Add
+                | BinaryOp::Sub
+                | BinaryOp::Mul
+                | BinaryOp::Div
+                | BinaryOp::Rem
+                | BinaryOp::Eq
+                | BinaryOp::Ne
+                | BinaryOp::And
+                | BinaryOp::Or => return None,
             };
             let unit = match a.ty {
-                Kind::Float(dim) => expr::unit(dim),
+                Kind::Float(dim) => dim.unit(),
                 Kind::Int | Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
                     Unit::None
                 }

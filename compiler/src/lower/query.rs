@@ -1,9 +1,8 @@
 //! Queries: variables get the slots that they have in their network.
 
 use hrdsl_ir::{
-    Expr,
-    ta::{Ask, Automaton, ClockConstraint, Formula, Measure, Query, Time, TimeTerm},
-    value::nanos,
+    Expr, lowering,
+    ta::{Automaton, Query},
 };
 use hrdsl_model::{self as model, Leaf, Scenario};
 use hrdsl_source::Files;
@@ -27,8 +26,8 @@ pub(crate) fn query(q: &model::Query, scenario: &Scenario, automata: &[Automaton
         name: q.name.clone(),
         title: q.title.clone(),
         text: one_line(files.text(q.text)),
-        network: q.network.0,
-        ask: slots.ask(&q.ask),
+        network: q.network,
+        ask: q.ask.lower(&slots),
         origin: q.span,
     }
 }
@@ -42,66 +41,21 @@ struct Slots {
     own: Vec<u16>,
 }
 
-impl Slots {
-    fn ask(&self, ask: &model::Ask) -> Ask {
-        match ask {
-            model::Ask::Possibly(f) => Ask::Possibly(self.formula(f)),
-            model::Ask::Invariantly(f) => Ask::Invariantly(self.formula(f)),
-            model::Ask::PotentiallyAlways(f) => Ask::PotentiallyAlways(self.formula(f)),
-            model::Ask::Eventually(f) => Ask::Eventually(self.formula(f)),
-            model::Ask::LeadsTo(f, g) => Ask::LeadsTo(self.formula(f), self.formula(g)),
-            model::Ask::Sup { of, when } => Ask::Sup { of: self.measures(of), when: self.formula(when) },
-            model::Ask::Inf { of, when } => Ask::Inf { of: self.measures(of), when: self.formula(when) },
-        }
-    }
-
-    fn formulas(&self, fs: &[model::Formula]) -> Vec<Formula> {
-        fs.iter().map(|f| self.formula(f)).collect()
-    }
-
-    fn formula(&self, f: &model::Formula) -> Formula {
-        match f {
-            model::Formula::At { automaton, location } => {
-                Formula::At { automaton: *automaton, location: *location }
-            }
-            model::Formula::Data(e) => Formula::Data(self.expr(e)),
-            model::Formula::Clock(c) => Formula::Clock(ClockConstraint {
-                clock: c.clock,
-                minus: c.minus,
-                op: c.op,
-                bound: self.time(&c.bound),
-            }),
-            model::Formula::Deadlock => Formula::Deadlock,
-            model::Formula::Not(f) => Formula::Not(Box::new(self.formula(f))),
-            model::Formula::And(fs) => Formula::And(self.formulas(fs)),
-            model::Formula::Or(fs) => Formula::Or(self.formulas(fs)),
-        }
-    }
-
-    fn measures(&self, of: &[model::Measure]) -> Vec<Measure> {
-        let measure = |m: &model::Measure| match m {
-            model::Measure::Clock(clock) => Measure::Clock(*clock),
-            model::Measure::Data(e) => Measure::Data(self.expr(e)),
-        };
-        of.iter().map(measure).collect()
-    }
-
-    fn time(&self, sum: &model::Linear) -> Time {
-        let term = |(factor, value): &(f64, model::Expr)| TimeTerm {
-            factor: nanos(*factor),
-            value: self.expr(value),
-        };
-        Time { nanos: nanos(sum.seconds), terms: sum.terms.iter().map(term).collect() }
-    }
-
+impl lowering::Slots<model::Expr, Leaf> for Slots {
     fn expr(&self, e: &model::Expr) -> Expr {
         expr::expr(e, &mut |source| match source {
-            Source::Leaf(Leaf::Shared(i)) => Expr::Var(i),
-            Source::Leaf(Leaf::Own(i)) => {
-                self.own.get(usize::from(i)).map_or(Expr::bool(false), |slot| Expr::Var(*slot))
-            }
-            // INVARIANT: the checker lets nothing else into a query.
-            Source::Leaf(Leaf::Local(_) | Leaf::Signal(_)) | Source::Term(..) => Expr::bool(false),
+            Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
+            // INVARIANT: the checker lets no measurement into a query.
+            Source::Term(..) => Expr::bool(false),
         })
+    }
+
+    fn slot(&self, of: &Leaf) -> u16 {
+        match of {
+            Leaf::Shared(i) => *i,
+            Leaf::Own(i) => self.own.get(usize::from(*i)).copied().unwrap_or(u16::MAX),
+            // INVARIANT: the checker lets nothing else into a query.
+            Leaf::Local(_) | Leaf::Signal(_) => u16::MAX,
+        }
     }
 }

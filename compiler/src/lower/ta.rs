@@ -1,65 +1,14 @@
 //! Automata: slots of variables, and what the stimulus of an edge emits.
 
 use hrdsl_ir::{
-    ArgPattern, EventId, Expr, Span, Type,
+    EventId, Expr, Span,
     expr::Place,
-    ta::{
-        Automaton, Channel, ChannelKind, ClockConstraint, Edge, Location, LocationId, LocationKind, Network,
-        Party, ReceiveArg, Sync, Time, TimeTerm, Update, Var,
-    },
+    lowering::{self, Slots as _},
+    ta::{Automaton, Edge, Function, Location, LocationId, LocationKind, Sync, Update, Var},
 };
 use hrdsl_model::{self as model, Leaf, StimulusStep};
-use hrdsl_syntax::ast;
 
 use super::expr::{self, Source};
-
-pub(crate) fn network(n: &model::Network) -> Network {
-    let automata = n.automata.clone();
-    Network { name: n.name.clone(), automata, origin: n.span }
-}
-
-pub(crate) fn var(v: &model::Var) -> Var {
-    let init = match v.init {
-        model::Value::Bool(b) => i64::from(b),
-        model::Value::Int(n) => n,
-        model::Value::Symbol(symbol) => match v.ty {
-            model::Type::Enum(of) => of.index_of(symbol).map_or(0, |i| i as i64),
-            model::Type::Bool
-            | model::Type::Int { .. }
-            | model::Type::Float(_)
-            | model::Type::Text
-            | model::Type::List(_) => 0,
-        },
-        model::Value::Float(_) | model::Value::Text(_) | model::Value::List(_) => 0,
-    };
-    Var { init, ..bounded(&v.name, v.ty) }
-}
-
-/// A variable over a finite type, starting with its first value.
-pub(super) fn bounded(name: &str, ty: model::Type) -> Var {
-    let (lo, hi, is_bool, enumeration) = match expr::ty(ty) {
-        Type::Int { lo, hi } => (lo, hi, false, None),
-        Type::Enum(e) => (0, e.values().len() as i64 - 1, false, Some(e)),
-        // INVARIANT: the checker has ruled out what is not finite.
-        Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => (0, 1, true, None),
-    };
-    Var { name: name.to_owned(), lo, hi, init: lo, is_bool, enumeration }
-}
-
-pub(crate) fn channel(c: &model::Channel) -> Channel {
-    let party = |p: &model::Party| Party { automaton: p.automaton, optional: p.optional };
-    Channel {
-        name: c.name.clone(),
-        kind: match &c.kind {
-            model::ChannelKind::HandShake => ChannelKind::HandShake,
-            model::ChannelKind::Broadcast => ChannelKind::Broadcast,
-            model::ChannelKind::Joint(parties) => ChannelKind::Joint(parties.iter().map(party).collect()),
-        },
-        urgent: c.urgent,
-        params: c.params.iter().map(|p| bounded(&p.name, p.ty)).collect(),
-        origin: c.span,
-    }
-}
 
 pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Automaton {
     let shared = count(scenario.shared.len());
@@ -69,16 +18,16 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
         name: a.name.clone(),
         actor: a.actor,
         clocks: a.clocks.clone(),
-        vars: a.vars.iter().map(var).collect(),
-        locations: a.locations.iter().map(|l| slots.location(l)).collect(),
+        vars: a.vars.clone(),
+        locations: a.locations.iter().map(|l| l.lower(&slots)).collect(),
         initial: a.initial,
         edges: Vec::new(),
-        origin: a.span,
+        origin: a.origin,
     };
     let plans: Vec<Option<Chain>> = a.edges.iter().map(|e| chain(e, a, scenario, &mut lowered)).collect();
     let slots = Slots { shared, own: count(lowered.vars.len()) };
     for (edge, plan) in a.edges.iter().zip(plans) {
-        let first = slots.edge(edge);
+        let first = edge.lower(&slots);
         match plan {
             Some(plan) => slots.expand(first, &plan, &mut lowered),
             None => lowered.edges.push(first),
@@ -87,7 +36,23 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
     lowered
 }
 
-pub(super) fn count(n: usize) -> u16 {
+/// `automata` are lowered already: they may have variables that the source does not name.
+pub(crate) fn function(f: &model::Function, scenario: &model::Scenario, automata: &[Automaton]) -> Function {
+    let own = f.owner.and_then(|a| automata.get(usize::from(a.0))).map_or(0, |a| count(a.vars.len()));
+    let slots = Slots { shared: count(scenario.shared.len()), own };
+    Function {
+        name: f.name.clone(),
+        owner: f.owner,
+        params: f.params.clone(),
+        locals: f.locals.clone(),
+        result: f.result.clone(),
+        pure: f.pure,
+        body: f.body.iter().map(|s| s.lower(&slots)).collect(),
+        origin: f.origin,
+    }
+}
+
+fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
@@ -137,10 +102,11 @@ fn chain<'a>(
     let mut after = Vec::new();
     for (i, (arg, param)) in args.iter().zip(&event.params).enumerate() {
         after.push(match arg.constant() {
-            Some(v) => After::Const(expr::value(v)),
+            Some(v) => After::Const(v),
             None if emissions.iter().any(|e| e.reads(count(i))) => {
                 let kept = format!("{stem}{}.{}", lowered.vars.len(), param.name);
-                lowered.vars.push(bounded(&kept, param.ty));
+                // INVARIANT: what an automaton sends and does not know beforehand is of a finite type.
+                lowered.vars.extend(Var::of_type(&kept, param.ty));
                 After::Kept(count(lowered.vars.len() - 1))
             }
             None => After::Unused,
@@ -166,7 +132,7 @@ fn collect<'a>(
                     conditions.pop();
                 }
             }
-            StimulusStep::Hold(_) | StimulusStep::Act(_) => {}
+            StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
         }
     }
 }
@@ -184,125 +150,38 @@ impl Emission<'_> {
 // ── edges ──
 
 /// Where variables are found: `Expr::Var` counts shared, own, then the edge's binders.
-pub(super) struct Slots {
-    pub shared: u16,
-    pub own: u16,
+struct Slots {
+    shared: u16,
+    own: u16,
 }
 
-impl Slots {
-    pub(super) fn slot(&self, leaf: Leaf) -> u16 {
-        match leaf {
-            Leaf::Shared(i) => i,
+impl lowering::Slots<model::Expr, Leaf> for Slots {
+    fn expr(&self, e: &model::Expr) -> Expr {
+        expr::expr(e, &mut |source| match source {
+            Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
+            // INVARIANT: automata measure nothing.
+            Source::Term(..) => Expr::bool(false),
+        })
+    }
+
+    fn slot(&self, of: &Leaf) -> u16 {
+        match of {
+            Leaf::Shared(i) => *i,
             Leaf::Own(i) => self.shared + i,
             Leaf::Local(i) => self.shared + self.own + i,
             // INVARIANT: automata do not read signals.
             Leaf::Signal(_) => u16::MAX,
         }
     }
+}
 
-    pub(super) fn expr(&self, e: &model::Expr) -> Expr {
-        expr::expr(e, &mut |source| self.read(&source))
-    }
-
-    pub(super) fn place(&self, place: &model::Place) -> Place {
-        expr::place(place, &mut |source| self.read(&source))
-    }
-
-    fn read(&self, source: &Source) -> Expr {
-        match source {
-            Source::Leaf(leaf) => Expr::Var(self.slot(*leaf)),
-            // INVARIANT: automata measure nothing.
-            Source::Term(..) => Expr::bool(false),
-        }
-    }
-
-    fn location(&self, l: &model::Location) -> Location {
-        Location {
-            name: l.name.clone(),
-            kind: match l.kind {
-                ast::LocationKind::Normal => LocationKind::Normal,
-                ast::LocationKind::Urgent => LocationKind::Urgent,
-                ast::LocationKind::Committed => LocationKind::Committed,
-            },
-            invariant: self.bounds(&l.invariant),
-            holds: l.holds.as_ref().map(|e| self.expr(e)),
-            origin: l.span,
-        }
-    }
-
-    fn bounds(&self, cs: &[model::ClockConstraint]) -> Vec<ClockConstraint> {
-        let bound = |c: &model::ClockConstraint| ClockConstraint {
-            clock: c.clock,
-            minus: c.minus,
-            op: c.op,
-            bound: self.time(&c.bound),
-        };
-        cs.iter().map(bound).collect()
-    }
-
-    fn time(&self, t: &model::Time) -> Time {
-        let term =
-            |(factor, value): &(i64, model::Expr)| TimeTerm { factor: *factor, value: self.expr(value) };
-        Time { nanos: t.nanos, terms: t.terms.iter().map(term).collect() }
-    }
-
-    fn sync(&self, sync: &model::Sync) -> Sync {
-        let received = |arg: &model::ReceiveArg| match arg {
-            model::ReceiveArg::Any => ReceiveArg::Match(ArgPattern::Any),
-            model::ReceiveArg::Is(v) => ReceiveArg::Match(ArgPattern::Is(expr::value(*v))),
-            model::ReceiveArg::Bind => ReceiveArg::Bind,
-        };
-        let sent = |args: &[model::Expr]| args.iter().map(|a| self.expr(a)).collect();
-        match sync {
-            model::Sync::Internal => Sync::Internal,
-            model::Sync::Send { event, args } => Sync::Send { event: *event, args: sent(args) },
-            model::Sync::Receive { event, args } => {
-                Sync::Receive { event: *event, args: args.iter().map(received).collect() }
-            }
-            model::Sync::Offer { channel, args } => Sync::Offer { channel: *channel, args: sent(args) },
-            model::Sync::Accept { channel, args } => {
-                Sync::Accept { channel: *channel, args: args.iter().map(received).collect() }
-            }
-            model::Sync::Join { channel } => Sync::Join { channel: *channel },
-        }
-    }
-
-    fn edge(&self, e: &model::Edge) -> Edge {
-        let update = |u: &model::Update| match u {
-            model::Update::Shared(i, v) => {
-                Update::Assign { place: Place::slot(self.slot(Leaf::Shared(*i))), value: self.expr(v) }
-            }
-            model::Update::Own(i, v) => {
-                Update::Assign { place: Place::slot(self.slot(Leaf::Own(*i))), value: self.expr(v) }
-            }
-            model::Update::Element(place, v) => {
-                Update::Assign { place: self.place(place), value: self.expr(v) }
-            }
-            model::Update::Call(function, args) => {
-                Update::Call { function: *function, args: args.iter().map(|a| self.expr(a)).collect() }
-            }
-            model::Update::Reset { clock, from, to } => {
-                Update::Reset { clock: *clock, from: *from, to: self.time(to) }
-            }
-        };
-        Edge {
-            from: e.from,
-            to: e.to,
-            selects: e.selects.iter().map(|s| bounded(&s.name, s.ty)).collect(),
-            clock_guard: self.bounds(&e.clock_guard),
-            guard: e.guard.as_ref().map(|g| self.expr(g)),
-            sync: self.sync(&e.sync),
-            updates: e.updates.iter().map(update).collect(),
-            origin: e.span,
-        }
-    }
-
+impl Slots {
     /// An expression of the stimulus, after its edge.
     fn after(&self, e: &model::Expr, args: &[After]) -> Expr {
         expr::expr(e, &mut |source| match source {
             Source::Leaf(Leaf::Local(i)) => match args.get(usize::from(i)) {
                 Some(After::Const(v)) => Expr::Const(*v),
-                Some(After::Kept(own)) => Expr::Var(self.slot(Leaf::Own(*own))),
+                Some(After::Kept(own)) => Expr::Var(self.slot(&Leaf::Own(*own))),
                 Some(After::Unused) | None => Expr::bool(false),
             },
             Source::Leaf(Leaf::Own(_) | Leaf::Shared(_) | Leaf::Signal(_)) | Source::Term(..) => {
@@ -383,7 +262,7 @@ impl Slots {
             .zip(&chain.args)
             .filter_map(|(arg, after)| match after {
                 After::Kept(own) => Some(Update::Assign {
-                    place: Place::slot(self.slot(Leaf::Own(*own))),
+                    place: Place::slot(self.slot(&Leaf::Own(*own))),
                     value: arg.clone(),
                 }),
                 After::Const(_) | After::Unused => None,
@@ -397,7 +276,7 @@ impl Slots {
         let back = |own: u16| {
             let var = &lowered.vars[usize::from(own)];
             let value = Expr::Const(var.value(var.init).unwrap_or(hrdsl_ir::Value::Int(var.init)));
-            Update::Assign { place: Place::slot(self.slot(Leaf::Own(own))), value }
+            Update::Assign { place: Place::slot(self.slot(&Leaf::Own(own))), value }
         };
         let kept = |a: &After| if let After::Kept(own) = a { Some(*own) } else { None };
         chain.args.iter().filter_map(kept).map(back).collect()

@@ -2,20 +2,18 @@
 
 use hrdsl_ir::{
     Expr, Span, Type, Unit,
+    device::{Device, DeviceBody, DeviceKind},
     value::nanos,
     world::{
-        Arm, Axis, Body, BodyId, BodyRef, Current, Gripper, Joint, Point, Rule, RuleOn, Shape, Signal,
-        SignalId, Term, World, WorldAction,
+        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceId, DeviceKindId, Gripper, GripperId, Joint, Rule,
+        RuleOn, Signal, SignalId, Term, World,
     },
 };
 use hrdsl_model::{self as model, Leaf, world as from};
 
-use super::{
-    expr::{self, Source},
-    vocabulary::pattern,
-};
+use super::expr::{self, Source};
 
-pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
+pub(crate) fn world(w: &from::World, kinds: &[DeviceKind], signals: &mut Signals<'_>) -> World {
     let graspable: Vec<BodyId> =
         (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
     let gripper = |g: &from::Gripper| Gripper {
@@ -33,7 +31,6 @@ pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
         tool: a.tool,
         max_speed: a.speed,
     };
-    let current = |c: &from::Current| Current { name: c.name.clone(), of: c.of.clone(), by: c.by };
     World {
         step: nanos(w.step),
         sample: nanos(w.sample),
@@ -42,10 +39,31 @@ pub(crate) fn world(w: &from::World, signals: &mut Signals<'_>) -> World {
         joints: w.joints.iter().map(joint).collect(),
         arms: w.arms.iter().map(arm).collect(),
         grippers: w.grippers.iter().map(gripper).collect(),
-        currents: w.currents.iter().map(current).collect(),
-        rules: w.rules.iter().map(|r| rule(r, signals)).collect(),
+        currents: w.currents.clone(),
+        devices: devices(w, kinds),
+        device_kinds: kinds.to_vec(),
+        rules: w.rules.iter().map(|r| rule(r, w.arms.len(), signals)).collect(),
         origin: w.span,
     }
+}
+
+/// The arms, then the grippers.
+fn devices(w: &from::World, kinds: &[DeviceKind]) -> Vec<Device> {
+    let arms = (0..).zip(&w.arms).map(|(i, a)| (&a.name, DeviceBody::Arm(ArmId(i))));
+    let grippers = (0..).zip(&w.grippers).map(|(i, g)| (&g.name, DeviceBody::Gripper(GripperId(i))));
+    let device = |(name, body): (&String, DeviceBody)| {
+        let kind = kinds.iter().position(|kind| kind.sort == body.sort())?;
+        let kind = DeviceKindId(u16::try_from(kind).ok()?);
+        Some(Device { name: name.clone(), kind, body })
+    };
+    arms.chain(grippers).filter_map(device).collect()
+}
+
+fn device_id(body: DeviceBody, arms: usize) -> DeviceId {
+    DeviceId(match body {
+        DeviceBody::Arm(arm) => arm.0,
+        DeviceBody::Gripper(gripper) => u16::try_from(arms).unwrap_or(u16::MAX).saturating_add(gripper.0),
+    })
 }
 
 /// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.
@@ -54,12 +72,7 @@ fn body(b: &from::Body) -> Body {
     Body {
         name: b.name.clone(),
         motion: b.motion,
-        shape: match b.shape {
-            from::Shape::Box(size) => Shape::Box { size },
-            from::Shape::Sphere { radius } => Shape::Sphere { radius },
-            from::Shape::Capsule { radius, length } => Shape::Capsule { radius, length },
-            from::Shape::Cylinder { radius, length } => Shape::Cylinder { radius, length },
-        },
+        shape: b.shape,
         position: b.frame.place(b.position),
         rotation: [roll, pitch, yaw + b.frame.yaw],
         mass: b.mass,
@@ -81,62 +94,22 @@ fn joint(j: &from::Joint) -> Joint {
     }
 }
 
-fn rule(r: &from::Rule, signals: &mut Signals<'_>) -> Rule {
+fn rule(r: &from::WorldRule, arms: usize, signals: &mut Signals<'_>) -> Rule {
     let mut reader = Reader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
     Rule {
         on: match &r.on {
-            from::RuleOn::Event(p) => RuleOn::Event(pattern(p)),
-            from::RuleOn::Closes(g) => RuleOn::Closes(*g),
-            from::RuleOn::Opens(g) => RuleOn::Opens(*g),
+            from::RuleOn::Event(p) => RuleOn::Event(p.clone()),
+            from::RuleOn::Commanded { device, command } => {
+                RuleOn::Commanded { device: device_id(*device, arms), command: *command }
+            }
         },
         guard,
         event: r.event,
         args,
         signals: reader.read(),
         origin: r.span,
-    }
-}
-
-pub(crate) fn action(a: &from::Action) -> WorldAction {
-    match a {
-        from::Action::Move { body, to, over } => {
-            WorldAction::Move { body: *body, to: point(to), over: expr::local(over) }
-        }
-        from::Action::Look { body, at, offset, distance, angle } => WorldAction::Look {
-            body: *body,
-            at: *at,
-            offset: expr::local(offset),
-            distance: expr::local(distance),
-            angle: expr::local(angle),
-        },
-        from::Action::Grasp(g) => WorldAction::Grasp { gripper: *g },
-        from::Action::LetGo(g) => WorldAction::LetGo { gripper: *g },
-    }
-}
-
-fn point(p: &from::Point) -> Point {
-    let offset = match &p.offset {
-        Some(offset) => offset.each_ref().map(expr::local),
-        None => [Expr::float(0.0), Expr::float(0.0), Expr::float(0.0)],
-    };
-    Point { of: p.of, offset }
-}
-
-fn term(t: model::Term) -> Term {
-    match t {
-        model::Term::Distance(a, b) => Term::Distance(a, b),
-        model::Term::Range(a, b) => Term::Range(a, b),
-        model::Term::Angle(a, b) => Term::Angle(a, b),
-        model::Term::Visible(a, b) => Term::Visible(a, b),
-        model::Term::Coordinate(b, 0) => Term::Coordinate(b, Axis::X),
-        model::Term::Coordinate(b, 1) => Term::Coordinate(b, Axis::Y),
-        model::Term::Coordinate(b, _) => Term::Coordinate(b, Axis::Z),
-        model::Term::Holds(g, b) => Term::Holds(g, b),
-        model::Term::HoldsAny(g) => Term::HoldsAny(g),
-        model::Term::JointSpeed(a) => Term::JointSpeed(a),
-        model::Term::Speed(b) => Term::Speed(b),
     }
 }
 
@@ -151,24 +124,29 @@ fn type_of(t: Term) -> Type {
 }
 
 /// A term as it is written in the scenario, with the full names of what it measures.
-fn written(term: model::Term, world: &from::World) -> String {
+fn written(term: Term, world: &from::World) -> String {
     let body = |b: BodyRef| match b {
         BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),
         BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
     };
     let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
     match term {
-        model::Term::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
-        model::Term::Range(a, b) => format!("range({}, {})", body(a), body(b)),
-        model::Term::Angle(a, b) => format!("angle({}, {})", body(a), body(b)),
-        model::Term::Visible(a, b) => format!("visible({}, {})", body(a), body(b)),
-        model::Term::Coordinate(b, axis) => {
-            format!("{}.{}", body(b), ["x", "y", "z"][usize::from(axis.min(2))])
+        Term::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
+        Term::Range(a, b) => format!("range({}, {})", body(a), body(b)),
+        Term::Angle(a, b) => format!("angle({}, {})", body(a), body(b)),
+        Term::Visible(a, b) => format!("visible({}, {})", body(a), body(b)),
+        Term::Coordinate(b, axis) => {
+            let axis = match axis {
+                Axis::X => "x",
+                Axis::Y => "y",
+                Axis::Z => "z",
+            };
+            format!("{}.{axis}", body(b))
         }
-        model::Term::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
-        model::Term::HoldsAny(g) => format!("holds({})", gripper(g)),
-        model::Term::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
-        model::Term::Speed(b) => format!("speed({})", body(b)),
+        Term::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
+        Term::HoldsAny(g) => format!("holds({})", gripper(g)),
+        Term::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
+        Term::Speed(b) => format!("speed({})", body(b)),
     }
 }
 
@@ -185,7 +163,7 @@ impl<'a> Signals<'a> {
             let mut terms = Vec::new();
             let value = measured(&s.value, declared, &mut terms);
             let to = s.to.clone();
-            let (name, ty) = (s.name.clone(), expr::ty(s.ty));
+            let (name, ty) = (s.name.clone(), s.ty);
             Signal { name, ty, to, terms, value, recorded: false, origin: s.span }
         };
         Self { list: declared.iter().map(signal).collect(), world: scenario.world.as_ref() }
@@ -196,13 +174,12 @@ impl<'a> Signals<'a> {
     }
 
     /// The signal that measures just this term; a new one, named as the term is written, if there is none.
-    fn of_term(&mut self, measured: model::Term, span: Span) -> usize {
-        let term = term(measured);
+    fn of_term(&mut self, term: Term, span: Span) -> usize {
         let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
         if let Some(at) = self.list.iter().position(is) {
             return at;
         }
-        let name = self.world.map_or_else(String::new, |world| written(measured, world));
+        let name = self.world.map_or_else(String::new, |world| written(term, world));
         self.list.push(Signal {
             name,
             ty: type_of(term),
@@ -220,7 +197,6 @@ impl<'a> Signals<'a> {
 fn measured(e: &model::Expr, declared: &[from::Signal], terms: &mut Vec<Term>) -> Expr {
     expr::expr(e, &mut |source| match source {
         Source::Term(t, _) => {
-            let t = term(t);
             let at = terms.iter().position(|known| *known == t).unwrap_or_else(|| {
                 terms.push(t);
                 terms.len() - 1

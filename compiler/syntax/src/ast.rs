@@ -3,6 +3,8 @@
 //! Every node that can be broken has an `Error` form, so that one bad declaration or statement costs that one alone.
 
 use hrdsl_source::Span;
+
+pub use hrdsl_source::{BinaryOp, LocationKind, UnaryOp};
 use serde::Serialize;
 
 /// An identifier where it was written.
@@ -92,6 +94,7 @@ pub enum ItemKind {
     Cross(Cross),
     Suite(Suite),
     Part(Part),
+    Device(Device),
     World(World),
     System(System),
     Test(Test),
@@ -240,31 +243,6 @@ pub enum ExprKind {
     },
     /// Could not be read.
     Error,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum UnaryOp {
-    Not,
-    Neg,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BinaryOp {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    Rem,
-    Eq,
-    Ne,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-    And,
-    Or,
 }
 
 /// `name` or `name(args)`: an event, stimulus, belief or goal with arguments.
@@ -562,14 +540,6 @@ pub enum AutomatonMemberKind {
     Function(Function),
     Allow(Allow),
     Error,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LocationKind {
-    Normal,
-    Urgent,
-    Committed,
 }
 
 /// `a -> b select n: 0..4 when x >= 3 s && n > 0 on e(p) do left = n; x = 0`; each part may be absent, the order is free for
@@ -1031,7 +1001,7 @@ pub struct Body {
     pub graspable: bool,
 }
 
-/// `on e(args) when c emit f(args)`, `on close robot.grip emit f`, `on open …`
+/// `on e(args) when c emit f(args)`, `on close robot.grip emit f`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rule {
     pub on: RuleOn,
@@ -1043,8 +1013,57 @@ pub struct Rule {
 #[serde(rename_all = "snake_case")]
 pub enum RuleOn {
     Event(Call),
-    Closes(Path),
-    Opens(Path),
+    /// The system told a device to do this.
+    Commanded {
+        command: Name,
+        device: Path,
+    },
+}
+
+/// `device gripper { … }`: what all devices of a kind can be told
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Device {
+    pub kind: Name,
+    pub members: Vec<DeviceMember>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceMember {
+    pub doc: String,
+    pub kind: DeviceMemberKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviceMemberKind {
+    Command(DeviceCommand),
+    Error,
+}
+
+/// `command close do close_fingers expect holds else "the gripper closed on nothing"`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceCommand {
+    pub name: Name,
+    pub params: Vec<CommandParam>,
+    pub primitive: Name,
+    pub expect: Option<Expectation>,
+}
+
+/// `speed: angular_speed?`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CommandParam {
+    pub param: Param,
+    /// `?`: may be left out
+    pub optional: bool,
+}
+
+/// `expect not holds else "the gripper still holds something"`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Expectation {
+    pub negated: bool,
+    pub measure: Name,
+    pub otherwise: Text,
 }
 
 /// `system robot { run "python3 robot.py" … }`

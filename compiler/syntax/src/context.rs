@@ -4,9 +4,9 @@ use hrdsl_source::{Code, Diagnostic, FileId, Span};
 
 use crate::ast::{
     Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, Channel,
-    ChannelKind, CrossMember, Edge, EdgeAction, EventName, Expr, ExprKind, Instance, ItemKind, Literal, Name,
-    Param, Party, Path, Range, Sort, Statement, Step, StepKind, StimulusStep, SuiteMember, SystemMember,
-    TestMember, Text, TypeExpr, UnaryOp, WorldMember,
+    ChannelKind, CrossMember, DeviceMember, Edge, EdgeAction, EventName, Expr, ExprKind, Instance, ItemKind,
+    Literal, Name, Param, Party, Path, Range, Sort, Statement, Step, StepKind, StimulusStep, SuiteMember,
+    SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -22,6 +22,7 @@ pub(crate) enum Unit {
     SuiteMember(SuiteMember),
     TestMember(TestMember),
     WorldMember(WorldMember),
+    DeviceMember(DeviceMember),
     SystemMember(SystemMember),
 }
 

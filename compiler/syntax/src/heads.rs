@@ -29,7 +29,7 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
         Kind::Suite => after(&[Kind::By]),
         Kind::Part => after(&[Kind::LBrace, Kind::LParen, Kind::Assign]),
         Kind::World => next == Kind::LBrace,
-        Kind::System | Kind::Enum | Kind::Record => after(&[Kind::LBrace]),
+        Kind::System | Kind::Device | Kind::Enum | Kind::Record => after(&[Kind::LBrace]),
         Kind::Test => after(&[Kind::LBrace, Kind::Dot]),
         Kind::Allow => after(&[Kind::Str]),
         Kind::Channel => {

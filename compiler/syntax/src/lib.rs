@@ -7,7 +7,7 @@
 //!    that can only be names.
 //! 3. `outline`: tokens to one run for each declaration; missing closing braces are put in; `heads`
 //!    says whether a keyword starts one.
-//! 4. `grammar`: one run to one AST node (LALRPOP).
+//! 4. `grammar`: one run to one AST node (LALRPOP), as `run` asks for it.
 //! 5. [`parse()`]: drives the above; a run that does not fit is read again member by member (`recover`), and what does
 //!    not fit then costs that member alone (`report` says why).
 //!
@@ -22,6 +22,7 @@ mod parse;
 mod print;
 mod recover;
 mod report;
+mod run;
 pub mod token;
 mod words;
 

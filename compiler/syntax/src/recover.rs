@@ -11,13 +11,14 @@ use std::ops::Range;
 use hrdsl_source::Span;
 
 use crate::ast::{
-    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind, Expr,
-    ExprKind, ItemKind, Plan, StimulusStep, StimulusStepKind, SuiteMember, SuiteMemberKind, SystemMember,
-    SystemMemberKind, TestMember, TestMemberKind, WorldMember, WorldMemberKind,
+    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind,
+    DeviceMember, DeviceMemberKind, Expr, ExprKind, ItemKind, Plan, StimulusStep, StimulusStepKind,
+    SuiteMember, SuiteMemberKind, SystemMember, SystemMemberKind, TestMember, TestMemberKind, WorldMember,
+    WorldMemberKind,
 };
 use crate::context::{Context, Unit};
-use crate::parse::run;
 use crate::report::{Fault, report};
+use crate::run::run;
 use crate::token::{Kind, Lexeme};
 
 pub(crate) struct Recovery<'a, 't> {
@@ -102,6 +103,7 @@ impl Recovery<'_, '_> {
             (ItemKind::Suite(item), _) => item.members = self.members(block),
             (ItemKind::Test(item), _) => item.members = self.members(block),
             (ItemKind::Part(item), _) => item.members = self.members(block),
+            (ItemKind::Device(item), _) => item.members = self.members(block),
             (ItemKind::World(item), _) => item.members = self.members(block),
             (ItemKind::System(item), _) => item.members = self.members(block),
             (ItemKind::Function(item), _) => item.body = self.statements(block),
@@ -115,6 +117,7 @@ impl Recovery<'_, '_> {
             (_, Kind::Suite) => drop(self.members::<SuiteMember>(block)),
             (_, Kind::Test) => drop(self.members::<TestMember>(block)),
             (_, Kind::Part | Kind::World) => drop(self.members::<WorldMember>(block)),
+            (_, Kind::Device) => drop(self.members::<DeviceMember>(block)),
             (_, Kind::System) => drop(self.members::<SystemMember>(block)),
             (_, _) => {}
         }
@@ -396,5 +399,6 @@ members! {
     TestMember TestMemberKind StartTestMember [] starts_call: Await;
     WorldMember WorldMemberKind StartWorldMember [doc]:
         Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;
+    DeviceMember DeviceMemberKind StartDeviceMember [doc]: Command;
     SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget | Cpu | Wall | Memory | Output | Env | Online;
 }

@@ -106,6 +106,7 @@ macro_rules! tokens {
             StartSuiteMember,
             StartTestMember,
             StartWorldMember,
+            StartDeviceMember,
             StartSystemMember,
             End,
         }
@@ -147,6 +148,7 @@ tokens! {
     Cross "cross" Head "declaration",
     Suite "suite" Head "declaration",
     Part "part" Head "declaration, world",
+    Device "device" Head "declaration",
     World "world" Head "declaration",
     System "system" Head "declaration, actor",
     Test "test" Head "declaration",
@@ -161,7 +163,7 @@ tokens! {
     Or "or" Reserved "expression, list of events, plan",
     Imply "imply" Hard "expression",
     If "if" Hard "expression, stimulus, plan, function",
-    Else "else" Hard "expression, stimulus, plan, function",
+    Else "else" Hard "expression, stimulus, plan, function, device",
     Return "return" Hard "function",
     FromWord "from" Hard "event",
     To "to" Hard "event, signal",
@@ -170,7 +172,7 @@ tokens! {
     Plays "plays" Hard "agent, automaton",
     When "when" Hard "plan, edge, cross, world",
     On "on" Hard "belief, plan, edge, world",
-    Do "do" Hard "edge",
+    Do "do" Hard "edge, device",
     Emit "emit" Hard "stimulus, world",
     Within "within" Hard "plan, requirement, test",
     Await "await" Hard "plan, suite, test",
@@ -243,8 +245,6 @@ tokens! {
     Gripper "gripper" Soft "world",
     Current "current" Soft "world",
     Signal "signal" Soft "world",
-    Close "close" Soft "world",
-    Open "open" Soft "world",
     Rotated "rotated" Soft "world",
     Mass "mass" Soft "world",
     Ghost "ghost" Soft "world",
@@ -255,6 +255,8 @@ tokens! {
     Tool "tool" Soft "world",
     Speed "speed" Soft "world",
     Delay "delay" Soft "world",
+    Command "command" Soft "device",
+    Expect "expect" Soft "device",
     Run "run" Soft "system",
     Coverage "coverage" Soft "system",
     Limit "limit" Soft "system",
@@ -284,6 +286,7 @@ impl Kind {
                 | Self::Cross
                 | Self::Suite
                 | Self::Part
+                | Self::Device
                 | Self::World
                 | Self::System
                 | Self::Test

@@ -647,6 +647,17 @@ world{
 }
 system robot{run "python3 robot.py" coverage "a.py","b.py";limit 300s;budget 10s}
 "#
+    devices r#"
+/// A hand.
+device   gripper{/// Closes.
+command close do close_fingers expect holds else"the gripper closed on nothing"
+  command open do   open_fingers expect not holds else "the gripper still holds something, and this is a long line";command wave do wave
+
+}
+device arm{ command go ( to:length [3] ? ,speed : angular_speed ? )do reach_point
+command turn(to:[angle],speed:angular_speed)
+  do reach_joints }
+"#
     functions r#"
 fn front()->0..4{return q[0]}
 fn pop()->0..4{var first:0..4=q[0];var i:0..5;while i<4{q[i]=q[i+1];i+=1}q[4]=0;len-=1;return first}

@@ -45,7 +45,8 @@ fn keywords_are_names() {
              suite {word} by agents {word}, {word} {{ choose one {word} of {word} per {word} where {word}({word}) && {word} explore {word} }}
              part {word} {{ body {word}: {word} {word}({word}) at {word} joint {word}: {word} -> {word} at {word}
                axis {word} limits {word} .. {word} current {word} in {word} by {word}.{word}
-               on x emit {word} }}
+               on x emit {word} on {word} x.{word} emit {word} }}
+             device {word} {{ command {word} do {word} command {word}({word}: {word}?) do {word} expect {word} else \"x\" }}
              test {word}.{word} {{ method {word}; await {word} within {word} }}"
         );
         let (_, diagnostics) = parse(FileId(0), &text);

@@ -2,9 +2,9 @@
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ExprKind, File, Function, ItemKind, PatternKind,
-    Statement, StatementKind, Step, StepKind, StimulusStepKind, SuiteMemberKind, TestMemberKind,
-    WorldMemberKind,
+    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, DeviceMemberKind, ExprKind, File, Function,
+    ItemKind, PatternKind, Statement, StatementKind, Step, StepKind, StimulusStepKind, SuiteMemberKind,
+    TestMemberKind, WorldMemberKind,
 };
 use hrdsl_syntax::parse;
 
@@ -273,10 +273,12 @@ world { step 1 ms
   on close emit
   sample 2 ms }
 system r { run x limit 3 s }
+device arm { command a; command b(to: length[3] do x
+  command c do x expect; command d do x }
 "#;
     let (file, diagnostics) = parse(FileId(0), text);
     assert_eq!(errors(&file), 0, "{diagnostics:#?}");
-    assert_eq!(file.items.len(), 6);
+    assert_eq!(file.items.len(), 7);
     for item in &file.items {
         match &item.kind {
             ItemKind::Stimulus(s) => {
@@ -296,6 +298,10 @@ system r { run x limit 3 s }
                 assert!(matches!(w.members[4].kind, WorldMemberKind::Sample(_)));
             }
             ItemKind::System(s) => assert_eq!(s.members.len(), 2),
+            ItemKind::Device(d) => {
+                let broken = d.members.iter().map(|m| m.kind == DeviceMemberKind::Error);
+                assert_eq!(broken.collect::<Vec<_>>(), [true, true, true, false]);
+            }
             other => panic!("{other:?}"),
         }
     }

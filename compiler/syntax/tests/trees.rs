@@ -243,6 +243,14 @@ world {
 }
 system robot { run "python3 robot.py" coverage "a.py", "b.py" limit 300 s budget 10 s }
 "#
+    devices r#"
+/// A hand.
+device gripper {
+  /// Closes.
+  command close do close_fingers expect holds else "nothing"; command open do open_fingers expect not holds else "more"
+  command reach(speed: length[3]?, to: [angle]) do step
+}
+"#
 }
 
 /// Spans of names, units and nodes are those of the text.

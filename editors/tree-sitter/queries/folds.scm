@@ -21,6 +21,7 @@
   (suite_declaration)
   (test_declaration)
   (part_declaration)
+  (device_declaration)
   (world_declaration)
   (system_declaration)
   (signal)

@@ -31,7 +31,7 @@
   "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "globally" "at"
   "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "where" "explore" "tests"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
-  "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "close" "open" "rotated" "mass" "ghost"
+  "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "device" "command" "expect" "rotated" "mass" "ghost"
   "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"
   "cpu" "wall" "memory" "output" "env" "online" "stop" "minimise" "channel" "query" "witness" "delays"
 ] @keyword
@@ -112,6 +112,10 @@
 (body motion: (identifier) @attribute)
 (body shape: (identifier) @type.builtin)
 (signal to: (identifier) @type)
+(device_declaration kind: (identifier) @type.builtin)
+(command name: (identifier) @function)
+(command primitive: (identifier) @function.builtin)
+(expectation measure: (identifier) @function.builtin)
 (system_declaration actor: (identifier) @type)
 
 ; ── Names where they are used ──
@@ -122,6 +126,7 @@
     "bool" "clock" "int" "string" "time" "length" "angle" "mass" "force" "speed" "angular_speed" "float" "number"))
 (template_type ["event" "actor" "cover" "agent"] @type.builtin)
 (call name: (identifier) @function.call)
+(rule command: (identifier) @function.method.call)
 (call_expression function: (identifier) @function.call)
 (call_expression function: (path (identifier) @function.call .))
 (act_step action: (path (identifier) @function.method.call .))

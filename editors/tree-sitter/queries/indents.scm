@@ -11,6 +11,7 @@
   (suite_body)
   (test_body)
   (world_body)
+  (device_body)
   (system_body)
   (parameters)
   (arguments)
@@ -30,6 +31,7 @@
   (query_declaration)
   (signal)
   (rule)
+  (command)
   (belief_rule)
 ] @indent.begin
 

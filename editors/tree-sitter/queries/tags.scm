@@ -22,6 +22,7 @@
 (system_declaration actor: (identifier) @name) @definition.class
 
 (belief name: (identifier) @name) @definition.field
+(command name: (identifier) @name) @definition.method
 (belief_rule head: (call name: (identifier) @name)) @definition.method
 (goal_type name: (identifier) @name) @definition.field
 (plan trigger: (trigger call: (call name: (identifier) @name))) @definition.method

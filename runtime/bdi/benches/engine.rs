@@ -3,7 +3,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use hrdsl_bdi::{Society, Status};
+use hrdsl_bdi::{RunStatus, Society};
 use hrdsl_ir::Program;
 
 #[allow(dead_code, reason = "what tests alone use")]
@@ -18,7 +18,7 @@ fn run(program: &Program) -> Society<'_> {
     let mut society = Society::new(program, &programs::all(program), 0);
     society.set_cycle_limit(u64::MAX);
     society.run(0, &mut Vec::new());
-    assert_eq!(society.status(), Status::Idle);
+    assert_eq!(society.status(), RunStatus::Idle);
     society
 }
 

@@ -8,7 +8,8 @@ use hrdsl_ir::{
 use rustc_hash::FxHashMap;
 use smallvec::{SmallVec, smallvec};
 
-use crate::event::Ground;
+/// Ground arguments.
+pub(crate) type Ground = SmallVec<[Value; 4]>;
 
 /// What is said about a fact.
 pub type Annotations = SmallVec<[(Annotation, Value); 1]>;
@@ -19,7 +20,7 @@ const INDEXED: usize = 32;
 /// The facts of one name, as rows of one flat table. A row that is removed stays, dead, until half of them are and
 /// another comes: rows keep their places until then.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Rows {
+pub(crate) struct FactTable {
     arity: usize,
     live: usize,
     /// Annotations of all facts.
@@ -62,7 +63,7 @@ fn distinct(all: Annotations) -> Annotations {
 
 /// What taking a source away did.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Withdrawn {
+pub(crate) enum FactWithdrawal {
     /// The fact did not have it.
     Nothing,
     /// The fact has other sources.
@@ -73,13 +74,13 @@ pub(crate) enum Withdrawn {
 
 /// Goes through live rows, upwards.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Cursor {
+pub(crate) enum FactCursor {
     All(usize),
     /// A place in the index's list.
     Keyed(u64, usize),
 }
 
-impl Rows {
+impl FactTable {
     /// The row of this index, which must be one that a cursor gave.
     pub fn row(&self, index: usize) -> &[Value] {
         &self.values[index * self.arity..(index + 1) * self.arity]
@@ -99,17 +100,17 @@ impl Rows {
     }
 
     /// From the oldest row; if the first argument is known, perhaps only rows that have it.
-    pub fn cursor(&self, first: Option<Value>) -> Cursor {
+    pub fn cursor(&self, first: Option<Value>) -> FactCursor {
         match (&self.index, first) {
-            (Some(_), Some(value)) => Cursor::Keyed(hash(value), 0),
-            _ => Cursor::All(self.start),
+            (Some(_), Some(value)) => FactCursor::Keyed(hash(value), 0),
+            _ => FactCursor::All(self.start),
         }
     }
 
     /// The next live row.
-    pub fn next(&self, cursor: &mut Cursor) -> Option<usize> {
+    pub fn next(&self, cursor: &mut FactCursor) -> Option<usize> {
         match cursor {
-            Cursor::All(at) => {
+            FactCursor::All(at) => {
                 while *at < self.annotations.len() {
                     let row = *at;
                     *at += 1;
@@ -119,7 +120,7 @@ impl Rows {
                 }
                 None
             }
-            Cursor::Keyed(key, at) => {
+            FactCursor::Keyed(key, at) => {
                 let rows = self.index.as_ref()?.get(key)?;
                 while let Some(row) = rows.get(*at) {
                     *at += 1;
@@ -134,7 +135,7 @@ impl Rows {
 
     /// The live rows.
     pub fn iter(&self) -> impl Iterator<Item = usize> {
-        let mut cursor = Cursor::All(self.start);
+        let mut cursor = FactCursor::All(self.start);
         std::iter::from_fn(move || self.next(&mut cursor))
     }
 
@@ -180,19 +181,19 @@ impl Rows {
     }
 
     /// Takes a source away from a row; the fact leaves when that was the last one.
-    pub fn withdraw(&mut self, row: usize, source: Value) -> Withdrawn {
+    pub fn withdraw(&mut self, row: usize, source: Value) -> FactWithdrawal {
         let held = &mut self.annotations[row];
         let is_it = |(what, value): &(Annotation, Value)| *what == Annotation::Source && same(*value, source);
         let sources = held.iter().filter(|(what, _)| *what == Annotation::Source).count();
         if !held.iter().any(is_it) {
-            return Withdrawn::Nothing;
+            return FactWithdrawal::Nothing;
         }
         if sources == 1 {
-            return Withdrawn::Fact(self.remove(row));
+            return FactWithdrawal::Fact(self.remove(row));
         }
         held.retain(|a| !is_it(a));
         self.held -= 1;
-        Withdrawn::Source
+        FactWithdrawal::Source
     }
 
     /// Takes the fact out; gives the annotations that it had.
@@ -239,7 +240,7 @@ impl Rows {
 /// All that an agent believes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BeliefBase {
-    rows: Vec<Rows>,
+    rows: Vec<FactTable>,
     /// Annotations of all facts.
     held: usize,
 }
@@ -247,33 +248,36 @@ pub(crate) struct BeliefBase {
 impl BeliefBase {
     pub fn new(agent: &Agent) -> Self {
         let rows = agent.beliefs.iter();
-        Self { rows: rows.map(|b| Rows { arity: b.params.len(), ..Rows::default() }).collect(), held: 0 }
+        Self {
+            rows: rows.map(|b| FactTable { arity: b.params.len(), ..FactTable::default() }).collect(),
+            held: 0,
+        }
     }
 
     /// The facts of this name; the id must be one of the agent's.
-    pub fn of(&self, belief: BeliefId) -> &Rows {
+    pub fn of(&self, belief: BeliefId) -> &FactTable {
         &self.rows[belief.0 as usize]
     }
 
-    /// See [`Rows::insert`].
+    /// See [`FactTable::insert`].
     pub fn insert(&mut self, belief: BeliefId, fact: &[Value], annotations: Annotations) -> Annotations {
         self.change(belief, |rows| rows.insert(fact, annotations))
     }
 
-    /// See [`Rows::remove`].
+    /// See [`FactTable::remove`].
     pub fn remove(&mut self, belief: BeliefId, row: usize) -> Annotations {
         self.change(belief, |rows| rows.remove(row))
     }
 
-    /// See [`Rows::withdraw`].
-    pub fn withdraw(&mut self, belief: BeliefId, row: usize, source: Value) -> Withdrawn {
+    /// See [`FactTable::withdraw`].
+    pub fn withdraw(&mut self, belief: BeliefId, row: usize, source: Value) -> FactWithdrawal {
         self.change(belief, |rows| rows.withdraw(row, source))
     }
 
-    fn change<T>(&mut self, belief: BeliefId, how: impl FnOnce(&mut Rows) -> T) -> T {
+    fn change<T>(&mut self, belief: BeliefId, edit: impl FnOnce(&mut FactTable) -> T) -> T {
         let rows = &mut self.rows[belief.0 as usize];
         let before = rows.held;
-        let done = how(rows);
+        let done = edit(rows);
         self.held = self.held - before + rows.held;
         done
     }
@@ -283,7 +287,7 @@ impl BeliefBase {
         self.held
     }
 
-    pub fn all(&self) -> &[Rows] {
+    pub fn all(&self) -> &[FactTable] {
         &self.rows
     }
 
@@ -299,13 +303,13 @@ impl BeliefBase {
     }
 }
 
-/// The annotations of a fact that this way picks for as many terms: the last term's changes fastest. There are
-/// `held ^ terms` ways.
-pub(crate) fn picked(mut way: usize, held: usize, terms: usize) -> SmallVec<[usize; 4]> {
+/// The annotations of a fact that the choice of this number picks for as many terms: the last term's changes fastest. There are
+/// `held ^ terms` choices.
+pub(crate) fn picked(mut choice_no: usize, held: usize, terms: usize) -> SmallVec<[usize; 4]> {
     let mut picked = SmallVec::from_elem(0, terms);
     for place in picked.iter_mut().rev() {
-        *place = way % held;
-        way /= held;
+        *place = choice_no % held;
+        choice_no /= held;
     }
     picked
 }
@@ -352,8 +356,8 @@ mod tests {
 
     use super::*;
 
-    fn rows(arity: usize, facts: &[&[i64]]) -> Rows {
-        let mut rows = Rows { arity, ..Rows::default() };
+    fn rows(arity: usize, facts: &[&[i64]]) -> FactTable {
+        let mut rows = FactTable { arity, ..FactTable::default() };
         for fact in facts {
             rows.insert(&values(fact), own());
         }
@@ -364,7 +368,7 @@ mod tests {
         fact.iter().map(|n| Value::Int(*n)).collect()
     }
 
-    fn ints(rows: &Rows) -> Vec<Vec<i64>> {
+    fn ints(rows: &FactTable) -> Vec<Vec<i64>> {
         rows.iter().map(|r| rows.row(r).iter().filter_map(|v| v.as_int()).collect()).collect()
     }
 
@@ -398,10 +402,10 @@ mod tests {
         assert_eq!(r.insert(&values(&[1]), told("Robot")), told("Robot"));
         assert!(r.insert(&values(&[1]), told("Robot")).is_empty());
         assert_eq!(r.annotations(0).len(), 2);
-        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), Withdrawn::Source);
-        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), Withdrawn::Nothing);
+        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), FactWithdrawal::Source);
+        assert_eq!(r.withdraw(0, Value::Symbol(source_self())), FactWithdrawal::Nothing);
         let robot = Value::Symbol(Symbol::intern("Robot"));
-        assert_eq!(r.withdraw(0, robot), Withdrawn::Fact(told("Robot")));
+        assert_eq!(r.withdraw(0, robot), FactWithdrawal::Fact(told("Robot")));
         assert_eq!(r.len(), 0);
     }
 

@@ -4,17 +4,18 @@ use hrdsl_ir::bdi::Context;
 use smallvec::SmallVec;
 
 use crate::{
-    Cause, Holding, Outcome,
     code::settle,
-    cycle::Machine,
-    intention::{Loop, State},
-    step::{Flow, Here},
+    cycle::AgentMachine,
+    holding::HoldingKind,
+    intention::{IntentionState, LoopFrame},
+    log::{FailureCause, StepOutcome},
+    step::{StepFlow, StepLocation},
     unify::Slot,
 };
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// The first answer's bindings become the plan's.
-    pub fn holds(&mut self, place: u32, condition: &'p Context) -> Result<bool, Cause> {
+    pub fn holds(&mut self, place: u32, condition: &'p Context) -> Result<bool, FailureCause> {
         self.solver.with(self.mind.pool.see(place).vars());
         let holds = self.solver.solve(&self.mind, &mut self.dice, condition)?;
         if holds {
@@ -24,17 +25,22 @@ impl<'p> Machine<'p> {
         Ok(holds)
     }
 
-    pub fn branch(&mut self, here: Here, condition: &'p Context, otherwise: u16) -> Result<Flow, Cause> {
+    pub fn branch(
+        &mut self,
+        here: StepLocation,
+        condition: &'p Context,
+        otherwise: u16,
+    ) -> Result<StepFlow, FailureCause> {
         if !self.decide(here, condition)? {
             self.jump(here.place, otherwise);
         }
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     /// The condition of a block; whether it holds is in the log.
-    fn decide(&mut self, here: Here, condition: &'p Context) -> Result<bool, Cause> {
+    fn decide(&mut self, here: StepLocation, condition: &'p Context) -> Result<bool, FailureCause> {
         let holds = self.holds(here.place, condition);
-        self.done(here, holds.as_ref().map_or(Outcome::Faulty, |h| Outcome::Holds(*h)));
+        self.done(here, holds.as_ref().map_or(StepOutcome::Faulty, |h| StepOutcome::Holds(*h)));
         holds
     }
 
@@ -43,7 +49,7 @@ impl<'p> Machine<'p> {
         let open = variables.iter().copied().filter(|v| intention.vars()[usize::from(*v)].is_none());
         let open: SmallVec<[u16; 4]> = open.collect();
         let height = intention.frames.len() as u32;
-        self.mind.pool.enter(place, Loop { height, open, answers, used: 0 });
+        self.mind.pool.enter(place, LoopFrame { height, open, answers, used: 0 });
     }
 
     /// Opens the loop's variables.
@@ -54,38 +60,50 @@ impl<'p> Machine<'p> {
         open.iter().for_each(|v| vars[usize::from(*v)] = None);
     }
 
-    pub fn again(&mut self, here: Here, condition: &'p Context, end: u16) -> Result<Flow, Cause> {
+    pub fn again(
+        &mut self,
+        here: StepLocation,
+        condition: &'p Context,
+        end: u16,
+    ) -> Result<StepFlow, FailureCause> {
         self.reopen(here.place);
         if !self.decide(here, condition)? {
             self.mind.pool.leave_loop(here.place);
             self.jump(here.place, end);
         }
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     pub fn each_answer(
         &mut self,
-        here: Here,
+        here: StepLocation,
         condition: &'p Context,
         variables: &[u16],
-    ) -> Result<Flow, Cause> {
+    ) -> Result<StepFlow, FailureCause> {
         self.solver.with(self.mind.pool.see(here.place).vars());
         let vars = self.mind.pool.see(here.place).vars();
         let open: SmallVec<[u16; 4]> =
             variables.iter().copied().filter(|v| vars[usize::from(*v)].is_none()).collect();
         let found = self.all_answers(condition, &open);
-        self.done(here, found.as_ref().map_or(Outcome::Faulty, |(count, _)| Outcome::Answers(*count)));
+        self.done(
+            here,
+            found.as_ref().map_or(StepOutcome::Faulty, |(count, _)| StepOutcome::Answers(*count)),
+        );
         let (count, mut answers) = found?;
         if open.is_empty() {
             // Nothing is bound: only the number of answers matters.
             answers = vec![None; count];
         }
         self.enter_loop(here.place, variables, answers);
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     /// How many answers there are, and the values of these variables in each.
-    fn all_answers(&mut self, condition: &'p Context, open: &[u16]) -> Result<(usize, Vec<Slot>), Cause> {
+    fn all_answers(
+        &mut self,
+        condition: &'p Context,
+        open: &[u16],
+    ) -> Result<(usize, Vec<Slot>), FailureCause> {
         let mut answers = Vec::new();
         let mut count = 0;
         let mut found = self.solver.solve(&self.mind, &mut self.dice, condition)?;
@@ -94,7 +112,7 @@ impl<'p> Machine<'p> {
             count += 1;
             // Too many end the run after this cycle, whether they are used or not.
             self.found = self.found.max(count * open.len().max(1));
-            if self.found > Holding::Values.most() {
+            if self.found > HoldingKind::Values.most() {
                 break;
             }
             // A condition that is only tested is answered without a search.
@@ -122,11 +140,11 @@ impl<'p> Machine<'p> {
         true
     }
 
-    pub fn fork(&mut self, here: Here, branches: &[u16], all: bool) {
+    pub fn fork(&mut self, here: StepLocation, branches: &[u16], all: bool) {
         let parent = self.mind.pool.at(here.place);
         let Some(frame) = parent.frames.last().copied() else { return };
         let (args, vars) = (parent.args(frame).to_vec(), parent.vars().to_vec());
-        parent.state = State::Forked { left: branches.len() as u32, all };
+        parent.state = IntentionState::Forked { left: branches.len() as u32, all };
         let atomic = parent.atomic > 0;
         let mut children: SmallVec<[u32; 2]> = SmallVec::new();
         for start in branches {

@@ -15,7 +15,7 @@ use crate::code::compile;
 
 /// Why an agent cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Malformed {
+pub enum MalformedAgentError {
     NoSuchAgent,
     /// More plans, or more steps in a plan, than an index can count.
     TooLong,
@@ -32,44 +32,46 @@ pub enum Malformed {
     },
 }
 
-impl fmt::Display for Malformed {
+impl fmt::Display for MalformedAgentError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Malformed::NoSuchAgent => f.write_str("no such agent"),
-            Malformed::TooLong => f.write_str("too many plans, or too long a plan"),
-            Malformed::Plan { label, what } => write!(f, "plan {label}: undeclared or ill-formed {what}"),
-            Malformed::Rule { index } => write!(f, "rule {index} is ill-formed"),
-            Malformed::InitialGoal { index } => write!(f, "initial goal {index} is ill-formed"),
+            MalformedAgentError::NoSuchAgent => f.write_str("no such agent"),
+            MalformedAgentError::TooLong => f.write_str("too many plans, or too long a plan"),
+            MalformedAgentError::Plan { label, what } => {
+                write!(f, "plan {label}: undeclared or ill-formed {what}")
+            }
+            MalformedAgentError::Rule { index } => write!(f, "rule {index} is ill-formed"),
+            MalformedAgentError::InitialGoal { index } => write!(f, "initial goal {index} is ill-formed"),
         }
     }
 }
 
-impl std::error::Error for Malformed {}
+impl std::error::Error for MalformedAgentError {}
 
 /// The agent, if it can be run.
-pub(crate) fn agent(program: &Program, id: AgentId) -> Result<&Agent, Malformed> {
-    let agent = program.agents.get(id.0 as usize).ok_or(Malformed::NoSuchAgent)?;
+pub(crate) fn agent(program: &Program, id: AgentId) -> Result<&Agent, MalformedAgentError> {
+    let agent = program.agents.get(id.0 as usize).ok_or(MalformedAgentError::NoSuchAgent)?;
     let limit = usize::from(u16::MAX);
     if agent.plans.len() >= limit || agent.plans.iter().any(|p| compile(&p.body).is_none()) {
-        return Err(Malformed::TooLong);
+        return Err(MalformedAgentError::TooLong);
     }
-    let check = Check { program, agent };
+    let check = AgentCheck { program, agent };
     for plan in &agent.plans {
-        check.plan(plan).map_err(|what| Malformed::Plan { label: plan.label.clone(), what })?;
+        check.plan(plan).map_err(|what| MalformedAgentError::Plan { label: plan.label.clone(), what })?;
     }
     if let Some(index) = agent.rules.iter().position(|r| !check.rule(r)) {
-        return Err(Malformed::Rule { index });
+        return Err(MalformedAgentError::Rule { index });
     }
     let bad = agent.initial_goals.iter().position(|(goal, args)| !check.goal(*goal, args.len()));
-    bad.map_or(Ok(agent), |index| Err(Malformed::InitialGoal { index }))
+    bad.map_or(Ok(agent), |index| Err(MalformedAgentError::InitialGoal { index }))
 }
 
 /// Whether a formula of the agent's, with so many variables, can be asked.
 pub(crate) fn formula(program: &Program, agent: &Agent, formula: &Context, vars: usize) -> bool {
-    Check { program, agent }.context(formula, vars)
+    AgentCheck { program, agent }.context(formula, vars)
 }
 
-struct Check<'a> {
+struct AgentCheck<'a> {
     program: &'a Program,
     agent: &'a Agent,
 }
@@ -78,7 +80,7 @@ fn sound(holds: bool, what: &'static str) -> Result<(), &'static str> {
     if holds { Ok(()) } else { Err(what) }
 }
 
-impl Check<'_> {
+impl AgentCheck<'_> {
     fn belief(&self, id: BeliefId, args: usize) -> bool {
         self.agent.beliefs.get(id.0 as usize).is_some_and(|b| b.params.len() == args)
     }
@@ -147,7 +149,7 @@ impl Check<'_> {
             Context::And(all) | Context::Or(all) => all.iter().all(|c| self.context(c, vars)),
             Context::Test(expr) => variables(expr, vars),
             Context::Unify(t, expr) => term(t, vars) && variables(expr, vars),
-            Context::Internal(internal) => self.internal(internal, vars),
+            Context::Internal(internal, _) => self.internal(internal, vars),
         }
     }
 

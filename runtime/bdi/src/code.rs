@@ -7,7 +7,7 @@ use hrdsl_ir::{
 
 /// What one line does.
 #[derive(Clone, Debug)]
-pub(crate) enum Op<'p> {
+pub(crate) enum PlanOp<'p> {
     /// A step without blocks.
     Plain(&'p StepKind),
     /// `if`: to the line if the condition has no answer
@@ -44,8 +44,8 @@ pub(crate) enum Op<'p> {
 
 /// One line of a plan's body.
 #[derive(Clone, Debug)]
-pub(crate) struct Line<'p> {
-    pub op: Op<'p>,
+pub(crate) struct PlanLine<'p> {
+    pub op: PlanOp<'p>,
     /// The line after it, jumps followed.
     pub after: u16,
     /// The place of the step in the body, with the steps of its blocks counted through.
@@ -54,8 +54,8 @@ pub(crate) struct Line<'p> {
 }
 
 /// The body as lines; `None` if there are more than can be counted.
-pub(crate) fn compile(body: &[Step]) -> Option<Vec<Line<'_>>> {
-    let mut code = Code { lines: Vec::new(), site: 0 };
+pub(crate) fn compile(body: &[Step]) -> Option<Vec<PlanLine<'_>>> {
+    let mut code = PlanCompiler { lines: Vec::new(), site: 0 };
     code.steps(body);
     let mut lines = code.lines;
     if lines.len() >= usize::from(u16::MAX) {
@@ -67,18 +67,18 @@ pub(crate) fn compile(body: &[Step]) -> Option<Vec<Line<'_>>> {
     Some(lines)
 }
 
-struct Code<'p> {
-    lines: Vec<Line<'p>>,
+struct PlanCompiler<'p> {
+    lines: Vec<PlanLine<'p>>,
     site: u16,
 }
 
-impl<'p> Code<'p> {
+impl<'p> PlanCompiler<'p> {
     fn here(&self) -> u16 {
         u16::try_from(self.lines.len()).unwrap_or(u16::MAX)
     }
 
-    fn line(&mut self, op: Op<'p>, site: u16, origin: Span) -> usize {
-        self.lines.push(Line { op, after: 0, site, origin });
+    fn line(&mut self, op: PlanOp<'p>, site: u16, origin: Span) -> usize {
+        self.lines.push(PlanLine { op, after: 0, site, origin });
         self.lines.len() - 1
     }
 
@@ -91,40 +91,40 @@ impl<'p> Code<'p> {
         self.site = self.site.saturating_add(1);
         match &step.kind {
             StepKind::If { condition, then, otherwise } => {
-                let test = self.line(Op::Branch { condition, otherwise: 0 }, site, origin);
+                let test = self.line(PlanOp::Branch { condition, otherwise: 0 }, site, origin);
                 self.steps(then);
-                let skip = (!otherwise.is_empty()).then(|| self.line(Op::Jump(0), site, origin));
-                self.lines[test].op = Op::Branch { condition, otherwise: self.here() };
+                let skip = (!otherwise.is_empty()).then(|| self.line(PlanOp::Jump(0), site, origin));
+                self.lines[test].op = PlanOp::Branch { condition, otherwise: self.here() };
                 self.steps(otherwise);
                 if let Some(skip) = skip {
-                    self.lines[skip].op = Op::Jump(self.here());
+                    self.lines[skip].op = PlanOp::Jump(self.here());
                 }
             }
             StepKind::While { condition, body } => {
-                self.line(Op::Enter(variables(condition, body)), site, origin);
-                let test = self.line(Op::While { condition, end: 0 }, site, origin);
+                self.line(PlanOp::Enter(variables(condition, body)), site, origin);
+                let test = self.line(PlanOp::While { condition, end: 0 }, site, origin);
                 self.steps(body);
-                self.line(Op::Jump(test as u16), site, origin);
-                self.lines[test].op = Op::While { condition, end: self.here() };
+                self.line(PlanOp::Jump(test as u16), site, origin);
+                self.lines[test].op = PlanOp::While { condition, end: self.here() };
             }
             StepKind::For { condition, body } => {
                 let variables = variables(condition, body);
-                self.line(Op::For { condition, variables }, site, origin);
-                let next = self.line(Op::Next { end: 0 }, site, origin);
+                self.line(PlanOp::For { condition, variables }, site, origin);
+                let next = self.line(PlanOp::Next { end: 0 }, site, origin);
                 self.steps(body);
-                self.line(Op::Jump(next as u16), site, origin);
-                self.lines[next].op = Op::Next { end: self.here() };
+                self.line(PlanOp::Jump(next as u16), site, origin);
+                self.lines[next].op = PlanOp::Next { end: self.here() };
             }
             StepKind::Fork { branches, all } => {
-                let fork = self.line(Op::Join, site, origin);
+                let fork = self.line(PlanOp::Join, site, origin);
                 let mut starts = Vec::new();
                 for branch in branches {
                     starts.push(self.here());
                     self.steps(branch);
-                    self.line(Op::Join, site, origin);
+                    self.line(PlanOp::Join, site, origin);
                 }
                 let end = self.here();
-                self.lines[fork].op = Op::Fork { branches: starts.into(), all: *all, end };
+                self.lines[fork].op = PlanOp::Fork { branches: starts.into(), all: *all, end };
             }
             StepKind::Do { .. }
             | StepKind::Achieve { .. }
@@ -143,15 +143,15 @@ impl<'p> Code<'p> {
             | StepKind::Print { .. }
             | StepKind::Control { .. }
             | StepKind::Fail => {
-                self.line(Op::Plain(&step.kind), site, origin);
+                self.line(PlanOp::Plain(&step.kind), site, origin);
             }
         }
     }
 }
 
 /// The line that is executed next at this one: jumps are followed.
-pub(crate) fn settle(code: &[Line], mut at: u16) -> u16 {
-    while let Some(Line { op: Op::Jump(to), .. }) = code.get(usize::from(at)) {
+pub(crate) fn settle(code: &[PlanLine], mut at: u16) -> u16 {
+    while let Some(PlanLine { op: PlanOp::Jump(to), .. }) = code.get(usize::from(at)) {
         at = *to;
     }
     at
@@ -203,7 +203,7 @@ pub(crate) fn each_in_context(context: &Context, f: &mut dyn FnMut(u16)) {
             each_in_term(term, f);
             e.each_var(f);
         }
-        Context::Internal(internal) => each_in_internal(internal, f),
+        Context::Internal(internal, _) => each_in_internal(internal, f),
     }
 }
 

@@ -3,23 +3,23 @@
 use hrdsl_ir::bdi::{Control, GoalId, Term, TriggerOn};
 
 use crate::{
-    Cause, Logged,
-    cycle::Machine,
-    event::Event,
-    intention::State,
+    cycle::AgentMachine,
+    event::QueuedEvent,
+    intention::IntentionState,
+    log::{FailureCause, LogItem},
     mind::agree,
-    step::Flow,
+    step::StepFlow,
     unify::{Slot, known},
 };
 
-impl Machine<'_> {
+impl AgentMachine<'_> {
     /// Does it for an intention that executes a step.
     pub fn control(
         &mut self,
         place: u32,
         what: Control,
         goal: Option<&(GoalId, Vec<Term>)>,
-    ) -> Result<Flow, Cause> {
+    ) -> Result<StepFlow, FailureCause> {
         let before = self.touched;
         match goal {
             Some((goal, args)) => {
@@ -37,7 +37,7 @@ impl Machine<'_> {
             }
         }
         // What was ended, or ended and went on another way, has been seen to.
-        Ok(if self.touched == before { Flow::Next } else { Flow::Suspended })
+        Ok(if self.touched == before { StepFlow::Next } else { StepFlow::Suspended })
     }
 
     /// Without a goal: of all others, or of the intention itself.
@@ -69,7 +69,7 @@ impl Machine<'_> {
     }
 
     pub fn control_goal(&mut self, what: Control, goal: GoalId, args: &[Slot]) {
-        let is_this = |e: &Event| e.on == TriggerOn::GoalAdded(goal) && agree(&e.args, args);
+        let is_this = |e: &QueuedEvent| e.on == TriggerOn::GoalAdded(goal) && agree(&e.args, args);
         match what {
             Control::DropEvent => return self.drop_events(&is_this),
             Control::DropDesire => self.drop_events(&is_this),
@@ -106,12 +106,12 @@ impl Machine<'_> {
 
     fn is_still(&self, place: u32, number: u32) -> bool {
         let intention = self.mind.pool.see(place);
-        !matches!(intention.state, State::Free) && intention.number == number
+        !matches!(intention.state, IntentionState::Free) && intention.number == number
     }
 
-    fn drop_events(&mut self, of: &dyn Fn(&Event) -> bool) {
+    fn drop_events(&mut self, of: &dyn Fn(&QueuedEvent) -> bool) {
         let events = std::mem::take(&mut self.mind.events);
-        let (gone, kept): (Vec<Event>, Vec<Event>) = events.into_iter().partition(|e| of(e));
+        let (gone, kept): (Vec<QueuedEvent>, Vec<QueuedEvent>) = events.into_iter().partition(|e| of(e));
         self.mind.events.extend(kept);
         for event in gone {
             if let Some(place) = event.of {
@@ -137,14 +137,14 @@ impl Machine<'_> {
         while self.mind.pool.see(place).frames.len() > frame + 1 {
             self.leave(place);
         }
-        self.fail(place, Cause::FailGoal);
+        self.fail(place, FailureCause::FailGoal);
     }
 
     fn suspend(&mut self, place: u32) {
         let intention = self.mind.pool.at(place);
         intention.suspended = true;
-        if matches!(intention.state, State::Ready) && self.ready.contains(&place) {
-            self.mind.pool.at(place).state = State::Held;
+        if matches!(intention.state, IntentionState::Ready) && self.ready.contains(&place) {
+            self.mind.pool.at(place).state = IntentionState::Held;
             self.ready.retain(|p| *p != place);
         }
         for child in self.mind.pool.see(place).children.clone() {
@@ -156,7 +156,7 @@ impl Machine<'_> {
         let children = self.mind.pool.see(place).children.clone();
         let intention = self.mind.pool.at(place);
         let was = std::mem::take(&mut intention.suspended);
-        if was && matches!(intention.state, State::Held) {
+        if was && matches!(intention.state, IntentionState::Held) {
             self.resume(place);
         }
         for child in children {
@@ -168,7 +168,7 @@ impl Machine<'_> {
 
     /// Removes an intention; a fork that it is a branch of is told.
     fn drop_one(&mut self, place: u32) {
-        if matches!(self.mind.pool.see(place).state, State::Free) {
+        if matches!(self.mind.pool.see(place).state, IntentionState::Free) {
             return;
         }
         let parent = self.mind.pool.see(place).parent;
@@ -185,7 +185,7 @@ impl Machine<'_> {
     }
 
     fn drop_tree(&mut self, place: u32) {
-        self.entry_of(place, || Logged::Dropped);
+        self.entry_of(place, || LogItem::Dropped);
         self.detach(place);
         let reply = self.mind.pool.see(place).reply;
         self.drop_deadlines(place, 0);
@@ -196,35 +196,38 @@ impl Machine<'_> {
     }
 
     /// The intention no longer waits for anything; gives the event that it waited for, if there was one.
-    pub fn detach(&mut self, place: u32) -> Option<Event> {
+    pub fn detach(&mut self, place: u32) -> Option<QueuedEvent> {
         if self.acting == Some(place) {
             self.touched += 1;
         }
         let mut posted = None;
         match self.mind.pool.see(place).state {
-            State::Awaiting { timer, .. } => {
+            IntentionState::Awaiting { timer, .. } => {
                 self.awaiting.retain(|p| *p != place);
                 if let Some(timer) = timer {
                     self.timers.remove(&timer);
                 }
             }
-            State::Asking { timer, .. } => {
+            IntentionState::Asking { timer, .. } => {
                 if let Some(timer) = timer {
                     self.timers.remove(&timer);
                 }
             }
-            State::Sleeping(timer) => {
+            IntentionState::Sleeping(timer) => {
                 self.timers.remove(&timer);
             }
-            State::Posted => {
+            IntentionState::Posted => {
                 let at = self.mind.events.iter().position(|e| e.of == Some(place));
                 posted = at.and_then(|at| self.mind.events.remove(at));
             }
-            State::Ready => self.ready.retain(|p| *p != place),
+            IntentionState::Ready => self.ready.retain(|p| *p != place),
             // What is under way ends by itself, and nobody waits for it.
-            State::Acting(_) | State::Free | State::Held | State::Forked { .. } => {}
+            IntentionState::Acting(_)
+            | IntentionState::Free
+            | IntentionState::Held
+            | IntentionState::Forked { .. } => {}
         }
-        self.mind.pool.at(place).state = State::Ready;
+        self.mind.pool.at(place).state = IntentionState::Ready;
         self.drop_children(place);
         posted
     }

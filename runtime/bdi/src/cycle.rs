@@ -12,16 +12,17 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Action, ActionToken, Cause, Detail, Holding, LogEntry, Logged, Malformed, Measured,
-    belief::{Annotations, Withdrawn, from, sourced, typed},
-    check,
-    dice::Dice,
-    event::{Args, Event, Ground, Incoming, Mail, Speech},
-    intention::{NO_PLAN, State, Timer},
-    log::Log,
-    mind::{Me, Mind, Peers},
-    query::Solver,
-    repeat::Repetition,
+    belief::{Annotations, FactWithdrawal, Ground, from, sourced, typed},
+    check::{self, MalformedAgentError},
+    dice::AgentRng,
+    event::{ActionToken, AgentAction, Args, IncomingItem, OutgoingMail, QueuedEvent, SpeechAct},
+    holding::HoldingKind,
+    intention::{IntentionState, IntentionTimer, NO_PLAN},
+    log::{FailureCause, LogDetail, LogEntry, LogItem, ReasoningLog},
+    measure::AgentCounts,
+    mind::{AgentIdentity, MentalState, PeerTable},
+    query::QuerySolver,
+    repeat::RepetitionDetector,
 };
 
 /// Cycles of one agent at one instant after which the run is taken to be endless.
@@ -32,7 +33,7 @@ const MAX_HEIGHT: usize = 10_000_000;
 
 /// How an agent, or all agents of a run, stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum RunStatus {
     /// It has something to reason about: it is to be run.
     Ready,
     /// All its intentions wait: for a time, an event, or the end of an action.
@@ -43,33 +44,33 @@ pub enum Status {
     Livelock,
     /// It did not come to rest within the bounded number of cycles at one instant.
     Endless,
-    /// It held more of this at once than [an agent may](Holding::most).
-    Overfull(Holding),
+    /// It held more of this at once than [an agent may](HoldingKind::most).
+    Overfull(HoldingKind),
     /// The program cannot be run.
     Malformed,
 }
 
 /// One running agent.
 #[derive(Debug)]
-pub(crate) struct Machine<'p> {
-    pub mind: Mind<'p>,
-    pub solver: Solver<'p>,
-    pub dice: Dice,
-    pub log: Log,
-    pub measured: Option<Box<Measured>>,
+pub(crate) struct AgentMachine<'p> {
+    pub mind: MentalState<'p>,
+    pub solver: QuerySolver<'p>,
+    pub dice: AgentRng,
+    pub log: ReasoningLog,
+    pub measured: Option<Box<AgentCounts>>,
     /// Counts timers, actions and questions.
     pub serial: u64,
-    pub timers: BTreeSet<Timer>,
+    pub timers: BTreeSet<IntentionTimer>,
     /// The intentions that `await`, in the order in which they began to.
     pub awaiting: Vec<u32>,
-    pub inbox: VecDeque<Incoming>,
-    pub outbox: Vec<Mail>,
-    pub actions: Vec<Action>,
+    pub inbox: VecDeque<IncomingItem>,
+    pub outbox: Vec<OutgoingMail>,
+    pub actions: Vec<AgentAction>,
     pub ready: VecDeque<u32>,
     /// Cycles at the instant `now`.
     pub cycles: u64,
     pub cycle_limit: u64,
-    pub repetition: Repetition,
+    pub repetition: RepetitionDetector,
     /// The intention whose step changes goals, and how often such steps ended what they were part of.
     pub acting: Option<u32>,
     pub touched: u64,
@@ -78,31 +79,32 @@ pub(crate) struct Machine<'p> {
     /// Values of the answers that one `for` found.
     pub found: usize,
     /// It will never run again.
-    pub halted: Option<Status>,
-    pub fault: Option<Malformed>,
+    pub halted: Option<RunStatus>,
+    pub fault: Option<MalformedAgentError>,
 }
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// The agent at time 0: its initial beliefs, then the chosen facts, then its initial goals, each giving an event.
     /// A fact that does not fit its declaration is left out and logged; a program that cannot be run gives a machine
-    /// that does nothing, with [`Status::Malformed`].
+    /// that does nothing, with [`RunStatus::Malformed`].
     pub fn new(
         program: &'p Program,
         id: AgentId,
         chosen: &[Fact],
         place: u16,
-        peers: &Arc<Peers>,
+        peers: &Arc<PeerTable>,
         seed: u64,
-        detail: Detail,
+        detail: LogDetail,
     ) -> Self {
         let checked = check::agent(program, id);
         let agent = checked.as_ref().ok().copied();
-        let me = Me { name: peers.agents[usize::from(place)].0, place, id, peers: Arc::clone(peers) };
+        let me =
+            AgentIdentity { name: peers.agents[usize::from(place)].0, place, id, peers: Arc::clone(peers) };
         let mut machine = Self {
-            mind: Mind::new(program, agent, me),
-            solver: Solver::default(),
-            dice: Dice::new(seed, u64::from(id.0) + 1),
-            log: Log { detail, ..Log::default() },
+            mind: MentalState::new(program, agent, me),
+            solver: QuerySolver::default(),
+            dice: AgentRng::new(seed, u64::from(id.0) + 1),
+            log: ReasoningLog { detail, ..ReasoningLog::default() },
             measured: None,
             serial: 0,
             timers: BTreeSet::new(),
@@ -113,7 +115,7 @@ impl<'p> Machine<'p> {
             ready: VecDeque::new(),
             cycles: 0,
             cycle_limit: CYCLE_LIMIT,
-            repetition: Repetition::default(),
+            repetition: RepetitionDetector::default(),
             acting: None,
             touched: 0,
             working: NO_PLAN,
@@ -123,7 +125,7 @@ impl<'p> Machine<'p> {
         };
         match checked {
             Ok(_) => machine.start(chosen),
-            Err(fault) => (machine.fault, machine.halted) = (Some(fault), Some(Status::Malformed)),
+            Err(fault) => (machine.fault, machine.halted) = (Some(fault), Some(RunStatus::Malformed)),
         }
         machine
     }
@@ -137,30 +139,30 @@ impl<'p> Machine<'p> {
                     let annotations = sourced(Annotations::from_slice(&fact.annotations));
                     self.believe(fact.belief, &args, annotations);
                 }
-                None => self.enter(0, Logged::Refused { belief: fact.belief, args: fact.args.clone() }),
+                None => self.enter(0, LogItem::Refused { belief: fact.belief, args: fact.args.clone() }),
             }
         }
         for (goal, args) in &agent.initial_goals {
             let args = args.iter().map(|v| Some(*v)).collect();
-            self.post(Event::new(TriggerOn::GoalAdded(*goal), args));
+            self.post(QueuedEvent::new(TriggerOn::GoalAdded(*goal), args));
         }
     }
 
     // ── From outside ──
 
     pub fn perceive(&mut self, event: EventId, args: &[Value]) {
-        self.inbox.push_back(Incoming::Perceived { event, args: Ground::from_slice(args) });
+        self.inbox.push_back(IncomingItem::Perceived { event, args: Ground::from_slice(args) });
     }
 
-    pub fn receive(&mut self, from: u16, speech: Speech) {
-        self.inbox.push_back(Incoming::Heard { from, speech });
+    pub fn receive(&mut self, from: u16, speech: SpeechAct) {
+        self.inbox.push_back(IncomingItem::Heard { from, speech });
     }
 
     /// The action is finished. A token that is not of an action in progress has no effect.
     pub fn action_done(&mut self, token: ActionToken) {
         let (place, serial) = token.parts();
         let acting = self.mind.pool.get(place).map(|i| i.state);
-        if matches!(acting, Some(State::Acting(current)) if current == serial) {
+        if matches!(acting, Some(IntentionState::Acting(current)) if current == serial) {
             self.resume(place);
         }
     }
@@ -176,16 +178,16 @@ impl<'p> Machine<'p> {
                 continue;
             }
             if self.cycles >= self.cycle_limit {
-                self.halted = Some(Status::Endless);
-                self.enter(0, Logged::Endless);
+                self.halted = Some(RunStatus::Endless);
+                self.enter(0, LogItem::Endless);
                 return;
             }
             self.cycles += 1;
             self.cycle();
             done += 1;
             if !self.repetition.is_idle(done) && self.repeats(done) {
-                self.halted = Some(Status::Livelock);
-                self.enter(0, Logged::Livelock);
+                self.halted = Some(RunStatus::Livelock);
+                self.enter(0, LogItem::Livelock);
                 return;
             }
         }
@@ -216,34 +218,36 @@ impl<'p> Machine<'p> {
         self.halted.is_none() && queued
     }
 
-    pub fn status(&self) -> Status {
+    pub fn status(&self) -> RunStatus {
         if let Some(halted) = self.halted {
             halted
         } else if self.has_work() {
-            Status::Ready
+            RunStatus::Ready
         } else if self.mind.pool.is_empty() {
-            Status::Idle
+            RunStatus::Idle
         } else {
-            Status::Waiting
+            RunStatus::Waiting
         }
     }
 
     // ── The cycle ──
 
-    fn take_in(&mut self, incoming: Incoming) {
+    fn take_in(&mut self, incoming: IncomingItem) {
         match incoming {
-            Incoming::Perceived { event, args } => self.notice(event, &args),
-            Incoming::Heard { from, speech } => self.hear(from, speech),
+            IncomingItem::Perceived { event, args } => self.notice(event, &args),
+            IncomingItem::Heard { from, speech } => self.hear(from, speech),
         }
     }
 
     fn notice(&mut self, event: EventId, args: &[Value]) {
-        self.entry(0, || Logged::Perceived { event, args: args.to_vec() });
+        self.entry(0, || LogItem::Perceived { event, args: args.to_vec() });
         for belief in self.mind.library.percepts(event).to_vec() {
             self.sense(belief, args);
         }
         for place in std::mem::take(&mut self.awaiting) {
-            let State::Awaiting { events, timer } = self.mind.pool.see(place).state else { continue };
+            let IntentionState::Awaiting { events, timer } = self.mind.pool.see(place).state else {
+                continue;
+            };
             if !events.iter().any(|pattern| pattern.matches(event, args)) {
                 self.awaiting.push(place);
                 continue;
@@ -283,19 +287,19 @@ impl<'p> Machine<'p> {
                 continue;
             }
             match intention.state {
-                State::Awaiting { .. } => {
+                IntentionState::Awaiting { .. } => {
                     self.awaiting.retain(|place| *place != timer.of);
-                    self.fail(timer.of, Cause::TimedOut);
+                    self.fail(timer.of, FailureCause::TimedOut);
                 }
-                State::Asking { .. } => self.fail(timer.of, Cause::TimedOut),
+                IntentionState::Asking { .. } => self.fail(timer.of, FailureCause::TimedOut),
                 // INVARIANT: only these have timers.
-                State::Sleeping(_)
-                | State::Free
-                | State::Ready
-                | State::Held
-                | State::Posted
-                | State::Acting(_)
-                | State::Forked { .. } => self.resume(timer.of),
+                IntentionState::Sleeping(_)
+                | IntentionState::Free
+                | IntentionState::Ready
+                | IntentionState::Held
+                | IntentionState::Posted
+                | IntentionState::Acting(_)
+                | IntentionState::Forked { .. } => self.resume(timer.of),
             }
         }
         any
@@ -311,21 +315,21 @@ impl<'p> Machine<'p> {
     }
 
     /// Finds a plan for an event and puts it on the event's intention, or on one of its own.
-    fn deliberate(&mut self, event: &Event) {
+    fn deliberate(&mut self, event: &QueuedEvent) {
         let plan = self.select(event, event.of);
         match (plan, event.on) {
             (Some(plan), _) => self.adopt(plan, event),
             (None, on) => {
                 let number = event.of.map_or(0, |place| self.mind.pool.see(place).number);
                 let (args, origin) = (event.args.clone(), self.origin_of(event));
-                self.enter(number, Logged::Unhandled { on, args, origin });
+                self.enter(number, LogItem::Unhandled { on, args, origin });
                 self.fail_by_itself(event);
             }
         }
     }
 
     /// Puts the plan just selected on the event's intention, or on one of its own.
-    pub fn adopt(&mut self, plan: u16, event: &Event) {
+    pub fn adopt(&mut self, plan: u16, event: &QueuedEvent) {
         let place = event.of.unwrap_or_else(|| self.mind.pool.adopt());
         if event.of.is_none() {
             self.mind.pool.at(place).reply = event.reply();
@@ -334,7 +338,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Puts the plan just selected on top of an intention.
-    pub fn begin(&mut self, place: u32, plan: u16, event: &Event) {
+    pub fn begin(&mut self, place: u32, plan: u16, event: &QueuedEvent) {
         let intention = self.mind.pool.at(place);
         let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
         let height = intention.frames.len();
@@ -353,7 +357,7 @@ impl<'p> Machine<'p> {
         self.put(place, plan, event, early.map(|f| [f.plan, f.under[0]]));
         let intention = self.mind.pool.see(place);
         if intention.frames.len() > MAX_HEIGHT {
-            self.fail(place, Cause::TooDeep);
+            self.fail(place, FailureCause::TooDeep);
         } else if !intention.suspended && !self.mind.library.code(plan).is_empty() {
             // A body does not begin with the end of anything.
             self.make_ready(place);
@@ -364,7 +368,7 @@ impl<'p> Machine<'p> {
 
     /// The frame of a plan whose variables the solver holds.
     #[inline]
-    pub fn put(&mut self, place: u32, plan: u16, event: &Event, under: Option<[u16; 2]>) {
+    pub fn put(&mut self, place: u32, plan: u16, event: &QueuedEvent, under: Option<[u16; 2]>) {
         let selected = self.mind.library.plan(plan);
         let first = crate::code::settle(self.mind.library.code(plan), 0);
         let vars = &self.solver.slots[..selected.vars.len()];
@@ -381,9 +385,9 @@ impl<'p> Machine<'p> {
             let under = intention.frames.last().map_or([NO_PLAN; 2], |f| f.under);
             measured.begin(plan, event.by, under);
         }
-        if self.log.detail >= Detail::Steps {
+        if self.log.detail >= LogDetail::Steps {
             let (on, args, vars) = (event.on, event.args.clone(), vars.to_vec());
-            self.enter(number, Logged::Selected { on, args, plan, vars, fresh });
+            self.enter(number, LogItem::Selected { on, args, plan, vars, fresh });
         }
     }
 
@@ -391,7 +395,7 @@ impl<'p> Machine<'p> {
     #[inline]
     pub fn make_ready(&mut self, place: u32) {
         let intention = self.mind.pool.at(place);
-        intention.state = State::Ready;
+        intention.state = IntentionState::Ready;
         if intention.atomic > 0 {
             self.ready.push_front(place);
         } else {
@@ -401,11 +405,11 @@ impl<'p> Machine<'p> {
 
     /// Posts an event, perhaps for an intention that waits for its plan.
     #[inline]
-    pub fn post(&mut self, event: Event) {
+    pub fn post(&mut self, event: QueuedEvent) {
         let mut urgent = false;
         if let Some(place) = event.of {
             let intention = self.mind.pool.at(place);
-            intention.state = State::Posted;
+            intention.state = IntentionState::Posted;
             urgent = intention.atomic > 0;
         }
         if urgent {
@@ -419,7 +423,7 @@ impl<'p> Machine<'p> {
     pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<Annotations>) {
         if !self.mind.library.relevant(on).is_empty() {
             let args: Args = args.iter().map(|v| Some(*v)).collect();
-            self.post(Event::new(on, args).annotated(annotations.unwrap_or_default()));
+            self.post(QueuedEvent::new(on, args).annotated(annotations.unwrap_or_default()));
         }
     }
 
@@ -429,7 +433,7 @@ impl<'p> Machine<'p> {
         if new.is_empty() {
             return;
         }
-        self.entry(0, || Logged::Added { belief, args: args.to_vec(), annotations: new.clone() });
+        self.entry(0, || LogItem::Added { belief, args: args.to_vec(), annotations: new.clone() });
         self.announce(TriggerOn::BeliefAdded(belief), args, Some(new));
     }
 
@@ -441,7 +445,7 @@ impl<'p> Machine<'p> {
     }
 
     fn left(&mut self, belief: BeliefId, args: &[Value], had: Annotations) {
-        self.entry(0, || Logged::Left { belief, args: args.to_vec() });
+        self.entry(0, || LogItem::Left { belief, args: args.to_vec() });
         self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had));
     }
 
@@ -449,11 +453,11 @@ impl<'p> Machine<'p> {
     pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
         let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
         match self.mind.beliefs.withdraw(belief, row, source) {
-            Withdrawn::Nothing => {}
-            Withdrawn::Source => {
-                self.entry(0, || Logged::Taken { belief, args: fact.to_vec(), source });
+            FactWithdrawal::Nothing => {}
+            FactWithdrawal::Source => {
+                self.entry(0, || LogItem::Taken { belief, args: fact.to_vec(), source });
             }
-            Withdrawn::Fact(had) => self.left(belief, &fact, had),
+            FactWithdrawal::Fact(had) => self.left(belief, &fact, had),
         }
     }
 
@@ -463,7 +467,7 @@ impl<'p> Machine<'p> {
     }
 
     /// The step that posted an event, or the agent.
-    fn origin_of(&self, event: &Event) -> Span {
+    fn origin_of(&self, event: &QueuedEvent) -> Span {
         let step =
             event.by.and_then(|(plan, site)| self.mind.library.code(plan).iter().find(|l| l.site == site));
         step.map(|l| l.origin).or(self.mind.agent.map(|a| a.origin)).unwrap_or_default()
@@ -471,9 +475,9 @@ impl<'p> Machine<'p> {
 
     // ── Log and measure ──
 
-    pub fn enter(&mut self, intention: u32, what: Logged) {
+    pub fn enter(&mut self, intention: u32, what: LogItem) {
         let is_full = self.log.most.is_some_and(|most| self.log.entries.len() >= most);
-        if is_full && !matches!(what, Logged::Livelock | Logged::Endless | Logged::Overfull(_)) {
+        if is_full && !matches!(what, LogItem::Livelock | LogItem::Endless | LogItem::Overfull(_)) {
             self.log.left_out += 1;
             return;
         }
@@ -482,20 +486,20 @@ impl<'p> Machine<'p> {
     }
 
     /// Enters what is only wanted in detail.
-    pub fn entry(&mut self, intention: u32, what: impl FnOnce() -> Logged) {
-        if self.log.detail >= Detail::Steps {
+    pub fn entry(&mut self, intention: u32, what: impl FnOnce() -> LogItem) {
+        if self.log.detail >= LogDetail::Steps {
             self.enter(intention, what());
         }
     }
 
-    pub fn entry_of(&mut self, place: u32, what: impl FnOnce() -> Logged) {
-        if self.log.detail >= Detail::Steps {
+    pub fn entry_of(&mut self, place: u32, what: impl FnOnce() -> LogItem) {
+        if self.log.detail >= LogDetail::Steps {
             let number = self.mind.pool.see(place).number;
             self.enter(number, what());
         }
     }
 
-    pub fn measure(&mut self, f: impl FnOnce(&mut Measured)) {
+    pub fn measure(&mut self, f: impl FnOnce(&mut AgentCounts)) {
         if let Some(measured) = &mut self.measured {
             f(measured);
         }

@@ -7,88 +7,89 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Cause, Failure, Fault, LogEntry, Logged, Outcome, Verdict,
     belief::Annotations,
-    code::Op,
-    cycle::Machine,
+    code::PlanOp,
+    cycle::AgentMachine,
     event::Args,
-    mind::Mind,
-    show::{Show, call, performative, slot},
+    log::{ApplicabilityVerdict, FailureCause, IntentionFailure, LogEntry, LogItem, StepOutcome},
+    mind::MentalState,
+    query::BeliefQueryError,
+    show::{FormulaPrinter, call, performative, slot},
     unify::{Slot, Trail, unify_all},
 };
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// The names of its program; `None` if it cannot be run.
-    pub(crate) fn names(&self) -> Option<Names<'_, 'p>> {
-        Some(Names { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
+    pub(crate) fn names(&self) -> Option<LogNames<'_, 'p>> {
+        Some(LogNames { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
     }
 
     /// An entry of this agent's log, without time and agent.
     pub fn describe(&self, entry: &LogEntry) -> String {
         let Some(names) = self.names() else { return String::new() };
         let what = names.entry(entry);
-        let alone = matches!(&entry.what, Logged::Selected { fresh: true, .. });
+        let alone = matches!(&entry.what, LogItem::Selected { fresh: true, .. });
         if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
     }
 }
 
 /// Names of a running agent's program.
-pub(crate) struct Names<'a, 'p> {
-    mind: &'a Mind<'p>,
+pub(crate) struct LogNames<'a, 'p> {
+    mind: &'a MentalState<'p>,
     program: &'p Program,
     agent: &'p Agent,
 }
 
-impl Names<'_, '_> {
+impl LogNames<'_, '_> {
     #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn entry(&self, entry: &LogEntry) -> String {
         match &entry.what {
-            Logged::Selected { on, args, plan, vars, fresh } => {
+            LogItem::Selected { on, args, plan, vars, fresh } => {
                 let begun = if *fresh { format!(" as #{}", entry.intention) } else { String::new() };
                 format!("{} → {}{}{begun}", self.on(*on, args), self.plan(*plan), self.bound(*plan, vars))
             }
-            Logged::Tried { on, args, plan, verdict } => {
+            LogItem::Tried { on, args, plan, verdict } => {
                 format!("{}: {}", self.on(*on, args), self.verdict(*plan, args, *verdict))
             }
-            Logged::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
-            Logged::Fault { plan, fault, .. } => {
+            LogItem::Unhandled { on, args, .. } => format!("{}: no plan is applicable", self.on(*on, args)),
+            LogItem::Fault { plan, fault, .. } => {
                 format!("fault in the context of {}: {}", self.plan(*plan), self.fault(*plan, *fault))
             }
-            Logged::FaultyAnswer { fault, .. } => format!("fault in an answer: {fault}"),
-            Logged::Step { plan, line, vars, outcome } => self.step(*plan, *line, vars, *outcome),
-            Logged::Failed(failure) => format!("failed {}", self.failure(failure)),
-            Logged::Finished => "finished".to_owned(),
-            Logged::Dropped => "dropped".to_owned(),
-            Logged::Added { belief, args, annotations } => {
+            LogItem::FaultyAnswer { fault, .. } => format!("fault in an answer: {fault}"),
+            LogItem::Step { plan, line, vars, outcome } => self.step(*plan, *line, vars, *outcome),
+            LogItem::Failed(failure) => format!("failed {}", self.failure(failure)),
+            LogItem::Finished => "finished".to_owned(),
+            LogItem::Dropped => "dropped".to_owned(),
+            LogItem::Added { belief, args, annotations } => {
                 format!("+{}{}", call(self.belief(*belief), args), self.annotations(*belief, annotations))
             }
-            Logged::Left { belief, args } => format!("-{}", call(self.belief(*belief), args)),
-            Logged::Taken { belief, args, source } => {
+            LogItem::Left { belief, args } => format!("-{}", call(self.belief(*belief), args)),
+            LogItem::Taken { belief, args, source } => {
                 format!("-{}[source({source})]", call(self.belief(*belief), args))
             }
-            Logged::StillHeld { belief, args, meant, from } => {
+            LogItem::StillHeld { belief, args, meant, from } => {
                 let from: Vec<String> = from.iter().map(ToString::to_string).collect();
                 let fact = call(self.belief(*belief), args);
                 let (meant, from) = (slot(meant), from.join(", "));
                 format!("warning: -{fact} takes away {meant} only, it is held from {from}")
             }
-            Logged::Refused { belief, args } => {
+            LogItem::Refused { belief, args } => {
                 format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
             }
-            Logged::Perceived { event, args } => {
+            LogItem::Perceived { event, args } => {
                 let name = self.program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
                 format!("perceives {}", call(name, args))
             }
-            Logged::Heard { from, performative: p, content, args } => {
+            LogItem::Heard { from, performative: p, content, args } => {
                 let what = call(self.content(*content), args.iter().map(slot));
                 format!("hears {} {what} from {}", performative(*p), self.peer(*from))
             }
-            Logged::Asked { from, content, args, all } => {
+            LogItem::Asked { from, content, args, all } => {
                 let what = call(self.content(*content), args.iter().map(slot));
-                let how = if *all { "ask_all" } else { "ask" };
-                format!("hears {how} {what} from {}", self.peer(*from))
+                let verb = if *all { "ask_all" } else { "ask" };
+                format!("hears {verb} {what} from {}", self.peer(*from))
             }
-            Logged::Answered { from, content, all, answers } => {
+            LogItem::Answered { from, content, all, answers } => {
                 let one = |a: &Args| call(self.content(*content), a.iter().map(slot));
                 let each: Option<Vec<String>> = answers.as_ref().map(|a| a.iter().map(one).collect());
                 let what = match each {
@@ -98,10 +99,10 @@ impl Names<'_, '_> {
                 };
                 format!("hears answer {what} from {}", self.peer(*from))
             }
-            Logged::Printed(text) => format!("prints {text}"),
-            Logged::Livelock => "livelock".to_owned(),
-            Logged::Endless => "cycle bound".to_owned(),
-            Logged::Overfull(what) => format!("more than {} {what}", what.most()),
+            LogItem::Printed(text) => format!("prints {text}"),
+            LogItem::Livelock => "livelock".to_owned(),
+            LogItem::Endless => "cycle bound".to_owned(),
+            LogItem::Overfull(what) => format!("more than {} {what}", what.most()),
         }
     }
 
@@ -167,16 +168,18 @@ impl Names<'_, '_> {
 
     /// The step on a line of a plan, with the variables as they are.
     pub(crate) fn line(&self, plan: u16, line: u16, vars: &[Slot]) -> String {
-        self.step(plan, line, vars, Outcome::Done)
+        self.step(plan, line, vars, StepOutcome::Done)
     }
 
-    fn verdict(&self, plan: u16, args: &Args, verdict: Verdict) -> String {
+    fn verdict(&self, plan: u16, args: &Args, verdict: ApplicabilityVerdict) -> String {
         let label = self.plan(plan);
         match verdict {
-            Verdict::Unlike => format!("{label} is for other arguments"),
-            Verdict::Faulty(fault) => format!("{label} cannot be tried, {}", self.fault(plan, fault)),
-            Verdict::Applicable => format!("{label} is applicable"),
-            Verdict::False { part } => {
+            ApplicabilityVerdict::Unlike => format!("{label} is for other arguments"),
+            ApplicabilityVerdict::Faulty(fault) => {
+                format!("{label} cannot be tried, {}", self.fault(plan, fault))
+            }
+            ApplicabilityVerdict::Applicable => format!("{label} is applicable"),
+            ApplicabilityVerdict::False { part } => {
                 let plan = &self.agent.plans[usize::from(plan)];
                 let context = match &plan.context {
                     Context::And(all) => all.get(part).unwrap_or(&plan.context),
@@ -189,14 +192,18 @@ impl Names<'_, '_> {
                 if !matches!(likes, Ok(true)) {
                     slots.fill(None);
                 }
-                let show =
-                    Show { program: self.program, agent: self.agent, names: &plan.vars, slots: &slots };
+                let show = FormulaPrinter {
+                    program: self.program,
+                    agent: self.agent,
+                    names: &plan.vars,
+                    slots: &slots,
+                };
                 format!("{label} is not applicable, `{}` has no answer", show.context(context))
             }
         }
     }
 
-    fn failure(&self, failure: &Failure) -> String {
+    fn failure(&self, failure: &IntentionFailure) -> String {
         let on = self.on(failure.on, &failure.args);
         let goal = match failure.on {
             TriggerOn::GoalAdded(_)
@@ -206,17 +213,17 @@ impl Names<'_, '_> {
             TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => on.as_str(),
         };
         let cause = match failure.cause {
-            Cause::NoValue(error) => self.fault(failure.plan, Fault::NoValue(error)),
+            FailureCause::NoValue(error) => self.fault(failure.plan, BeliefQueryError::NoValue(error)),
             other => other.to_string(),
         };
         format!("{goal} in {}: {cause}", self.plan(failure.plan))
     }
 
     /// A fault with the name of the variable.
-    fn fault(&self, plan: u16, fault: Fault) -> String {
+    fn fault(&self, plan: u16, fault: BeliefQueryError) -> String {
         match fault {
-            Fault::NoValue(EvalError::Unbound(u16::MAX)) => "`_` has no value".to_owned(),
-            Fault::NoValue(EvalError::Unbound(var)) => {
+            BeliefQueryError::NoValue(EvalError::Unbound(u16::MAX)) => "`_` has no value".to_owned(),
+            BeliefQueryError::NoValue(EvalError::Unbound(var)) => {
                 let plan = self.agent.plans.get(usize::from(plan));
                 let name = plan.and_then(|p| p.vars.get(usize::from(var)));
                 format!("`{}` has no value", name.map_or("?", |n| n))
@@ -225,20 +232,20 @@ impl Names<'_, '_> {
         }
     }
 
-    fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: Outcome) -> String {
+    fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: StepOutcome) -> String {
         let code = self.mind.library.code(plan);
         let names = &self.agent.plans[usize::from(plan)].vars;
-        let show = Show { program: self.program, agent: self.agent, names, slots: vars };
+        let show = FormulaPrinter { program: self.program, agent: self.agent, names, slots: vars };
         match (code.get(usize::from(line)).map(|l| &l.op), outcome) {
-            (Some(Op::Plain(step)), _) => show.step(step),
-            (Some(Op::Branch { .. }), Outcome::Holds(holds)) => format!("if {holds}"),
-            (Some(Op::While { .. }), Outcome::Holds(holds)) => format!("while {holds}"),
-            (Some(Op::Branch { .. }), _) => "if".to_owned(),
-            (Some(Op::While { .. }), _) => "while".to_owned(),
-            (Some(Op::For { .. }), Outcome::Faulty) => "for".to_owned(),
-            (_, Outcome::Answers(1)) => "for: 1 answer".to_owned(),
-            (_, Outcome::Answers(n)) => format!("for: {n} answers"),
-            (_, Outcome::Branches(n)) => format!("fork: {n} branches"),
+            (Some(PlanOp::Plain(step)), _) => show.step(step),
+            (Some(PlanOp::Branch { .. }), StepOutcome::Holds(holds)) => format!("if {holds}"),
+            (Some(PlanOp::While { .. }), StepOutcome::Holds(holds)) => format!("while {holds}"),
+            (Some(PlanOp::Branch { .. }), _) => "if".to_owned(),
+            (Some(PlanOp::While { .. }), _) => "while".to_owned(),
+            (Some(PlanOp::For { .. }), StepOutcome::Faulty) => "for".to_owned(),
+            (_, StepOutcome::Answers(1)) => "for: 1 answer".to_owned(),
+            (_, StepOutcome::Answers(n)) => format!("for: {n} answers"),
+            (_, StepOutcome::Branches(n)) => format!("fork: {n} branches"),
             _ => "?".to_owned(),
         }
     }

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// ChaCha8 with the run's seed, on a stream of the agent's own; made when it is first asked.
 #[derive(Debug)]
-pub(crate) struct Dice {
+pub(crate) struct AgentRng {
     seed: u64,
     stream: u64,
     rng: Option<ChaCha8Rng>,
@@ -14,7 +14,7 @@ pub(crate) struct Dice {
     pub draws: u64,
 }
 
-impl Dice {
+impl AgentRng {
     pub fn new(seed: u64, stream: u64) -> Self {
         Self { seed, stream, rng: None, draws: 0 }
     }

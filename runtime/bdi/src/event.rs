@@ -6,13 +6,10 @@ use hrdsl_ir::{
 };
 use smallvec::SmallVec;
 
-use crate::belief::Annotations;
+use crate::belief::{Annotations, Ground};
 
 /// The arguments of an event; `None` is an argument that a test goal leaves open.
 pub type Args = SmallVec<[Option<Value>; 2]>;
-
-/// Ground arguments.
-pub(crate) type Ground = SmallVec<[Value; 4]>;
 
 /// Names one action of one agent until it is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -32,7 +29,7 @@ impl ActionToken {
 /// A stimulus, or a plain event, that the agent does now. Its intention goes on when the harness calls
 /// [`Society::stimulus_done`](crate::Society::stimulus_done) with the token.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Action {
+pub struct AgentAction {
     pub token: ActionToken,
     pub event: EventId,
     /// In the order, and of the types, of the event's parameters.
@@ -41,7 +38,7 @@ pub struct Action {
 
 /// An event in the agent's queue. It is moved often, and so it is kept small.
 #[derive(Clone, Debug)]
-pub(crate) struct Event {
+pub(crate) struct QueuedEvent {
     pub on: TriggerOn,
     /// The plan and the site of the step that posted a goal.
     pub by: Option<(u16, u16)>,
@@ -50,17 +47,17 @@ pub(crate) struct Event {
     /// Of a goal: the other agent that asked for it.
     pub told: Option<Symbol>,
     pub args: Args,
-    pub more: Option<Box<More>>,
+    pub more: Option<Box<EventExtras>>,
 }
 
 /// What few events have.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct More {
+pub(crate) struct EventExtras {
     annotations: Annotations,
-    reply: Option<Reply>,
+    reply: Option<ReplyAddress>,
 }
 
-impl Event {
+impl QueuedEvent {
     pub fn new(on: TriggerOn, args: Args) -> Self {
         Self { on, by: None, of: None, told: None, args, more: None }
     }
@@ -75,7 +72,7 @@ impl Event {
 
     /// Another agent asked, and waits for the answer of this test goal.
     #[must_use]
-    pub fn asked(mut self, reply: Reply) -> Self {
+    pub fn asked(mut self, reply: ReplyAddress) -> Self {
         self.more.get_or_insert_default().reply = Some(reply);
         self
     }
@@ -85,14 +82,14 @@ impl Event {
         self.more.as_ref().map(|m| &m.annotations).filter(|a| !a.is_empty())
     }
 
-    pub fn reply(&self) -> Option<Reply> {
+    pub fn reply(&self) -> Option<ReplyAddress> {
         self.more.as_ref().and_then(|m| m.reply)
     }
 }
 
 /// To whom an answer goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Reply {
+pub(crate) struct ReplyAddress {
     pub to: u16,
     pub content: ContentId,
     /// The question's number, if the asker waits; else the answer is told.
@@ -101,7 +98,7 @@ pub(crate) struct Reply {
 
 /// What an agent says to another.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Speech {
+pub(crate) enum SpeechAct {
     /// Any performative that needs no answer waited for.
     Say { performative: Performative, content: ContentId, args: Args },
     /// `.ask`, `.ask_all`: the asker waits for the answer to its question of this number.
@@ -112,15 +109,15 @@ pub(crate) enum Speech {
 
 /// A message on its way.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Mail {
+pub(crate) struct OutgoingMail {
     /// The agent's place in the society.
     pub to: u16,
-    pub speech: Speech,
+    pub speech: SpeechAct,
 }
 
 /// What waits to be taken in.
 #[derive(Clone, Debug)]
-pub(crate) enum Incoming {
+pub(crate) enum IncomingItem {
     Perceived { event: EventId, args: Ground },
-    Heard { from: u16, speech: Speech },
+    Heard { from: u16, speech: SpeechAct },
 }

@@ -3,12 +3,12 @@
 use hrdsl_ir::{EventPattern, Nanos, Symbol};
 use smallvec::SmallVec;
 
-use crate::{event::Reply, unify::Slot};
+use crate::{event::ReplyAddress, unify::Slot};
 
 /// A plan that is being executed. Its trigger's arguments and its variables lie next to each other on the
 /// intention's stack of slots.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct PlanFrame {
     pub plan: u16,
     /// The next line of the plan's code.
     pub next: u16,
@@ -31,7 +31,7 @@ pub(crate) const NO_LINE: u16 = u16::MAX;
 
 /// What an intention is doing.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum State<'p> {
+pub(crate) enum IntentionState<'p> {
     /// Not in use.
     Free,
     /// Its turn comes.
@@ -43,18 +43,18 @@ pub(crate) enum State<'p> {
     /// It waits for the end of the action with this serial number.
     Acting(u32),
     /// `wait`
-    Sleeping(Timer),
+    Sleeping(IntentionTimer),
     /// `await`, with its timer if it is bounded.
-    Awaiting { events: &'p [EventPattern], timer: Option<Timer> },
+    Awaiting { events: &'p [EventPattern], timer: Option<IntentionTimer> },
     /// It waits for the answer to the question of this number.
-    Asking { question: u64, timer: Option<Timer> },
+    Asking { question: u64, timer: Option<IntentionTimer> },
     /// It waits for its branches: for all, or for the first. So many are not finished.
     Forked { left: u32, all: bool },
 }
 
 /// When something is due; of two that are due together the one set first comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Timer {
+pub(crate) struct IntentionTimer {
     pub due: Nanos,
     pub serial: u64,
     /// The intention's place.
@@ -63,14 +63,14 @@ pub(crate) struct Timer {
 
 /// A goal that must be achieved in time: that of the frame at this height.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Deadline {
+pub(crate) struct GoalDeadline {
     pub height: u32,
-    pub timer: Timer,
+    pub timer: IntentionTimer,
 }
 
 /// A `while` or `for` that is being executed.
 #[derive(Clone, Debug)]
-pub(crate) struct Loop {
+pub(crate) struct LoopFrame {
     /// The number of frames up to its own.
     pub height: u32,
     /// The variables that are open again each time.
@@ -84,19 +84,19 @@ pub(crate) struct Loop {
 pub(crate) struct Intention<'p> {
     /// Counted from 1 in the order in which they get their first plan; 0 before.
     pub number: u32,
-    pub state: State<'p>,
+    pub state: IntentionState<'p>,
     pub suspended: bool,
     /// How many of its plans are atomic.
     pub atomic: u32,
-    pub frames: Vec<Frame>,
+    pub frames: Vec<PlanFrame>,
     pub slots: Vec<Slot>,
-    pub loops: Vec<Loop>,
-    pub deadlines: Vec<Deadline>,
+    pub loops: Vec<LoopFrame>,
+    pub deadlines: Vec<GoalDeadline>,
     /// Of a branch: the intention that forked.
     pub parent: Option<u32>,
     pub children: SmallVec<[u32; 2]>,
     /// Who waits for the answer of the lowest plan, a test goal's.
-    pub reply: Option<Reply>,
+    pub reply: Option<ReplyAddress>,
 }
 
 impl Intention<'_> {
@@ -107,7 +107,7 @@ impl Intention<'_> {
         let vars_at = start + args.len() as u32;
         let below = self.frames.last();
         let under = below.map_or([NO_PLAN; 2], |f| [f.plan, f.under[0]]);
-        self.frames.push(Frame {
+        self.frames.push(PlanFrame {
             plan,
             next,
             at: NO_LINE,
@@ -123,7 +123,7 @@ impl Intention<'_> {
 
     /// Takes the top plan off, with its slots and loops; also gives how many answers these held.
     #[inline]
-    fn pop(&mut self) -> Option<(Frame, usize)> {
+    fn pop(&mut self) -> Option<(PlanFrame, usize)> {
         let frame = self.frames.pop()?;
         self.slots.truncate(frame.args as usize);
         let mut answers = 0;
@@ -146,7 +146,7 @@ impl Intention<'_> {
     }
 
     /// The arguments of a frame's trigger.
-    pub fn args(&self, frame: Frame) -> &[Slot] {
+    pub fn args(&self, frame: PlanFrame) -> &[Slot] {
         &self.slots[frame.args as usize..frame.vars as usize]
     }
 
@@ -165,14 +165,14 @@ impl Intention<'_> {
     pub fn values_by_plan(&self) -> impl Iterator<Item = (u16, usize)> {
         let ends = self.frames.iter().skip(1).map(|f| f.args as usize).chain([self.slots.len()]);
         let stacked = self.frames.iter().zip(ends).map(|(f, end)| (f.plan, end - f.args as usize));
-        let plan = |l: &Loop| self.frames.get(l.height as usize - 1).map_or(NO_PLAN, |f| f.plan);
+        let plan = |l: &LoopFrame| self.frames.get(l.height as usize - 1).map_or(NO_PLAN, |f| f.plan);
         stacked.chain(self.loops.iter().map(move |l| (plan(l), l.answers.len())))
     }
 }
 
 /// All intentions; places are used again, with the memory they have.
 #[derive(Debug, Default)]
-pub(crate) struct Pool<'p> {
+pub(crate) struct IntentionPool<'p> {
     all: Vec<Intention<'p>>,
     free: Vec<u32>,
     adopted: u32,
@@ -185,17 +185,17 @@ pub(crate) struct Pool<'p> {
 /// A stack that was larger than this gives memory back.
 const SPARE: usize = 1024;
 
-impl<'p> Pool<'p> {
+impl<'p> IntentionPool<'p> {
     /// A place for a new intention.
     pub fn adopt(&mut self) -> u32 {
         if let Some(place) = self.free.pop() {
             let intention = self.at(place);
-            (intention.number, intention.state) = (0, State::Ready);
+            (intention.number, intention.state) = (0, IntentionState::Ready);
             return place;
         }
         self.all.push(Intention {
             number: 0,
-            state: State::Ready,
+            state: IntentionState::Ready,
             suspended: false,
             atomic: 0,
             frames: Vec::new(),
@@ -231,7 +231,7 @@ impl<'p> Pool<'p> {
 
     /// Takes an intention's top plan off.
     #[inline]
-    pub fn pop(&mut self, place: u32) -> Option<Frame> {
+    pub fn pop(&mut self, place: u32) -> Option<PlanFrame> {
         let intention = self.at(place);
         let before = intention.slots.len();
         let (frame, answers) = intention.pop()?;
@@ -242,7 +242,7 @@ impl<'p> Pool<'p> {
     }
 
     /// The intention's top plan begins a loop.
-    pub fn enter(&mut self, place: u32, begun: Loop) {
+    pub fn enter(&mut self, place: u32, begun: LoopFrame) {
         self.values += begun.answers.len();
         self.at(place).loops.push(begun);
     }
@@ -258,7 +258,7 @@ impl<'p> Pool<'p> {
         self.plans -= intention.frames.len();
         self.values -= intention.slots.len() + intention.loops.iter().map(|l| l.answers.len()).sum::<usize>();
         let intention = self.at(place);
-        (intention.state, intention.suspended, intention.atomic) = (State::Free, false, 0);
+        (intention.state, intention.suspended, intention.atomic) = (IntentionState::Free, false, 0);
         intention.frames.clear();
         intention.slots.clear();
         intention.loops.clear();
@@ -286,7 +286,7 @@ impl<'p> Pool<'p> {
 
     /// Those in use, by place.
     pub fn iter(&self) -> impl Iterator<Item = (u32, &Intention<'p>)> {
-        (0u32..).zip(&self.all).filter(|(_, i)| !matches!(i.state, State::Free))
+        (0u32..).zip(&self.all).filter(|(_, i)| !matches!(i.state, IntentionState::Free))
     }
 
     /// The places in use, in the order of adoption.

@@ -32,6 +32,7 @@ mod cycle;
 mod describe;
 mod dice;
 mod event;
+mod holding;
 mod intention;
 mod log;
 mod mail;
@@ -45,16 +46,20 @@ mod select;
 pub mod show;
 mod society;
 mod standing;
+mod state;
 mod step;
 mod unify;
 
 pub use belief::Annotations;
-pub use bounds::Holding;
-pub use check::Malformed;
-pub use cycle::{CYCLE_LIMIT, Status};
-pub use event::{Action, ActionToken, Args};
-pub use log::{Cause, Detail, Failure, LogEntry, Logged, Outcome, PlanIndex, Verdict};
-pub use measure::Measured;
-pub use query::Fault;
+pub use check::MalformedAgentError;
+pub use cycle::{CYCLE_LIMIT, RunStatus};
+pub use event::{ActionToken, AgentAction, Args};
+pub use holding::HoldingKind;
+pub use log::{
+    ApplicabilityVerdict, FailureCause, IntentionFailure, LogDetail, LogEntry, LogItem, PlanIndex,
+    StepOutcome,
+};
+pub use measure::AgentCounts;
+pub use query::BeliefQueryError;
 pub use society::Society;
-pub use standing::Standing;
+pub use standing::IntentionSummary;

@@ -8,14 +8,14 @@ use hrdsl_ir::{
     expr::EvalError,
 };
 
-use crate::{Holding, belief::Annotations, event::Args, query::Fault, unify::Slot};
+use crate::{belief::Annotations, event::Args, holding::HoldingKind, query::BeliefQueryError, unify::Slot};
 
 /// Index into the agent's plan library.
 pub type PlanIndex = u16;
 
 /// How much is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub enum Detail {
+pub enum LogDetail {
     /// Failures, faults and warnings.
     #[default]
     Failures,
@@ -36,11 +36,11 @@ pub struct LogEntry {
     pub cycle: u64,
     /// The number of the intention that it is about; 0: none.
     pub intention: u32,
-    pub what: Logged,
+    pub what: LogItem,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Logged {
+pub enum LogItem {
     /// A plan was selected; `fresh`: it began an intention.
     Selected {
         on: TriggerOn,
@@ -54,7 +54,7 @@ pub enum Logged {
         on: TriggerOn,
         args: Args,
         plan: PlanIndex,
-        verdict: Verdict,
+        verdict: ApplicabilityVerdict,
     },
     /// An event for which no plan was selected.
     Unhandled {
@@ -65,22 +65,22 @@ pub enum Logged {
     /// A plan could not be tried.
     Fault {
         plan: PlanIndex,
-        fault: Fault,
+        fault: BeliefQueryError,
         origin: Span,
     },
     /// A question of another agent could not be answered.
     FaultyAnswer {
         belief: BeliefId,
-        fault: Fault,
+        fault: BeliefQueryError,
     },
     /// A step is done: with the variables before it.
     Step {
         plan: PlanIndex,
         line: u16,
         vars: Vec<Slot>,
-        outcome: Outcome,
+        outcome: StepOutcome,
     },
-    Failed(Failure),
+    Failed(IntentionFailure),
     /// The intention is done.
     Finished,
     /// An internal action, or the end of another branch, removed the intention.
@@ -142,37 +142,37 @@ pub enum Logged {
     /// Too many cycles at one instant.
     Endless,
     /// Too much of this held at once.
-    Overfull(Holding),
+    Overfull(HoldingKind),
 }
 
-impl Logged {
+impl LogItem {
     /// What kind of entry it is, in a word.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
-            Logged::Selected { .. } => "selected",
-            Logged::Tried { .. } => "tried",
-            Logged::Unhandled { .. } => "unhandled",
-            Logged::Fault { .. } | Logged::FaultyAnswer { .. } => "fault",
-            Logged::Step { .. } => "step",
-            Logged::Failed(_) => "failed",
-            Logged::Finished => "finished",
-            Logged::Dropped => "dropped",
-            Logged::Added { .. } | Logged::Left { .. } | Logged::Taken { .. } => "belief",
-            Logged::StillHeld { .. } | Logged::Refused { .. } => "warning",
-            Logged::Perceived { .. } => "perceived",
-            Logged::Heard { .. } | Logged::Asked { .. } | Logged::Answered { .. } => "heard",
-            Logged::Printed(_) => "printed",
-            Logged::Livelock => "livelock",
-            Logged::Endless => "cycle_bound",
-            Logged::Overfull(_) => "holding_bound",
+            LogItem::Selected { .. } => "selected",
+            LogItem::Tried { .. } => "tried",
+            LogItem::Unhandled { .. } => "unhandled",
+            LogItem::Fault { .. } | LogItem::FaultyAnswer { .. } => "fault",
+            LogItem::Step { .. } => "step",
+            LogItem::Failed(_) => "failed",
+            LogItem::Finished => "finished",
+            LogItem::Dropped => "dropped",
+            LogItem::Added { .. } | LogItem::Left { .. } | LogItem::Taken { .. } => "belief",
+            LogItem::StillHeld { .. } | LogItem::Refused { .. } => "warning",
+            LogItem::Perceived { .. } => "perceived",
+            LogItem::Heard { .. } | LogItem::Asked { .. } | LogItem::Answered { .. } => "heard",
+            LogItem::Printed(_) => "printed",
+            LogItem::Livelock => "livelock",
+            LogItem::Endless => "cycle_bound",
+            LogItem::Overfull(_) => "holding_bound",
         }
     }
 }
 
 /// What became of a step, if that is not plain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum StepOutcome {
     Done,
     /// `if`, `while`
     Holds(bool),
@@ -186,32 +186,32 @@ pub enum Outcome {
 
 /// Why a plan was chosen or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum ApplicabilityVerdict {
     /// The trigger's arguments or annotations do not match.
     Unlike,
     /// The context has no answer; the farthest part of it that the search came to, when it is a conjunction.
     False {
         part: usize,
     },
-    Faulty(Fault),
+    Faulty(BeliefQueryError),
     Applicable,
 }
 
 /// Where and why something failed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
+pub struct IntentionFailure {
     /// What the plan that was being executed was selected for.
     pub on: TriggerOn,
     pub args: Args,
     pub plan: PlanIndex,
-    pub cause: Cause,
+    pub cause: FailureCause,
     /// The step that failed, or the plan.
     pub origin: Span,
 }
 
 /// Why a step or goal failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub enum FailureCause {
     /// Neither beliefs, nor plans, nor the other agent have an answer.
     NoAnswer,
     /// An `await` was over before an event matched, an `.ask` before the answer came, a goal's deadline.
@@ -219,7 +219,7 @@ pub enum Cause {
     /// An expression has no value.
     NoValue(EvalError),
     /// A query went too far.
-    Query(Fault),
+    Query(BeliefQueryError),
     /// A value is not of the type, or not in the range, that a belief or event declares.
     OutOfRange,
     /// A `wait` or deadline of a negative time, or of what is not a time.
@@ -240,49 +240,49 @@ pub enum Cause {
     AllBranches,
 }
 
-impl From<EvalError> for Cause {
+impl From<EvalError> for FailureCause {
     fn from(error: EvalError) -> Self {
-        Cause::NoValue(error)
+        FailureCause::NoValue(error)
     }
 }
 
-impl From<Fault> for Cause {
-    fn from(fault: Fault) -> Self {
+impl From<BeliefQueryError> for FailureCause {
+    fn from(fault: BeliefQueryError) -> Self {
         match fault {
-            Fault::NoValue(error) => Cause::NoValue(error),
-            Fault::TooDeep | Fault::TooLong => Cause::Query(fault),
+            BeliefQueryError::NoValue(error) => FailureCause::NoValue(error),
+            BeliefQueryError::TooDeep | BeliefQueryError::TooLong => FailureCause::Query(fault),
         }
     }
 }
 
-impl fmt::Display for Cause {
+impl fmt::Display for FailureCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Cause::NoAnswer => f.write_str("no answer"),
-            Cause::TimedOut => f.write_str("the time is over"),
-            Cause::NoValue(error) => error.fmt(f),
-            Cause::Query(fault) => fault.fmt(f),
-            Cause::OutOfRange => f.write_str("a value is not of its type"),
-            Cause::BadWait => f.write_str("a time is negative, or no number"),
-            Cause::TooDeep => f.write_str("the stack is full"),
-            Cause::NoSuchAgent(name) => write!(f, "{name} is not in this run"),
-            Cause::NoSuchContent(name) => write!(f, "{name} has nothing of this name"),
-            Cause::Fail => f.write_str(".fail"),
-            Cause::FailGoal => f.write_str(".fail_goal"),
-            Cause::Branch => f.write_str("a branch failed"),
-            Cause::AllBranches => f.write_str("all branches failed"),
+            FailureCause::NoAnswer => f.write_str("no answer"),
+            FailureCause::TimedOut => f.write_str("the time is over"),
+            FailureCause::NoValue(error) => error.fmt(f),
+            FailureCause::Query(fault) => fault.fmt(f),
+            FailureCause::OutOfRange => f.write_str("a value is not of its type"),
+            FailureCause::BadWait => f.write_str("a time is negative, or no number"),
+            FailureCause::TooDeep => f.write_str("the stack is full"),
+            FailureCause::NoSuchAgent(name) => write!(f, "{name} is not in this run"),
+            FailureCause::NoSuchContent(name) => write!(f, "{name} has nothing of this name"),
+            FailureCause::Fail => f.write_str(".fail"),
+            FailureCause::FailGoal => f.write_str(".fail_goal"),
+            FailureCause::Branch => f.write_str("a branch failed"),
+            FailureCause::AllBranches => f.write_str("all branches failed"),
         }
     }
 }
 
 /// The entries so far.
 #[derive(Debug, Default)]
-pub(crate) struct Log {
+pub(crate) struct ReasoningLog {
     pub entries: Vec<LogEntry>,
     /// How many entries are kept, at most; those that come later are counted. The end of all reasoning is always kept.
     pub most: Option<usize>,
     pub left_out: u64,
-    pub detail: Detail,
+    pub detail: LogDetail,
     pub round: u64,
 }
 

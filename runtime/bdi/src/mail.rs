@@ -1,7 +1,7 @@
 //! Messages between agents: speech acts sent, and what they do to who hears them.
 
 use hrdsl_ir::{
-    Expr, List, Symbol, Value,
+    Expr, List, Span, Symbol, Value,
     bdi::{
         BeliefId, ContentId, Control, GoalId, Literal, Performative, StepKind, Subject, Term, TriggerOn,
         source_self,
@@ -13,16 +13,15 @@ use hrdsl_ir::{
 use smallvec::{SmallVec, smallvec};
 
 use crate::{
-    Cause, Detail, Logged,
-    belief::{from as told_by, typed},
-    code::Op,
-    cycle::Machine,
-    event::{Args, Event, Ground, Mail, Reply, Speech},
-    intention::State,
-    log::sources,
+    belief::{Ground, from as told_by, typed},
+    code::PlanOp,
+    cycle::AgentMachine,
+    event::{Args, OutgoingMail, QueuedEvent, ReplyAddress, SpeechAct},
+    intention::IntentionState,
+    log::{FailureCause, LogDetail, LogItem, sources},
     mind::agree,
-    query::{Fault, Solver},
-    step::{Flow, Here},
+    query::{BeliefQueryError, QuerySolver},
+    step::{StepFlow, StepLocation},
     unify::{Slot, Trail, eval, known, unify, unify_all},
 };
 
@@ -34,7 +33,7 @@ fn is_of_goal(performative: Performative) -> bool {
     }
 }
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// What the content is to the agent at this place.
     fn subject(&self, content: ContentId, place: u16) -> Option<Subject> {
         let (_, id) = self.mind.me.peers.agents.get(usize::from(place))?;
@@ -56,27 +55,27 @@ impl<'p> Machine<'p> {
         }
     }
 
-    fn receiver(&self, place: u32, to: &Expr) -> Result<u16, Cause> {
+    fn receiver(&self, place: u32, to: &Expr) -> Result<u16, FailureCause> {
         let value = eval(to, self.mind.pool.see(place).vars())?;
         let own = |name: Symbol| (name == source_self()).then_some(self.mind.me.place);
         let found = value.as_symbol().and_then(|name| own(name).or_else(|| self.mind.me.peers.place(name)));
-        found.ok_or(Cause::NoSuchAgent(value))
+        found.ok_or(FailureCause::NoSuchAgent(value))
     }
 
-    pub fn say(&mut self, to: u16, speech: Speech) {
-        self.outbox.push(Mail { to, speech });
+    pub fn say(&mut self, to: u16, speech: SpeechAct) {
+        self.outbox.push(OutgoingMail { to, speech });
     }
 
     // ── Sending ──
 
     pub fn send(
         &mut self,
-        here: Here,
+        here: StepLocation,
         to: Option<&Expr>,
         performative: Performative,
         content: ContentId,
         args: &[Term],
-    ) -> Result<Flow, Cause> {
+    ) -> Result<StepFlow, FailureCause> {
         let suits = |subject: Option<Subject>| match subject {
             Some(Subject::Goal(_)) => is_of_goal(performative),
             Some(Subject::Belief(_)) => !is_of_goal(performative),
@@ -86,7 +85,7 @@ impl<'p> Machine<'p> {
             Some(to) => {
                 let to = self.receiver(here.place, to)?;
                 if !suits(self.subject(content, to)) {
-                    return Err(Cause::NoSuchContent(self.name_of(to)));
+                    return Err(FailureCause::NoSuchContent(self.name_of(to)));
                 }
                 smallvec![to]
             }
@@ -97,7 +96,7 @@ impl<'p> Machine<'p> {
         };
         let is_question = matches!(performative, Performative::AskOne | Performative::AskAll);
         if is_question && self.belief(content).is_none() {
-            return Err(Cause::NoSuchContent(self.mind.me.name));
+            return Err(FailureCause::NoSuchContent(self.mind.me.name));
         }
         let closed = matches!(performative, Performative::Tell | Performative::Achieve);
         let args = self.content(here.place, args, closed)?;
@@ -105,7 +104,7 @@ impl<'p> Machine<'p> {
         for to in receivers {
             let args = if closed { self.fitting(content, to, &args) } else { Ok(args.clone()) };
             match args {
-                Ok(args) => self.say(to, Speech::Say { performative, content, args }),
+                Ok(args) => self.say(to, SpeechAct::Say { performative, content, args }),
                 Err(cause) => {
                     // Nothing is sent if it does not suit everybody.
                     self.outbox.truncate(before);
@@ -114,11 +113,11 @@ impl<'p> Machine<'p> {
             }
         }
         self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     /// The values that are known; all must be, if it is `closed`.
-    fn content(&self, place: u32, terms: &[Term], closed: bool) -> Result<Args, Cause> {
+    fn content(&self, place: u32, terms: &[Term], closed: bool) -> Result<Args, FailureCause> {
         let slots = self.mind.pool.see(place).vars();
         crate::unify::well_bound(terms, slots)?;
         let mut args = Args::new();
@@ -129,7 +128,7 @@ impl<'p> Machine<'p> {
             };
             if closed && value.is_none() {
                 let variable = if let Term::Var(v) = term { *v } else { u16::MAX };
-                return Err(Cause::NoValue(EvalError::Unbound(variable)));
+                return Err(FailureCause::NoValue(EvalError::Unbound(variable)));
             }
             args.push(value);
         }
@@ -137,7 +136,7 @@ impl<'p> Machine<'p> {
     }
 
     /// The values, as the receiver declares them.
-    fn fitting(&self, content: ContentId, to: u16, args: &Args) -> Result<Args, Cause> {
+    fn fitting(&self, content: ContentId, to: u16, args: &Args) -> Result<Args, FailureCause> {
         let (_, id) = self.mind.me.peers.agents[usize::from(to)];
         let agent = &self.mind.program.agents[usize::from(id.0)];
         let params = match self.subject(content, to) {
@@ -147,54 +146,54 @@ impl<'p> Machine<'p> {
         };
         let Some(params) = params else { return Ok(args.clone()) };
         let ground: Ground = args.iter().copied().flatten().collect();
-        let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
+        let typed = typed(params, ground).ok_or(FailureCause::OutOfRange)?;
         Ok(typed.into_iter().map(Some).collect())
     }
 
     pub fn ask(
         &mut self,
-        here: Here,
+        here: StepLocation,
         to: &Expr,
         content: ContentId,
         args: &[Term],
         within: Option<&Expr>,
         all: bool,
-    ) -> Result<Flow, Cause> {
+    ) -> Result<StepFlow, FailureCause> {
         let to = self.receiver(here.place, to)?;
         if !matches!(self.subject(content, to), Some(Subject::Belief(_))) {
-            return Err(Cause::NoSuchContent(self.name_of(to)));
+            return Err(FailureCause::NoSuchContent(self.name_of(to)));
         }
         let args = self.content(here.place, args, false)?;
         let time = within.map(|e| self.time(here.place, e)).transpose()?;
         let question = self.next_serial();
         let timer = time.map(|t| self.set_timer(here.place, t));
-        self.mind.pool.at(here.place).state = State::Asking { question, timer };
-        self.say(to, Speech::Ask { question, content, args, all });
+        self.mind.pool.at(here.place).state = IntentionState::Asking { question, timer };
+        self.say(to, SpeechAct::Ask { question, content, args, all });
         self.measure(|m| *m.sent.entry((here.plan, here.site)).or_default() += 1);
-        Ok(Flow::Suspended)
+        Ok(StepFlow::Suspended)
     }
 
     // ── Hearing ──
 
-    pub fn hear(&mut self, from: u16, speech: Speech) {
+    pub fn hear(&mut self, from: u16, speech: SpeechAct) {
         match speech {
-            Speech::Say { performative, content, args } => {
-                if self.log.detail >= Detail::Steps {
-                    self.enter(0, Logged::Heard { from, performative, content, args: args.clone() });
+            SpeechAct::Say { performative, content, args } => {
+                if self.log.detail >= LogDetail::Steps {
+                    self.enter(0, LogItem::Heard { from, performative, content, args: args.clone() });
                 }
                 self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
                 self.obey(from, performative, content, args);
             }
-            Speech::Ask { question, content, args, all } => {
+            SpeechAct::Ask { question, content, args, all } => {
                 let asked = args.clone();
-                self.entry(0, || Logged::Asked { from, content, args: asked, all });
+                self.entry(0, || LogItem::Asked { from, content, args: asked, all });
                 let performative = if all { Performative::AskAll } else { Performative::AskOne };
                 self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
                 self.reply(from, content, args, Some(question), all);
             }
-            Speech::Answer { question, content, all, answers } => {
+            SpeechAct::Answer { question, content, all, answers } => {
                 let given = answers.clone();
-                self.entry(0, || Logged::Answered { from, content, all, answers: given });
+                self.entry(0, || LogItem::Answered { from, content, all, answers: given });
                 self.learn(question, answers.as_deref());
             }
         }
@@ -209,7 +208,7 @@ impl<'p> Machine<'p> {
                 let ground: Ground = args.iter().copied().flatten().collect();
                 match self.declared(belief, ground.clone()) {
                     Some(args) => self.believe(belief, &args, told_by(name)),
-                    None => self.enter(0, Logged::Refused { belief, args: ground.into_vec() }),
+                    None => self.enter(0, LogItem::Refused { belief, args: ground.into_vec() }),
                 }
             }
             Performative::Untell => {
@@ -220,7 +219,7 @@ impl<'p> Machine<'p> {
             Performative::Achieve => {
                 let Some(goal) = self.goal(content) else { return };
                 let told = name.as_symbol();
-                self.post(Event { told, ..Event::new(TriggerOn::GoalAdded(goal), args) });
+                self.post(QueuedEvent { told, ..QueuedEvent::new(TriggerOn::GoalAdded(goal), args) });
             }
             Performative::Unachieve => {
                 if let Some(goal) = self.goal(content) {
@@ -249,7 +248,7 @@ impl<'p> Machine<'p> {
         if let Some(row) = kept {
             let rows = self.mind.beliefs.of(belief);
             let (args, from) = (rows.row(row).to_vec(), sources(rows.annotations(row)));
-            self.enter(0, Logged::StillHeld { belief, args, meant: Some(source), from });
+            self.enter(0, LogItem::StillHeld { belief, args, meant: Some(source), from });
         }
     }
 
@@ -259,49 +258,49 @@ impl<'p> Machine<'p> {
 
     /// Answers a question from what is believed; a single answer also by the plans for the test goal.
     fn reply(&mut self, to: u16, content: ContentId, args: Args, question: Option<u64>, all: bool) {
-        let reply = Reply { to, content, question };
+        let reply = ReplyAddress { to, content, question };
         let Some(belief) = self.belief(content) else { return self.answer_nothing(reply) };
         let found = match self.answers_to(belief, &args, all) {
             Ok(found) => found,
             Err(fault) => {
-                self.enter(0, Logged::FaultyAnswer { belief, fault });
+                self.enter(0, LogItem::FaultyAnswer { belief, fault });
                 return self.answer_nothing(reply);
             }
         };
         if found.is_empty() && !all && self.plans_answer(belief) {
-            self.post(Event::new(TriggerOn::TestAdded(belief), args).asked(reply));
+            self.post(QueuedEvent::new(TriggerOn::TestAdded(belief), args).asked(reply));
         } else if found.is_empty() && !all {
             self.answer_nothing(reply);
         } else if let Some(question) = question {
-            self.say(to, Speech::Answer { question, content, all, answers: Some(found) });
+            self.say(to, SpeechAct::Answer { question, content, all, answers: Some(found) });
         } else {
             found.into_iter().for_each(|args| self.tell_back(reply, &args));
         }
     }
 
     /// Tells who asked, if the answer suits its belief.
-    fn tell_back(&mut self, reply: Reply, args: &Args) {
-        let Reply { to, content, .. } = reply;
+    fn tell_back(&mut self, reply: ReplyAddress, args: &Args) {
+        let ReplyAddress { to, content, .. } = reply;
         if let (Some(Subject::Belief(_)), Ok(args)) =
             (self.subject(content, to), self.fitting(content, to, args))
         {
-            self.say(to, Speech::Say { performative: Performative::Tell, content, args });
+            self.say(to, SpeechAct::Say { performative: Performative::Tell, content, args });
         }
     }
 
     /// The plan for a test goal that another agent asked for has this answer; what it left open, the belief base is
     /// asked.
-    pub fn answer(&mut self, reply: Reply, answer: &Args) -> Result<(), Cause> {
+    pub fn answer(&mut self, reply: ReplyAddress, answer: &Args) -> Result<(), FailureCause> {
         let mut whole = answer.clone();
         if answer.iter().any(Option::is_none) {
-            let belief = self.belief(reply.content).ok_or(Cause::NoAnswer)?;
-            whole = self.answers_to(belief, answer, false)?.pop().ok_or(Cause::NoAnswer)?;
+            let belief = self.belief(reply.content).ok_or(FailureCause::NoAnswer)?;
+            whole = self.answers_to(belief, answer, false)?.pop().ok_or(FailureCause::NoAnswer)?;
         }
         let content = reply.content;
         match reply.question {
             Some(question) => {
                 let answers = Some(vec![whole]);
-                self.say(reply.to, Speech::Answer { question, content, all: false, answers });
+                self.say(reply.to, SpeechAct::Answer { question, content, all: false, answers });
             }
             None => self.tell_back(reply, &whole),
         }
@@ -309,10 +308,15 @@ impl<'p> Machine<'p> {
     }
 
     /// The first fact that follows, or all.
-    fn answers_to(&mut self, belief: BeliefId, args: &Args, all: bool) -> Result<Vec<Args>, Fault> {
+    fn answers_to(
+        &mut self,
+        belief: BeliefId,
+        args: &Args,
+        all: bool,
+    ) -> Result<Vec<Args>, BeliefQueryError> {
         let terms = (0..args.len() as u16).map(Term::Var).collect();
-        let literal = Literal { belief, args: terms, annotations: Vec::new() };
-        let mut solver = Solver::default();
+        let literal = Literal { belief, args: terms, annotations: Vec::new(), origin: Span::default() };
+        let mut solver = QuerySolver::default();
         solver.with(args);
         let mut found = Vec::new();
         let mut more = solver.answer(&self.mind, &mut self.dice, &literal)?;
@@ -325,26 +329,26 @@ impl<'p> Machine<'p> {
 
     /// The answer to a question comes.
     fn learn(&mut self, question: u64, answers: Option<&[Args]>) {
-        let asks = |state: State| matches!(state, State::Asking { question: q, .. } if q == question);
+        let asks = |state: IntentionState| matches!(state, IntentionState::Asking { question: q, .. } if q == question);
         let Some(place) = self.mind.pool.iter().find(|(_, i)| asks(i.state)).map(|(p, _)| p) else { return };
         self.detach(place);
-        match answers.ok_or(Cause::NoAnswer).and_then(|answers| self.take_answers(place, answers)) {
+        match answers.ok_or(FailureCause::NoAnswer).and_then(|answers| self.take_answers(place, answers)) {
             Ok(()) => self.resume(place),
             Err(cause) => self.fail(place, cause),
         }
     }
 
-    fn take_answers(&mut self, place: u32, answers: &[Args]) -> Result<(), Cause> {
+    fn take_answers(&mut self, place: u32, answers: &[Args]) -> Result<(), FailureCause> {
         let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(()) };
         let line = self.mind.library.code(top.plan).get(usize::from(top.at));
-        let Some(Op::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
+        let Some(PlanOp::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
         let step: &'p StepKind = step;
         match step {
             StepKind::Ask { args, .. } => {
-                let answer = answers.first().ok_or(Cause::NoAnswer)?;
+                let answer = answers.first().ok_or(FailureCause::NoAnswer)?;
                 let vars = self.mind.pool.at(place).vars_mut();
                 let fits = unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(Cause::NoAnswer) }
+                if fits { Ok(()) } else { Err(FailureCause::NoAnswer) }
             }
             StepKind::AskAll { template, args, out, .. } => {
                 let vars = self.mind.pool.see(place).vars();
@@ -357,7 +361,7 @@ impl<'p> Machine<'p> {
                 }
                 let vars = self.mind.pool.at(place).vars_mut();
                 let fits = unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(Cause::NoAnswer) }
+                if fits { Ok(()) } else { Err(FailureCause::NoAnswer) }
             }
             // INVARIANT: only these two ask.
             _ => Ok(()),

@@ -10,7 +10,7 @@ use crate::intention::NO_PLAN;
 /// plan's body when all steps, those within blocks too, are counted from 0 in the order of the text
 /// ([`each_step`](hrdsl_ir::bdi::each_step)).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Measured {
+pub struct AgentCounts {
     /// By plan: selected; finished; failed, also by the failure of a sub-goal.
     pub selected: Vec<u64>,
     pub completed: Vec<u64>,
@@ -35,7 +35,7 @@ pub struct Measured {
     pub paths: BTreeMap<[u16; 3], u64>,
 }
 
-impl Measured {
+impl AgentCounts {
     #[must_use]
     pub fn new(agent: &Agent) -> Self {
         let plans = agent.plans.len();

@@ -11,15 +11,15 @@ use rustc_hash::FxHashMap;
 
 use crate::{
     belief::BeliefBase,
-    event::Event,
-    intention::{Frame, Intention, Pool},
-    plan::Library,
+    event::QueuedEvent,
+    intention::{Intention, IntentionPool, PlanFrame},
+    plan::PlanLibrary,
     unify::Slot,
 };
 
 /// The agents of a run.
 #[derive(Debug)]
-pub(crate) struct Peers {
+pub(crate) struct PeerTable {
     pub agents: Vec<(Symbol, AgentId)>,
     /// All names, in the order of the society.
     pub list: List,
@@ -27,7 +27,7 @@ pub(crate) struct Peers {
     places: FxHashMap<u64, u16>,
 }
 
-impl Peers {
+impl PeerTable {
     pub fn new(program: &Program, agents: impl Iterator<Item = AgentId>) -> Self {
         let name = |id: AgentId| {
             let agent = program.agents.get(usize::from(id.0));
@@ -50,16 +50,16 @@ impl Peers {
 
 /// Who an agent is among the others.
 #[derive(Clone, Debug)]
-pub(crate) struct Me {
+pub(crate) struct AgentIdentity {
     pub name: Symbol,
     pub place: u16,
     pub id: AgentId,
-    pub peers: Arc<Peers>,
+    pub peers: Arc<PeerTable>,
 }
 
 /// How a goal is had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Held {
+pub(crate) enum GoalAttitude {
     Intended,
     Desired,
     Suspended,
@@ -67,15 +67,15 @@ pub(crate) enum Held {
 
 /// All that a query may look at.
 #[derive(Debug)]
-pub(crate) struct Mind<'p> {
+pub(crate) struct MentalState<'p> {
     pub program: &'p Program,
     pub agent: Option<&'p Agent>,
-    pub library: Library<'p>,
+    pub library: PlanLibrary<'p>,
     pub beliefs: BeliefBase,
-    pub pool: Pool<'p>,
-    pub events: VecDeque<Event>,
+    pub pool: IntentionPool<'p>,
+    pub events: VecDeque<QueuedEvent>,
     pub now: Nanos,
-    pub me: Me,
+    pub me: AgentIdentity,
 }
 
 /// Whether the arguments are these, as far as these are known.
@@ -88,47 +88,56 @@ pub(crate) fn agree(args: &[Slot], wanted: &[Slot]) -> bool {
     args.len() == wanted.len() && args.iter().zip(wanted).all(agrees)
 }
 
-impl<'p> Mind<'p> {
+impl<'p> MentalState<'p> {
     /// At time 0, without beliefs.
-    pub fn new(program: &'p Program, agent: Option<&'p Agent>, me: Me) -> Self {
-        let library = agent.map_or_else(Library::default, |a| Library::new(program, me.id, a));
+    pub fn new(program: &'p Program, agent: Option<&'p Agent>, me: AgentIdentity) -> Self {
+        let library = agent.map_or_else(PlanLibrary::default, |a| PlanLibrary::new(program, me.id, a));
         let beliefs = agent.map_or_else(BeliefBase::default, BeliefBase::new);
-        Self { program, agent, library, beliefs, pool: Pool::default(), events: VecDeque::new(), now: 0, me }
+        Self {
+            program,
+            agent,
+            library,
+            beliefs,
+            pool: IntentionPool::default(),
+            events: VecDeque::new(),
+            now: 0,
+            me,
+        }
     }
 }
 
-impl Mind<'_> {
+impl MentalState<'_> {
     /// Whether the frame is of the goal: selected for it, or for its failure.
-    fn is_of(&self, frame: &Frame, goal: GoalId) -> bool {
+    fn is_of(&self, frame: &PlanFrame, goal: GoalId) -> bool {
         let on = self.library.plan(frame.plan).trigger.on;
         !frame.branch && (on == TriggerOn::GoalAdded(goal) || on == TriggerOn::GoalFailed(goal))
     }
 
     /// The lowest frame of the intention with such a goal.
     pub fn frame_of(&self, intention: &Intention, goal: GoalId, args: &[Slot]) -> Option<usize> {
-        let is_it = |f: &Frame| self.is_of(f, goal) && agree(intention.args(*f), args);
+        let is_it = |f: &PlanFrame| self.is_of(f, goal) && agree(intention.args(*f), args);
         intention.frames.iter().position(is_it)
     }
 
     /// Calls `f` with the arguments of each such goal: by intention, in their order, from the lowest frame on; then, if it
     /// is desired, of those that wait for a plan.
-    pub fn each_had(&self, how: Held, goal: GoalId, f: &mut dyn FnMut(&[Slot])) {
+    pub fn each_had(&self, attitude: GoalAttitude, goal: GoalId, f: &mut dyn FnMut(&[Slot])) {
         for place in self.pool.in_order() {
             let intention = self.pool.see(place);
-            if how == Held::Suspended && !intention.suspended {
+            if attitude == GoalAttitude::Suspended && !intention.suspended {
                 continue;
             }
             intention.frames.iter().filter(|x| self.is_of(x, goal)).for_each(|x| f(intention.args(*x)));
         }
-        if how == Held::Desired {
+        if attitude == GoalAttitude::Desired {
             let posted = self.events.iter().filter(|e| e.on == TriggerOn::GoalAdded(goal));
             posted.for_each(|e| f(&e.args));
         }
     }
 
-    pub fn has_any(&self, how: Held, goal: GoalId) -> bool {
+    pub fn has_any(&self, attitude: GoalAttitude, goal: GoalId) -> bool {
         let mut any = false;
-        self.each_had(how, goal, &mut |_| any = true);
+        self.each_had(attitude, goal, &mut |_| any = true);
         any
     }
 }

@@ -9,17 +9,17 @@ use hrdsl_ir::{
 };
 use smallvec::SmallVec;
 
-use crate::code::{Line, compile};
+use crate::code::{PlanLine, compile};
 
 /// An agent's plans, indexed by what triggers them.
 #[derive(Debug, Default)]
-pub(crate) struct Library<'p> {
+pub(crate) struct PlanLibrary<'p> {
     plans: &'p [Plan],
     beliefs: usize,
     goals: usize,
     /// The relevant plans in source order, by [`place`](Self::place).
     relevant: Vec<SmallVec<[u16; 4]>>,
-    code: Vec<Vec<Line<'p>>>,
+    code: Vec<Vec<PlanLine<'p>>>,
     /// Whether the trigger's terms are different variables, so that they match any values.
     plain: Vec<bool>,
     /// Whether the plan's frame may be dropped as soon as its body is finished, even below a sub-goal.
@@ -30,7 +30,7 @@ pub(crate) struct Library<'p> {
     percepts: Vec<SmallVec<[BeliefId; 1]>>,
 }
 
-impl<'p> Library<'p> {
+impl<'p> PlanLibrary<'p> {
     pub fn new(program: &Program, id: AgentId, agent: &'p Agent) -> Self {
         let (beliefs, goals) = (agent.beliefs.len(), agent.goals.len());
         let mut library = Self { plans: &agent.plans, beliefs, goals, ..Self::default() };
@@ -102,7 +102,7 @@ impl<'p> Library<'p> {
         self.plain[usize::from(index)]
     }
 
-    pub fn code(&self, index: u16) -> &[Line<'p>] {
+    pub fn code(&self, index: u16) -> &[PlanLine<'p>] {
         &self.code[usize::from(index)]
     }
 
@@ -166,7 +166,7 @@ fn in_context(context: &Context, named: &mut [bool]) {
         Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
         Context::Not(inner) => in_context(inner, named),
         Context::And(all) | Context::Or(all) => all.iter().for_each(|c| in_context(c, named)),
-        Context::Internal(internal) => match &**internal {
+        Context::Internal(internal, _) => match &**internal {
             Internal::Intend { goal, .. }
             | Internal::Desire { goal, .. }
             | Internal::Suspended { goal, .. } => name(*goal, named),

@@ -15,9 +15,9 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{Annotations, Cursor, picked},
-    dice::Dice,
-    mind::Mind,
+    belief::{Annotations, FactCursor, picked},
+    dice::AgentRng,
+    mind::MentalState,
     unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
 };
 
@@ -29,7 +29,7 @@ pub(crate) const MAX_STEPS: u64 = 10_000_000;
 
 /// Why a query has no answer, not even "none".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub enum BeliefQueryError {
     NoValue(EvalError),
     /// More than 100 000 rules call each other.
     TooDeep,
@@ -37,19 +37,19 @@ pub enum Fault {
     TooLong,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for BeliefQueryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Fault::NoValue(error) => error.fmt(f),
-            Fault::TooDeep => f.write_str("rules call each other too deeply"),
-            Fault::TooLong => f.write_str("the query takes too many steps"),
+            BeliefQueryError::NoValue(error) => error.fmt(f),
+            BeliefQueryError::TooDeep => f.write_str("rules call each other too deeply"),
+            BeliefQueryError::TooLong => f.write_str("the query takes too many steps"),
         }
     }
 }
 
-impl From<EvalError> for Fault {
+impl From<EvalError> for BeliefQueryError {
     fn from(error: EvalError) -> Self {
-        Fault::NoValue(error)
+        BeliefQueryError::NoValue(error)
     }
 }
 
@@ -58,14 +58,14 @@ const DONE: u32 = u32::MAX;
 
 /// Where a formula stands: the variables it means, how many rules are being called, and what follows it.
 #[derive(Clone, Copy, Debug)]
-struct At {
+struct FormulaPosition {
     base: u32,
     depth: u32,
     next: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Cont<'p> {
+enum SolverContinuation<'p> {
     /// All of these are to be answered.
     Goals(&'p [Context]),
     /// A rule's body has an answer: the head is matched with what called it, whose variables start at `caller`.
@@ -77,10 +77,10 @@ enum Cont<'p> {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Way<'p> {
+enum AnswerSource<'p> {
     Facts {
         literal: &'p Literal,
-        cursor: Cursor,
+        cursor: FactCursor,
         row: Option<(usize, usize)>,
     },
     Rules {
@@ -109,9 +109,9 @@ enum Way<'p> {
 
 /// A way to go on, and the heights of the stacks to go back to.
 #[derive(Clone, Copy, Debug)]
-struct Choice<'p> {
-    way: Way<'p>,
-    at: At,
+struct ChoicePoint<'p> {
+    source: AnswerSource<'p>,
+    at: FormulaPosition,
     trail: u32,
     conts: u32,
     slots: u32,
@@ -119,12 +119,12 @@ struct Choice<'p> {
 
 /// The search, and its stacks, kept from one query to the next.
 #[derive(Debug, Default)]
-pub(crate) struct Solver<'p> {
+pub(crate) struct QuerySolver<'p> {
     /// Before a query: the variables of its formula. After it: the same, with what the answer binds, then those of rules.
     pub slots: Vec<Slot>,
     pub trail: Trail,
-    conts: Vec<(Cont<'p>, At)>,
-    choices: Vec<Choice<'p>>,
+    conts: Vec<(SolverContinuation<'p>, FormulaPosition)>,
+    choices: Vec<ChoicePoint<'p>>,
     collected: Vec<Value>,
     /// The arguments of goals that are had.
     had: Vec<Slot>,
@@ -134,7 +134,7 @@ pub(crate) struct Solver<'p> {
     pub farthest: usize,
 }
 
-impl<'p> Solver<'p> {
+impl<'p> QuerySolver<'p> {
     /// Begins with as many open variables.
     #[inline]
     pub fn open(&mut self, variables: usize) {
@@ -151,7 +151,12 @@ impl<'p> Solver<'p> {
     }
 
     /// The first answer of the formula; what it binds is in `slots`.
-    pub fn solve(&mut self, mind: &Mind<'p>, dice: &mut Dice, formula: &'p Context) -> Result<bool, Fault> {
+    pub fn solve(
+        &mut self,
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
+        formula: &'p Context,
+    ) -> Result<bool, BeliefQueryError> {
         match formula {
             Context::True => return Ok(true),
             Context::Test(expr) => return Ok(truth(eval(expr, &self.slots)?)?),
@@ -160,12 +165,12 @@ impl<'p> Solver<'p> {
             | Context::Not(_)
             | Context::Belief(_)
             | Context::Unify(..)
-            | Context::Internal(_) => {}
+            | Context::Internal(_, _) => {}
         }
         self.begin(if let Context::And(parts) = formula { parts } else { &[] });
         let mark = self.trail.len();
-        let at = At { base: 0, depth: 0, next: DONE };
-        let first = self.push(Cont::Goals(std::slice::from_ref(formula)), at);
+        let at = FormulaPosition { base: 0, depth: 0, next: DONE };
+        let first = self.push(SolverContinuation::Goals(std::slice::from_ref(formula)), at);
         let found = self.advance(mind, dice, first);
         if found != Ok(true) {
             undo(&mut self.slots, &mut self.trail, mark);
@@ -174,10 +179,15 @@ impl<'p> Solver<'p> {
     }
 
     /// The first answer of a literal.
-    pub fn answer(&mut self, mind: &Mind<'p>, dice: &mut Dice, literal: &'p Literal) -> Result<bool, Fault> {
+    pub fn answer(
+        &mut self,
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
+        literal: &'p Literal,
+    ) -> Result<bool, BeliefQueryError> {
         self.begin(&[]);
         let mark = self.trail.len();
-        let found = match self.literal(mind, literal, At { base: 0, depth: 0, next: DONE })? {
+        let found = match self.literal(mind, literal, FormulaPosition { base: 0, depth: 0, next: DONE })? {
             Some(at) => self.advance(mind, dice, at),
             None => Ok(false),
         };
@@ -196,7 +206,12 @@ impl<'p> Solver<'p> {
         self.parts = parts;
     }
 
-    fn literal(&mut self, mind: &Mind<'p>, literal: &'p Literal, at: At) -> Result<Option<u32>, Fault> {
+    fn literal(
+        &mut self,
+        mind: &MentalState<'p>,
+        literal: &'p Literal,
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let slots = &self.slots[at.base as usize..];
         well_bound(&literal.args, slots)?;
         let first = literal.args.first().and_then(|t| known(t, slots));
@@ -205,29 +220,34 @@ impl<'p> Solver<'p> {
     }
 
     /// Whether there is another answer after the last one.
-    pub fn again(&mut self, mind: &Mind<'p>, dice: &mut Dice) -> Result<bool, Fault> {
+    pub fn again(&mut self, mind: &MentalState<'p>, dice: &mut AgentRng) -> Result<bool, BeliefQueryError> {
         match self.backtrack(mind)? {
             Some(at) => self.advance(mind, dice, at),
             None => Ok(false),
         }
     }
 
-    fn push(&mut self, cont: Cont<'p>, at: At) -> u32 {
+    fn push(&mut self, cont: SolverContinuation<'p>, at: FormulaPosition) -> u32 {
         self.conts.push((cont, at));
         self.conts.len() as u32 - 1
     }
 
-    fn choose(&mut self, way: Way<'p>, at: At) {
+    fn choose(&mut self, source: AnswerSource<'p>, at: FormulaPosition) {
         let (trail, conts, slots) =
             (self.trail.len() as u32, self.conts.len() as u32, self.slots.len() as u32);
-        self.choices.push(Choice { way, at, trail, conts, slots });
+        self.choices.push(ChoicePoint { source, at, trail, conts, slots });
     }
 
-    fn advance(&mut self, mind: &Mind<'p>, dice: &mut Dice, mut at: u32) -> Result<bool, Fault> {
+    fn advance(
+        &mut self,
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
+        mut at: u32,
+    ) -> Result<bool, BeliefQueryError> {
         while at != DONE {
             self.steps += 1;
             if self.steps > MAX_STEPS {
-                return Err(Fault::TooLong);
+                return Err(BeliefQueryError::TooLong);
             }
             let (cont, here) = self.conts[at as usize];
             let next = match self.follow(mind, dice, cont, here)? {
@@ -245,28 +265,29 @@ impl<'p> Solver<'p> {
     /// One continuation; gives the next one, or `None` if there is no answer this way.
     fn follow(
         &mut self,
-        mind: &Mind<'p>,
-        dice: &mut Dice,
-        cont: Cont<'p>,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
+        cont: SolverContinuation<'p>,
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         match cont {
-            Cont::Goals(goals) => {
+            SolverContinuation::Goals(goals) => {
                 if goals.as_ptr_range().end == self.parts.as_ptr_range().end && at.base == 0 {
                     self.farthest = self.farthest.max(self.parts.len() - goals.len());
                 }
                 let Some((first, rest)) = goals.split_first() else { return Ok(Some(at.next)) };
-                let next = if rest.is_empty() { at.next } else { self.push(Cont::Goals(rest), at) };
-                self.goal(mind, dice, first, At { next, ..at })
+                let next =
+                    if rest.is_empty() { at.next } else { self.push(SolverContinuation::Goals(rest), at) };
+                self.goal(mind, dice, first, FormulaPosition { next, ..at })
             }
-            Cont::Return { rule, literal, caller } => self.give_back(rule, literal, caller, at),
-            Cont::Refuted(height) => {
+            SolverContinuation::Return { rule, literal, caller } => self.give_back(rule, literal, caller, at),
+            SolverContinuation::Refuted(height) => {
                 let negation = self.choices[height as usize];
                 self.choices.truncate(height as usize);
                 undo(&mut self.slots, &mut self.trail, negation.trail as usize);
                 Ok(None)
             }
-            Cont::Collected(template) => {
+            SolverContinuation::Collected(template) => {
                 let value = match template {
                     Some(template) => eval(template, &self.slots[at.base as usize..])?,
                     None => Value::Bool(true),
@@ -279,11 +300,11 @@ impl<'p> Solver<'p> {
 
     fn goal(
         &mut self,
-        mind: &Mind<'p>,
-        dice: &mut Dice,
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
         goal: &'p Context,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let yes = |holds: bool| Ok(holds.then_some(at.next));
         match goal {
             Context::True => yes(true),
@@ -292,44 +313,47 @@ impl<'p> Solver<'p> {
                 let value = eval(expr, &self.slots[at.base as usize..])?;
                 yes(self.matches(term, value, at)?)
             }
-            Context::And(all) => Ok(Some(self.push(Cont::Goals(all), at))),
+            Context::And(all) => Ok(Some(self.push(SolverContinuation::Goals(all), at))),
             Context::Or(any) => Ok(self.either(any, at)),
             Context::Not(inner) => {
                 let height = self.choices.len() as u32;
-                self.choose(Way::Negation, at);
-                let end = self.push(Cont::Refuted(height), at);
-                Ok(Some(self.push(Cont::Goals(std::slice::from_ref(inner)), At { next: end, ..at })))
+                self.choose(AnswerSource::Negation, at);
+                let end = self.push(SolverContinuation::Refuted(height), at);
+                Ok(Some(self.push(
+                    SolverContinuation::Goals(std::slice::from_ref(inner)),
+                    FormulaPosition { next: end, ..at },
+                )))
             }
             Context::Belief(literal) => self.literal(mind, literal, at),
-            Context::Internal(internal) => self.internal(mind, dice, internal, at),
+            Context::Internal(internal, _) => self.internal(mind, dice, internal, at),
         }
     }
 
-    fn matches(&mut self, term: &Term, value: Value, at: At) -> Result<bool, EvalError> {
+    fn matches(&mut self, term: &Term, value: Value, at: FormulaPosition) -> Result<bool, EvalError> {
         unify(term, value, at.base as usize, &mut self.slots, &mut self.trail)
     }
 
-    fn either(&mut self, any: &'p [Context], at: At) -> Option<u32> {
+    fn either(&mut self, any: &'p [Context], at: FormulaPosition) -> Option<u32> {
         let (first, rest) = any.split_first()?;
         if !rest.is_empty() {
-            self.choose(Way::Or(rest), at);
+            self.choose(AnswerSource::Or(rest), at);
         }
-        Some(self.push(Cont::Goals(std::slice::from_ref(first)), at))
+        Some(self.push(SolverContinuation::Goals(std::slice::from_ref(first)), at))
     }
 
     /// The next fact that matches, from the cursor on; after the last the rules. `row` is a fact whose annotations can be
     /// chosen in another way.
     fn facts(
         &mut self,
-        mind: &Mind<'p>,
+        mind: &MentalState<'p>,
         literal: &'p Literal,
-        mut cursor: Cursor,
+        mut cursor: FactCursor,
         mut row: Option<(usize, usize)>,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let rows = mind.beliefs.of(literal.belief);
         loop {
-            let (index, mut way) = match row.take() {
+            let (index, mut choice_no) = match row.take() {
                 Some(row) => row,
                 None => match rows.next(&mut cursor) {
                     Some(index) => (index, 0),
@@ -337,18 +361,18 @@ impl<'p> Solver<'p> {
                 },
             };
             let annotations = rows.annotations(index);
-            let ways = annotations.len().saturating_pow(literal.annotations.len() as u32);
-            while way < ways {
+            let choices = annotations.len().saturating_pow(literal.annotations.len() as u32);
+            while choice_no < choices {
                 let mark = self.trail.len();
                 let args = rows.row(index).iter().map(|v| Some(*v));
                 let base = at.base as usize;
                 let found = unify_all(&literal.args, args, base, &mut self.slots, &mut self.trail)?
-                    && self.annotated(literal, annotations, way, at)?;
-                way += 1;
+                    && self.annotated(literal, annotations, choice_no, at)?;
+                choice_no += 1;
                 if found {
-                    let row = (way < ways).then_some((index, way));
-                    let way = Way::Facts { literal, cursor, row };
-                    self.choose(way, at);
+                    let row = (choice_no < choices).then_some((index, choice_no));
+                    let source = AnswerSource::Facts { literal, cursor, row };
+                    self.choose(source, at);
                     if let Some(choice) = self.choices.last_mut() {
                         choice.trail = mark as u32;
                     }
@@ -359,15 +383,15 @@ impl<'p> Solver<'p> {
         }
     }
 
-    /// Whether each annotation of the literal matches that of the fact which this way picks: the last changes fastest.
+    /// Whether each annotation of the literal matches that of the fact which the choice of this number picks: the last changes fastest.
     fn annotated(
         &mut self,
         literal: &Literal,
         of: &Annotations,
-        way: usize,
-        at: At,
+        choice_no: usize,
+        at: FormulaPosition,
     ) -> Result<bool, EvalError> {
-        let picked = picked(way, of.len(), literal.annotations.len());
+        let picked = picked(choice_no, of.len(), literal.annotations.len());
         for ((what, term), place) in literal.annotations.iter().zip(picked) {
             let (held, value) = of[place];
             if held != *what || !self.matches(term, value, at)? {
@@ -380,32 +404,34 @@ impl<'p> Solver<'p> {
     /// The next rule whose head matches.
     fn rules(
         &mut self,
-        mind: &Mind<'p>,
+        mind: &MentalState<'p>,
         literal: &'p Literal,
         from: usize,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let rules = mind.library.rules(literal.belief);
         // What is derived has no annotations.
         if !literal.annotations.is_empty() || from >= rules.len() {
             return Ok(None);
         }
         if at.depth >= MAX_DEPTH {
-            return Err(Fault::TooDeep);
+            return Err(BeliefQueryError::TooDeep);
         }
         for (index, rule) in rules.iter().copied().enumerate().skip(from) {
             let (mark, base) = (self.trail.len(), self.slots.len());
-            self.choose(Way::Rules { literal, from: index + 1 }, at);
+            self.choose(AnswerSource::Rules { literal, from: index + 1 }, at);
             self.slots.resize(base + rule.vars.len(), None);
             if self.call(rule, literal, at.base as usize, base)? {
                 if index + 1 == rules.len() {
                     self.choices.pop();
                 }
-                let back = Cont::Return { rule, literal, caller: at.base };
-                let inner = At { base: base as u32, depth: at.depth + 1, next: at.next };
+                let back = SolverContinuation::Return { rule, literal, caller: at.base };
+                let inner = FormulaPosition { base: base as u32, depth: at.depth + 1, next: at.next };
                 let back = self.push(back, inner);
                 let body = std::slice::from_ref(&rule.body);
-                return Ok(Some(self.push(Cont::Goals(body), At { next: back, ..inner })));
+                return Ok(Some(
+                    self.push(SolverContinuation::Goals(body), FormulaPosition { next: back, ..inner }),
+                ));
             }
             self.choices.pop();
             undo(&mut self.slots, &mut self.trail, mark);
@@ -415,7 +441,13 @@ impl<'p> Solver<'p> {
     }
 
     /// Gives a rule what its caller knows; an argument that the head computes is compared when the rule has an answer.
-    fn call(&mut self, rule: &Rule, literal: &Literal, caller: usize, base: usize) -> Result<bool, Fault> {
+    fn call(
+        &mut self,
+        rule: &Rule,
+        literal: &Literal,
+        caller: usize,
+        base: usize,
+    ) -> Result<bool, BeliefQueryError> {
         for (head, arg) in rule.args.iter().zip(&literal.args) {
             if let Term::Expr(expr) = arg {
                 eval(expr, &self.slots[caller..base])?;
@@ -436,8 +468,8 @@ impl<'p> Solver<'p> {
         rule: &Rule,
         literal: &Literal,
         caller: u32,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         for (head, arg) in rule.args.iter().zip(&literal.args) {
             if matches!((head, arg), (_, Term::Any)) {
                 continue;
@@ -452,7 +484,7 @@ impl<'p> Solver<'p> {
                     continue;
                 }
                 let variable = if let Term::Var(v) = head { *v } else { 0 };
-                return Err(Fault::NoValue(EvalError::Unbound(variable)));
+                return Err(BeliefQueryError::NoValue(EvalError::Unbound(variable)));
             };
             if !unify(arg, value, caller as usize, &mut self.slots, &mut self.trail)? {
                 return Ok(None);
@@ -462,19 +494,19 @@ impl<'p> Solver<'p> {
     }
 
     /// The latest choice that leads on.
-    fn backtrack(&mut self, mind: &Mind<'p>) -> Result<Option<u32>, Fault> {
-        while let Some(Choice { way, at, trail, conts, slots }) = self.choices.pop() {
+    fn backtrack(&mut self, mind: &MentalState<'p>) -> Result<Option<u32>, BeliefQueryError> {
+        while let Some(ChoicePoint { source, at, trail, conts, slots }) = self.choices.pop() {
             undo(&mut self.slots, &mut self.trail, trail as usize);
             self.slots.resize(slots as usize, None);
             self.conts.truncate(conts as usize);
-            let next = match way {
-                Way::Facts { literal, cursor, row } => self.facts(mind, literal, cursor, row, at)?,
-                Way::Rules { literal, from } => self.rules(mind, literal, from, at)?,
-                Way::Or(any) => self.either(any, at),
-                Way::Member { element, rest } => self.member(element, rest, at)?,
-                Way::Goals { args, from, to } => self.goals(args, from, to, at)?,
-                Way::Negation => Some(at.next),
-                Way::Collection { start, what } => self.gathered(start, what, at)?,
+            let next = match source {
+                AnswerSource::Facts { literal, cursor, row } => self.facts(mind, literal, cursor, row, at)?,
+                AnswerSource::Rules { literal, from } => self.rules(mind, literal, from, at)?,
+                AnswerSource::Or(any) => self.either(any, at),
+                AnswerSource::Member { element, rest } => self.member(element, rest, at)?,
+                AnswerSource::Goals { args, from, to } => self.goals(args, from, to, at)?,
+                AnswerSource::Negation => Some(at.next),
+                AnswerSource::Collection { start, what } => self.gathered(start, what, at)?,
             };
             if next.is_some() {
                 return Ok(next);

@@ -3,20 +3,20 @@
 use hrdsl_ir::bdi::{Literal, StepKind, TriggerOn};
 
 use crate::{
-    Cause, Failure, Logged,
-    code::{Op, settle},
-    cycle::Machine,
-    event::{Args, Event, Reply, Speech},
-    intention::{Frame, State},
+    code::{PlanOp, settle},
+    cycle::AgentMachine,
+    event::{Args, QueuedEvent, ReplyAddress, SpeechAct},
+    intention::{IntentionState, PlanFrame},
+    log::{FailureCause, IntentionFailure, LogItem},
     step::answers,
     unify::{Trail, known, unify_all},
 };
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// Lets an intention go on: plans that are finished leave it, and if one is left it is ready.
     pub fn resume(&mut self, place: u32) {
         if self.mind.pool.see(place).suspended {
-            self.mind.pool.at(place).state = State::Held;
+            self.mind.pool.at(place).state = IntentionState::Held;
             return;
         }
         loop {
@@ -27,9 +27,9 @@ impl<'p> Machine<'p> {
             };
             let line = self.mind.library.code(top.plan).get(usize::from(top.next)).map(|l| &l.op);
             match line {
-                Some(Op::Join) if top.branch => {}
+                Some(PlanOp::Join) if top.branch => {}
                 // The next answer of a `for` takes no step, nor does its end.
-                Some(Op::Next { end }) => {
+                Some(PlanOp::Next { end }) => {
                     let end = settle(self.mind.library.code(top.plan), *end);
                     let to = if self.next_answer(place) {
                         settle(self.mind.library.code(top.plan), top.next + 1)
@@ -49,7 +49,7 @@ impl<'p> Machine<'p> {
             let is_test = matches!(plan.trigger.on, TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_));
             let answers = (is_test && !top.branch)
                 .then(|| answers(&plan.trigger.args, intention.args(top), intention.vars()));
-            let own = answers.is_some().then(|| self.failure(place, Cause::NoAnswer));
+            let own = answers.is_some().then(|| self.failure(place, FailureCause::NoAnswer));
             self.leave(place);
             if !top.branch {
                 self.measure(|m| m.completed[usize::from(top.plan)] += 1);
@@ -59,7 +59,7 @@ impl<'p> Machine<'p> {
                 if self.mind.pool.see(place).frames.is_empty() {
                     let number = self.mind.pool.see(place).number;
                     if let Some(failure) = own {
-                        self.enter(number, Logged::Failed(Failure { cause, ..failure }));
+                        self.enter(number, LogItem::Failed(IntentionFailure { cause, ..failure }));
                     }
                     self.unwind(place);
                 } else {
@@ -72,7 +72,7 @@ impl<'p> Machine<'p> {
 
     /// Takes the top plan off, and what is bound to it.
     #[inline]
-    pub fn leave(&mut self, place: u32) -> Option<Frame> {
+    pub fn leave(&mut self, place: u32) -> Option<PlanFrame> {
         let frame = self.mind.pool.pop(place)?;
         let intention = self.mind.pool.at(place);
         if intention.atomic > 0 && !frame.branch {
@@ -97,7 +97,7 @@ impl<'p> Machine<'p> {
     /// An intention is empty: a branch's parent may go on.
     fn end(&mut self, place: u32) {
         let parent = self.mind.pool.see(place).parent;
-        self.entry_of(place, || Logged::Finished);
+        self.entry_of(place, || LogItem::Finished);
         self.mind.pool.release(place);
         let Some(parent) = parent else { return };
         let Some((left, all)) = self.lose_child(parent, place) else { return };
@@ -115,14 +115,14 @@ impl<'p> Machine<'p> {
             return;
         }
         self.drop_children(parent);
-        self.fail(parent, if all { Cause::Branch } else { Cause::AllBranches });
+        self.fail(parent, if all { FailureCause::Branch } else { FailureCause::AllBranches });
     }
 
     /// A branch was dropped.
     pub fn miss_branch(&mut self, parent: u32, child: u32) {
         match self.lose_child(parent, child) {
             Some((0, true)) => self.resume(parent),
-            Some((0, false)) => self.fail(parent, Cause::AllBranches),
+            Some((0, false)) => self.fail(parent, FailureCause::AllBranches),
             Some(_) | None => {}
         }
     }
@@ -131,15 +131,15 @@ impl<'p> Machine<'p> {
     fn lose_child(&mut self, parent: u32, child: u32) -> Option<(u32, bool)> {
         let intention = self.mind.pool.at(parent);
         intention.children.retain(|c| *c != child);
-        let State::Forked { left, all } = intention.state else { return None };
+        let IntentionState::Forked { left, all } = intention.state else { return None };
         let left = left.saturating_sub(1);
-        intention.state = State::Forked { left, all };
+        intention.state = IntentionState::Forked { left, all };
         Some((left, all))
     }
 
     /// Gives a test goal's answers to the query that asked, or to the agent. What the plan left open, the belief base is
     /// asked again.
-    fn give(&mut self, place: u32, answers: &Args) -> Result<(), Cause> {
+    fn give(&mut self, place: u32, answers: &Args) -> Result<(), FailureCause> {
         let intention = self.mind.pool.see(place);
         let Some(asker) = intention.frames.last().copied() else {
             if let Some(reply) = intention.reply {
@@ -151,13 +151,13 @@ impl<'p> Machine<'p> {
         let Some(literal) = self.asked_by(asker) else { return Ok(()) };
         let vars = self.mind.pool.at(place).vars_mut();
         if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut Trail::new())? {
-            return Err(Cause::NoAnswer);
+            return Err(FailureCause::NoAnswer);
         }
         let open = literal.args.iter().any(|t| *t != hrdsl_ir::bdi::Term::Any && known(t, vars).is_none());
         if open {
             self.solver.with(self.mind.pool.see(place).vars());
             if !self.solver.answer(&self.mind, &mut self.dice, literal)? {
-                return Err(Cause::NoAnswer);
+                return Err(FailureCause::NoAnswer);
             }
             let vars = self.mind.pool.at(place).vars_mut();
             vars.copy_from_slice(&self.solver.slots[..vars.len()]);
@@ -166,9 +166,9 @@ impl<'p> Machine<'p> {
     }
 
     /// The literal of the query that a frame is at.
-    fn asked_by(&self, frame: Frame) -> Option<&'p Literal> {
+    fn asked_by(&self, frame: PlanFrame) -> Option<&'p Literal> {
         match self.mind.library.code(frame.plan).get(usize::from(frame.at)).map(|l| &l.op) {
-            Some(Op::Plain(StepKind::Query(literal))) => Some(literal),
+            Some(PlanOp::Plain(StepKind::Query(literal))) => Some(literal),
             // INVARIANT: only a query asks.
             _ => None,
         }
@@ -177,23 +177,23 @@ impl<'p> Machine<'p> {
     // ── Failure ──
 
     /// The step that an intention is at has failed.
-    pub fn fail(&mut self, place: u32, cause: Cause) {
+    pub fn fail(&mut self, place: u32, cause: FailureCause) {
         if !self.mind.pool.see(place).frames.is_empty() {
             let failure = self.failure(place, cause);
             let number = self.mind.pool.see(place).number;
-            self.enter(number, Logged::Failed(failure));
+            self.enter(number, LogItem::Failed(failure));
         }
         self.unwind(place);
     }
 
     /// A goal or a query has no plan.
-    pub fn fail_by_itself(&mut self, event: &Event) {
+    pub fn fail_by_itself(&mut self, event: &QueuedEvent) {
         if let Some(place) = event.of {
             let height = self.mind.pool.see(place).frames.len();
             self.drop_deadlines(place, height);
         }
         let Some(on) = failed(event.on) else { return };
-        let event = Event { on, by: None, ..event.clone() };
+        let event = QueuedEvent { on, by: None, ..event.clone() };
         if let Some(plan) = self.select(&event, event.of) {
             self.adopt(plan, &event);
         } else if let Some(place) = event.of {
@@ -214,7 +214,7 @@ impl<'p> Machine<'p> {
         match posted {
             // It has no plan yet.
             Some(event) if self.mind.pool.see(place).frames.len() == height => self.fail_by_itself(&event),
-            _ => self.fail(place, Cause::TimedOut),
+            _ => self.fail(place, FailureCause::TimedOut),
         }
     }
 
@@ -225,7 +225,7 @@ impl<'p> Machine<'p> {
             let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = Args::from_slice(self.mind.pool.see(place).args(top));
-                let event = Event { of: Some(place), told: top.told, ..Event::new(on, args) };
+                let event = QueuedEvent { of: Some(place), told: top.told, ..QueuedEvent::new(on, args) };
                 self.select(&event, Some(place)).map(|plan| (plan, event))
             });
             self.leave(place);
@@ -248,7 +248,7 @@ impl<'p> Machine<'p> {
     }
 
     /// What the plan on top is at, which fails.
-    fn failure(&self, place: u32, cause: Cause) -> Failure {
+    fn failure(&self, place: u32, cause: FailureCause) -> IntentionFailure {
         let intention = self.mind.pool.see(place);
         // INVARIANT: whoever asks has seen to it that there is a plan.
         let top = intention.frames[intention.frames.len() - 1];
@@ -256,14 +256,14 @@ impl<'p> Machine<'p> {
         let origin =
             self.mind.library.code(top.plan).get(usize::from(top.at)).map_or(plan.origin, |l| l.origin);
         let args = Args::from_slice(intention.args(top));
-        Failure { on: plan.trigger.on, args, plan: top.plan, cause, origin }
+        IntentionFailure { on: plan.trigger.on, args, plan: top.plan, cause, origin }
     }
 
-    pub fn answer_nothing(&mut self, reply: Reply) {
+    pub fn answer_nothing(&mut self, reply: ReplyAddress) {
         if let Some(question) = reply.question {
             self.say(
                 reply.to,
-                Speech::Answer { question, content: reply.content, all: false, answers: None },
+                SpeechAct::Answer { question, content: reply.content, all: false, answers: None },
             );
         }
     }

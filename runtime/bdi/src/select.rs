@@ -7,38 +7,38 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Detail, Logged, Verdict,
     belief::{Annotations, from, own, picked},
-    cycle::Machine,
-    event::Event,
-    query::{Fault, Solver},
+    cycle::AgentMachine,
+    event::QueuedEvent,
+    log::{ApplicabilityVerdict, LogDetail, LogItem},
+    query::{BeliefQueryError, QuerySolver},
     unify::{Slot, eval, unify, unify_all, well_bound},
 };
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// The first applicable plan; its variables are in the solver. What went wrong on the way is logged.
-    pub fn select(&mut self, event: &Event, of: Option<u32>) -> Option<u16> {
-        if self.measured.is_some() || self.log.detail >= Detail::Reasons {
+    pub fn select(&mut self, event: &QueuedEvent, of: Option<u32>) -> Option<u16> {
+        if self.measured.is_some() || self.log.detail >= LogDetail::Reasons {
             return self.select_closely(event, of);
         }
         for at in 0..self.mind.library.relevant(event.on).len() {
             let index = self.mind.library.relevant(event.on)[at];
             match self.attempt(index, event) {
-                Verdict::Applicable => return Some(index),
-                Verdict::Unlike | Verdict::False { .. } => {}
-                Verdict::Faulty(fault) => self.enter_fault(index, fault),
+                ApplicabilityVerdict::Applicable => return Some(index),
+                ApplicabilityVerdict::Unlike | ApplicabilityVerdict::False { .. } => {}
+                ApplicabilityVerdict::Faulty(fault) => self.enter_fault(index, fault),
             }
         }
         None
     }
 
-    fn enter_fault(&mut self, plan: u16, fault: Fault) {
+    fn enter_fault(&mut self, plan: u16, fault: BeliefQueryError) {
         let origin = self.mind.library.plan(plan).origin;
-        self.enter(0, Logged::Fault { plan, fault, origin });
+        self.enter(0, LogItem::Fault { plan, fault, origin });
     }
 
     /// The same, with all that was tried counted and logged; how many more would be applicable is counted, too.
-    fn select_closely(&mut self, event: &Event, of: Option<u32>) -> Option<u16> {
+    fn select_closely(&mut self, event: &QueuedEvent, of: Option<u32>) -> Option<u16> {
         let number = of.map_or(0, |place| self.mind.pool.see(place).number);
         let mut selected = None;
         let mut applicable = 0;
@@ -47,16 +47,16 @@ impl<'p> Machine<'p> {
             let index = self.mind.library.relevant(event.on)[at];
             let verdict = self.attempt(index, event);
             if selected.is_none() {
-                if let Verdict::Faulty(fault) = verdict {
+                if let ApplicabilityVerdict::Faulty(fault) = verdict {
                     self.enter_fault(index, fault);
                 }
-                if self.log.detail >= Detail::Reasons {
+                if self.log.detail >= LogDetail::Reasons {
                     let (on, args) = (event.on, event.args.clone());
-                    self.enter(number, Logged::Tried { on, args, plan: index, verdict });
+                    self.enter(number, LogItem::Tried { on, args, plan: index, verdict });
                 }
                 self.measure_attempt(index, verdict);
             }
-            if verdict == Verdict::Applicable {
+            if verdict == ApplicabilityVerdict::Applicable {
                 applicable += 1;
                 if selected.is_none() {
                     selected = Some(index);
@@ -72,10 +72,10 @@ impl<'p> Machine<'p> {
         selected
     }
 
-    fn attempt(&mut self, index: u16, event: &Event) -> Verdict {
+    fn attempt(&mut self, index: u16, event: &QueuedEvent) -> ApplicabilityVerdict {
         let plan: &'p Plan = self.mind.library.plan(index);
         self.solver.open(plan.vars.len());
-        let Solver { slots, trail, .. } = &mut self.solver;
+        let QuerySolver { slots, trail, .. } = &mut self.solver;
         if self.mind.library.is_plain(index) {
             for (term, value) in plan.trigger.args.iter().zip(&event.args) {
                 if let Term::Var(var) = term {
@@ -87,8 +87,8 @@ impl<'p> Machine<'p> {
         let likes = well_bound(&plan.trigger.args, slots)
             .and_then(|()| unify_all(&plan.trigger.args, event.args.iter().copied(), 0, slots, trail));
         match likes {
-            Err(error) => return Verdict::Faulty(Fault::NoValue(error)),
-            Ok(false) => return Verdict::Unlike,
+            Err(error) => return ApplicabilityVerdict::Faulty(BeliefQueryError::NoValue(error)),
+            Ok(false) => return ApplicabilityVerdict::Unlike,
             Ok(true) => {}
         }
         if !plan.trigger.annotations.is_empty() {
@@ -98,24 +98,24 @@ impl<'p> Machine<'p> {
     }
 
     #[inline]
-    fn verdict(&mut self, plan: &'p Plan) -> Verdict {
+    fn verdict(&mut self, plan: &'p Plan) -> ApplicabilityVerdict {
         if let Context::Test(expr) = &plan.context {
             return match eval(expr, &self.solver.slots) {
-                Ok(Value::Bool(true)) => Verdict::Applicable,
-                Ok(Value::Bool(false)) => Verdict::False { part: 0 },
-                Ok(_) => Verdict::Faulty(Fault::NoValue(EvalError::Type)),
-                Err(error) => Verdict::Faulty(Fault::NoValue(error)),
+                Ok(Value::Bool(true)) => ApplicabilityVerdict::Applicable,
+                Ok(Value::Bool(false)) => ApplicabilityVerdict::False { part: 0 },
+                Ok(_) => ApplicabilityVerdict::Faulty(BeliefQueryError::NoValue(EvalError::Type)),
+                Err(error) => ApplicabilityVerdict::Faulty(BeliefQueryError::NoValue(error)),
             };
         }
         match self.solver.solve(&self.mind, &mut self.dice, &plan.context) {
-            Ok(true) => Verdict::Applicable,
-            Ok(false) => Verdict::False { part: self.solver.farthest },
-            Err(fault) => Verdict::Faulty(fault),
+            Ok(true) => ApplicabilityVerdict::Applicable,
+            Ok(false) => ApplicabilityVerdict::False { part: self.solver.farthest },
+            Err(fault) => ApplicabilityVerdict::Faulty(fault),
         }
     }
 
     /// Each way in which the trigger's annotations match the event's is tried, the last changing fastest.
-    fn attempt_annotated(&mut self, plan: &'p Plan, event: &Event) -> Verdict {
+    fn attempt_annotated(&mut self, plan: &'p Plan, event: &QueuedEvent) -> ApplicabilityVerdict {
         let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
         let held: Annotations = match event.annotations() {
             Some(held) => held.clone(),
@@ -124,40 +124,40 @@ impl<'p> Machine<'p> {
         };
         let terms = &plan.trigger.annotations;
         let before: Vec<Slot> = self.solver.slots.clone();
-        let mut verdict = Verdict::Unlike;
-        'ways: for way in 0..held.len().saturating_pow(terms.len() as u32) {
+        let mut verdict = ApplicabilityVerdict::Unlike;
+        'matches: for match_no in 0..held.len().saturating_pow(terms.len() as u32) {
             self.solver.with(&before);
-            let picked = picked(way, held.len(), terms.len());
+            let picked = picked(match_no, held.len(), terms.len());
             for ((what, term), at) in terms.iter().zip(picked) {
                 let (kind, value) = held[at];
-                let Solver { slots, trail, .. } = &mut self.solver;
+                let QuerySolver { slots, trail, .. } = &mut self.solver;
                 match unify(term, value, 0, slots, trail) {
-                    Err(error) => return Verdict::Faulty(Fault::NoValue(error)),
+                    Err(error) => return ApplicabilityVerdict::Faulty(BeliefQueryError::NoValue(error)),
                     Ok(likes) if likes && kind == *what => {}
-                    Ok(_) => continue 'ways,
+                    Ok(_) => continue 'matches,
                 }
             }
             verdict = self.verdict(plan);
-            if !matches!(verdict, Verdict::False { .. }) {
+            if !matches!(verdict, ApplicabilityVerdict::False { .. }) {
                 return verdict;
             }
         }
         verdict
     }
 
-    fn measure_attempt(&mut self, index: u16, verdict: Verdict) {
+    fn measure_attempt(&mut self, index: u16, verdict: ApplicabilityVerdict) {
         let Some(measured) = &mut self.measured else { return };
         let at = usize::from(index);
         match verdict {
-            Verdict::Unlike => measured.unmatched[at] += 1,
-            Verdict::False { part } => {
+            ApplicabilityVerdict::Unlike => measured.unmatched[at] += 1,
+            ApplicabilityVerdict::False { part } => {
                 measured.contexts[at][0] += 1;
                 if let Some(blocked) = measured.blocked[at].get_mut(part) {
                     *blocked += 1;
                 }
             }
-            Verdict::Faulty(_) => measured.faults[at] += 1,
-            Verdict::Applicable => measured.contexts[at][1] += 1,
+            ApplicabilityVerdict::Faulty(_) => measured.faults[at] += 1,
+            ApplicabilityVerdict::Applicable => measured.contexts[at][1] += 1,
         }
     }
 }

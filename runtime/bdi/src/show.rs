@@ -46,7 +46,7 @@ pub(crate) fn performative(p: Performative) -> &'static str {
 
 /// What an expression stands in, which says whether it needs parentheses.
 #[derive(Clone, Copy)]
-enum Within {
+enum ParenContext {
     Nothing,
     /// `&&`, `||`, `not`
     Logical,
@@ -54,7 +54,7 @@ enum Within {
 }
 
 /// Names of one agent's program, and the values of one plan's variables.
-pub(crate) struct Show<'a> {
+pub(crate) struct FormulaPrinter<'a> {
     pub program: &'a Program,
     pub agent: &'a Agent,
     pub names: &'a [String],
@@ -64,16 +64,16 @@ pub(crate) struct Show<'a> {
 /// A formula as it is written in the language.
 #[must_use]
 pub fn context(program: &Program, agent: &Agent, names: &[String], of: &Context) -> String {
-    Show { program, agent, names, slots: &[] }.context(of)
+    FormulaPrinter { program, agent, names, slots: &[] }.context(of)
 }
 
 /// A step as it is written in the language; of a block its head.
 #[must_use]
 pub fn step(program: &Program, agent: &Agent, names: &[String], of: &StepKind) -> String {
-    Show { program, agent, names, slots: &[] }.step(of)
+    FormulaPrinter { program, agent, names, slots: &[] }.step(of)
 }
 
-impl Show<'_> {
+impl FormulaPrinter<'_> {
     fn belief(&self, id: BeliefId) -> &str {
         self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
     }
@@ -104,7 +104,7 @@ impl Show<'_> {
             }
             StepKind::Spawn { goal, args } => format!("!!{}", self.goal(*goal, exprs(args))),
             StepKind::Query(literal) => format!("?{}", self.literal(literal)),
-            StepKind::Test(condition @ (Context::Unify(..) | Context::Internal(_))) => {
+            StepKind::Test(condition @ (Context::Unify(..) | Context::Internal(_, _))) => {
                 self.context(condition)
             }
             StepKind::Test(condition) => format!("?({})", self.context(condition)),
@@ -216,11 +216,11 @@ impl Show<'_> {
 
     /// The value; if there is none, the expression.
     fn expr(&self, e: &Expr) -> String {
-        eval(e, self.slots).map_or_else(|_| self.expression(e, Within::Nothing), |v| v.to_string())
+        eval(e, self.slots).map_or_else(|_| self.expression(e, ParenContext::Nothing), |v| v.to_string())
     }
 
     /// The expression as it stands, with the values of the variables that have one.
-    fn expression(&self, e: &Expr, within: Within) -> String {
+    fn expression(&self, e: &Expr, within: ParenContext) -> String {
         match e {
             Expr::Const(v) => v.to_string(),
             Expr::Var(v) => self
@@ -229,8 +229,8 @@ impl Show<'_> {
                 .copied()
                 .flatten()
                 .map_or_else(|| self.name(*v), |v| v.to_string()),
-            Expr::Unary(UnaryOp::Not, a) => format!("not {}", self.expression(a, Within::Logical)),
-            Expr::Unary(UnaryOp::Neg, a) => format!("-{}", self.expression(a, Within::Other)),
+            Expr::Unary(UnaryOp::Not, a) => format!("not {}", self.expression(a, ParenContext::Logical)),
+            Expr::Unary(UnaryOp::Neg, a) => format!("-{}", self.expression(a, ParenContext::Other)),
             Expr::Binary(op, a, b) => self.binary(*op, [a, b], within),
             Expr::If(c, a, b) => {
                 format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b))
@@ -246,7 +246,7 @@ impl Show<'_> {
         }
     }
 
-    fn binary(&self, op: BinaryOp, operands: [&Expr; 2], within: Within) -> String {
+    fn binary(&self, op: BinaryOp, operands: [&Expr; 2], within: ParenContext) -> String {
         let (logical, compared) = match op {
             BinaryOp::And | BinaryOp::Or => (true, false),
             BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
@@ -254,13 +254,13 @@ impl Show<'_> {
             }
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => (false, false),
         };
-        let here = if logical { Within::Logical } else { Within::Other };
+        let here = if logical { ParenContext::Logical } else { ParenContext::Other };
         let [a, b] = operands.map(|e| if compared { self.expr(e) } else { self.expression(e, here) });
         let text = format!("{a} {} {b}", operator(op));
         let parenthesised = match within {
-            Within::Nothing => false,
-            Within::Logical => !compared,
-            Within::Other => true,
+            ParenContext::Nothing => false,
+            ParenContext::Logical => !compared,
+            ParenContext::Other => true,
         };
         if parenthesised { format!("({text})") } else { text }
     }
@@ -280,9 +280,11 @@ impl Show<'_> {
             Context::Not(inner) => format!("not {}", self.formula(inner, true)),
             Context::And(all) => joined(all, " && "),
             Context::Or(all) => joined(all, " || "),
-            Context::Test(e) => self.expression(e, if inner { Within::Logical } else { Within::Nothing }),
+            Context::Test(e) => {
+                self.expression(e, if inner { ParenContext::Logical } else { ParenContext::Nothing })
+            }
             Context::Unify(term, e) => format!("{} = {}", self.term(term), self.expr(e)),
-            Context::Internal(internal) => self.internal(internal),
+            Context::Internal(internal, _) => self.internal(internal),
         }
     }
 

@@ -12,10 +12,14 @@ use hrdsl_ir::{
 use rayon::prelude::*;
 
 use crate::{
-    Action, ActionToken, CYCLE_LIMIT, Detail, LogEntry, Logged, Malformed, Measured, Standing, Status,
-    cycle::Machine,
-    mind::Peers,
-    repeat::{Repeats, Repetition},
+    check::MalformedAgentError,
+    cycle::{AgentMachine, CYCLE_LIMIT, RunStatus},
+    event::{ActionToken, AgentAction},
+    log::{LogDetail, LogEntry, LogItem},
+    measure::AgentCounts,
+    mind::PeerTable,
+    repeat::{FingerprintedState, RepetitionDetector},
+    standing::IntentionSummary,
 };
 
 /// The multi-agent system of a run.
@@ -25,7 +29,7 @@ use crate::{
 /// [`wake_of`](Self::wake_of) an agent it also calls [`expire`](Self::expire). Times never go back.
 #[derive(Debug)]
 pub struct Society<'p> {
-    machines: Vec<Machine<'p>>,
+    machines: Vec<AgentMachine<'p>>,
     actors: Vec<Option<ActorId>>,
     now: Nanos,
     /// Counts rounds, and the ends of actions and waits between them, over the run.
@@ -33,8 +37,8 @@ pub struct Society<'p> {
     /// Rounds at the instant `now`.
     rounds: u64,
     limit: u64,
-    repetition: Repetition,
-    halted: Option<Status>,
+    repetition: RepetitionDetector,
+    halted: Option<RunStatus>,
     parallel: bool,
     /// Agents with work, in their order.
     active: Vec<u16>,
@@ -46,7 +50,7 @@ impl<'p> Society<'p> {
     /// The agents at time 0, each with its initial beliefs and the facts chosen for it. `seed` is that of `.random`.
     #[must_use]
     pub fn new(program: &'p Program, agents: &[(AgentId, Vec<Fact>)], seed: u64) -> Self {
-        Self::with_detail(program, agents, seed, Detail::default())
+        Self::with_detail(program, agents, seed, LogDetail::default())
     }
 
     /// The same, with a log of this detail from the beginning on.
@@ -55,13 +59,13 @@ impl<'p> Society<'p> {
         program: &'p Program,
         agents: &[(AgentId, Vec<Fact>)],
         seed: u64,
-        detail: Detail,
+        detail: LogDetail,
     ) -> Self {
-        let peers = Arc::new(Peers::new(program, agents.iter().map(|(id, _)| *id)));
+        let peers = Arc::new(PeerTable::new(program, agents.iter().map(|(id, _)| *id)));
         let machine = |(place, (id, chosen)): (u16, &(AgentId, Vec<Fact>))| {
-            Machine::new(program, *id, chosen, place, &peers, seed, detail)
+            AgentMachine::new(program, *id, chosen, place, &peers, seed, detail)
         };
-        let machines: Vec<Machine> = (0u16..).zip(agents).map(machine).collect();
+        let machines: Vec<AgentMachine> = (0u16..).zip(agents).map(machine).collect();
         let actor = |(id, _): &(AgentId, Vec<Fact>)| program.agents.get(usize::from(id.0)).map(|a| a.actor);
         Self {
             machines,
@@ -70,7 +74,7 @@ impl<'p> Society<'p> {
             round: 0,
             rounds: 0,
             limit: CYCLE_LIMIT,
-            repetition: Repetition::default(),
+            repetition: RepetitionDetector::default(),
             halted: None,
             parallel: false,
             active: Vec::new(),
@@ -96,7 +100,7 @@ impl<'p> Society<'p> {
     /// Counts what the run takes of each program: see [`measured`](Self::measured).
     pub fn measure(&mut self) {
         for machine in &mut self.machines {
-            machine.measured = machine.mind.agent.map(|a| Box::new(Measured::new(a)));
+            machine.measured = machine.mind.agent.map(|a| Box::new(AgentCounts::new(a)));
         }
     }
 
@@ -136,7 +140,7 @@ impl<'p> Society<'p> {
 
     /// Does rounds until everybody waits or is done, or until somebody acts: then the caller does the actions and calls
     /// again. Appends what the agents do, in their order, with the agent's place.
-    pub fn settle(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+    pub fn settle(&mut self, now: Nanos, out: &mut Vec<(usize, AgentAction)>) {
         self.pass(now);
         self.active.clear();
         let working = (0u16..).zip(&self.machines).filter(|(_, m)| m.has_work());
@@ -167,7 +171,7 @@ impl<'p> Society<'p> {
 
     /// Settles, and lets what is due expire, until nothing is left to do at this instant but actions: for agents that are
     /// alone in a run.
-    pub fn run(&mut self, now: Nanos, out: &mut Vec<(usize, Action)>) {
+    pub fn run(&mut self, now: Nanos, out: &mut Vec<(usize, AgentAction)>) {
         loop {
             let before = out.len();
             self.settle(now, out);
@@ -200,7 +204,7 @@ impl<'p> Society<'p> {
             self.round += 1;
             self.rounds += 1;
             if self.rounds > self.limit {
-                return self.halt(Status::Endless);
+                return self.halt(RunStatus::Endless);
             }
             self.settle_active();
             if self.halted.is_some() {
@@ -214,14 +218,14 @@ impl<'p> Society<'p> {
             let repeats = !self.active.is_empty() && repetition.seen(spoken, self);
             self.repetition = repetition;
             if repeats {
-                return self.halt(Status::Livelock);
+                return self.halt(RunStatus::Livelock);
             }
         }
     }
 
     fn settle_active(&mut self) {
         let round = self.round;
-        let settle = |machine: &mut Machine| {
+        let settle = |machine: &mut AgentMachine| {
             machine.log.round = round;
             machine.settle();
         };
@@ -236,7 +240,7 @@ impl<'p> Society<'p> {
             }
         }
         let halted = self.active.iter().find_map(|place| self.machines[usize::from(*place)].halted);
-        if let Some(status) = halted.filter(|s| *s != Status::Malformed) {
+        if let Some(status) = halted.filter(|s| *s != RunStatus::Malformed) {
             self.halted = Some(status);
         }
     }
@@ -267,12 +271,12 @@ impl<'p> Society<'p> {
         acts
     }
 
-    fn halt(&mut self, status: Status) {
+    fn halt(&mut self, status: RunStatus) {
         // After all that the round has brought.
         self.round += 1;
         self.halted = Some(status);
         self.active.truncate(1);
-        let what = if status == Status::Livelock { Logged::Livelock } else { Logged::Endless };
+        let what = if status == RunStatus::Livelock { LogItem::Livelock } else { LogItem::Endless };
         for place in &self.active {
             let machine = &mut self.machines[usize::from(*place)];
             machine.log.round = self.round;
@@ -283,7 +287,7 @@ impl<'p> Society<'p> {
     /// The earliest time at which something of this agent is due.
     #[must_use]
     pub fn wake_of(&self, agent: usize) -> Option<Nanos> {
-        if self.halted.is_some() { None } else { self.machines.get(agent).and_then(Machine::next_wake) }
+        if self.halted.is_some() { None } else { self.machines.get(agent).and_then(AgentMachine::next_wake) }
     }
 
     /// The earliest time at which a `wait`, an `await` or a deadline is over.
@@ -292,29 +296,29 @@ impl<'p> Society<'p> {
         if self.halted.is_some() {
             return None;
         }
-        self.machines.iter().filter_map(Machine::next_wake).min()
+        self.machines.iter().filter_map(AgentMachine::next_wake).min()
     }
 
     /// How the agents stand together: the first of malformed, overfull, livelock, endless, ready, waiting, idle that one of them is.
     #[must_use]
-    pub fn status(&self) -> Status {
-        let order = |status: &Status| match status {
-            Status::Malformed => 0,
-            Status::Overfull(_) => 1,
-            Status::Livelock => 2,
-            Status::Endless => 3,
-            Status::Ready => 4,
-            Status::Waiting => 5,
-            Status::Idle => 6,
+    pub fn status(&self) -> RunStatus {
+        let order = |status: &RunStatus| match status {
+            RunStatus::Malformed => 0,
+            RunStatus::Overfull(_) => 1,
+            RunStatus::Livelock => 2,
+            RunStatus::Endless => 3,
+            RunStatus::Ready => 4,
+            RunStatus::Waiting => 5,
+            RunStatus::Idle => 6,
         };
-        let all = self.machines.iter().map(Machine::status).chain(self.halted);
-        all.min_by_key(order).unwrap_or(Status::Idle)
+        let all = self.machines.iter().map(AgentMachine::status).chain(self.halted);
+        all.min_by_key(order).unwrap_or(RunStatus::Idle)
     }
 
     /// The agents that did not come to rest, or cannot be run, by name.
     #[must_use]
     pub fn at_fault(&self) -> Vec<&'p str> {
-        let name = |m: &Machine<'p>| m.mind.agent.map_or("?", |a| a.name.as_str());
+        let name = |m: &AgentMachine<'p>| m.mind.agent.map_or("?", |a| a.name.as_str());
         let own = self.machines.iter().filter(|m| m.halted.is_some());
         let own: Vec<&str> = own.map(name).collect();
         if !own.is_empty() || self.halted.is_none() {
@@ -327,20 +331,20 @@ impl<'p> Society<'p> {
     #[must_use]
     pub fn overfull(&self) -> Option<String> {
         self.machines.iter().find_map(|m| {
-            let Some(Status::Overfull(what)) = m.halted else { return None };
+            let Some(RunStatus::Overfull(what)) = m.halted else { return None };
             Some(m.overfull(what))
         })
     }
 
     /// Why a program cannot be run.
     #[must_use]
-    pub fn fault(&self) -> Option<&Malformed> {
+    pub fn fault(&self) -> Option<&MalformedAgentError> {
         self.machines.iter().find_map(|m| m.fault.as_ref())
     }
 
     /// What was counted, by agent; empty unless [`measure`](Self::measure) was called.
     #[must_use]
-    pub fn measured(&self) -> Vec<&Measured> {
+    pub fn measured(&self) -> Vec<&AgentCounts> {
         self.machines.iter().filter_map(|m| m.measured.as_deref()).collect()
     }
 
@@ -376,14 +380,14 @@ impl<'p> Society<'p> {
 
     /// What an agent intends, in the order of adoption.
     #[must_use]
-    pub fn standing(&self, agent: usize) -> Vec<Standing> {
-        self.machines.get(agent).map(Machine::standing).unwrap_or_default()
+    pub fn standing(&self, agent: usize) -> Vec<IntentionSummary> {
+        self.machines.get(agent).map(AgentMachine::standing).unwrap_or_default()
     }
 
     /// What an agent believes, as text, in the order of [`beliefs`](Self::beliefs).
     #[must_use]
     pub fn believed(&self, agent: usize) -> Vec<String> {
-        self.machines.get(agent).map(Machine::believed).unwrap_or_default()
+        self.machines.get(agent).map(AgentMachine::believed).unwrap_or_default()
     }
 
     /// Keeps so many entries of each agent's log at most.
@@ -409,15 +413,15 @@ impl<'p> Society<'p> {
     }
 }
 
-impl Repeats for Society<'_> {
+impl FingerprintedState for Society<'_> {
     fn fingerprint(&self) -> u64 {
-        let each = self.machines.iter().map(Repeats::fingerprint);
-        let inboxes = self.machines.iter().map(|m| m.inbox.front().map_or(0, crate::repeat::letter));
+        let each = self.machines.iter().map(FingerprintedState::fingerprint);
+        let inboxes = self.machines.iter().map(|m| m.inbox.front().map_or(0, crate::state::letter));
         each.chain(inboxes).fold(self.active.len() as u64, |h, n| h.rotate_left(7) ^ n)
     }
 
     fn state(&self) -> Vec<u64> {
         let active = self.active.iter().map(|p| u64::from(*p));
-        active.chain(self.machines.iter().flat_map(Repeats::state)).collect()
+        active.chain(self.machines.iter().flat_map(FingerprintedState::state)).collect()
     }
 }

@@ -4,17 +4,17 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::{
-    LogEntry, Logged,
     belief::Annotations,
-    cycle::Machine,
-    event::{Args, Event},
-    intention::{Intention, NO_LINE, State, Timer},
+    cycle::AgentMachine,
+    event::{Args, QueuedEvent},
+    intention::{Intention, IntentionState, IntentionTimer, NO_LINE},
+    log::{LogEntry, LogItem},
     show::{self, call},
 };
 
 /// An intention, to be read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Standing {
+pub struct IntentionSummary {
     /// As in the log; 0: it has no plan yet.
     pub intention: u32,
     /// Its plans with the arguments of what they were selected for, the lowest first: `leg#2(1)`.
@@ -24,29 +24,29 @@ pub struct Standing {
     pub suspended: bool,
 }
 
-impl Machine<'_> {
+impl AgentMachine<'_> {
     /// The event that an entry is about, if it is about the choice of a plan.
     pub fn event_of(&self, entry: &LogEntry) -> Option<String> {
         match &entry.what {
-            Logged::Selected { on, args, .. }
-            | Logged::Tried { on, args, .. }
-            | Logged::Unhandled { on, args, .. } => Some(self.names()?.on(*on, args)),
+            LogItem::Selected { on, args, .. }
+            | LogItem::Tried { on, args, .. }
+            | LogItem::Unhandled { on, args, .. } => Some(self.names()?.on(*on, args)),
             _ => None,
         }
     }
 
     /// What it intends, in the order of adoption.
-    pub fn standing(&self) -> Vec<Standing> {
+    pub fn standing(&self) -> Vec<IntentionSummary> {
         let places = self.mind.pool.in_order();
-        let posted: FxHashMap<u32, &Event> =
+        let posted: FxHashMap<u32, &QueuedEvent> =
             self.mind.events.iter().filter_map(|e| Some((e.of?, e))).collect();
         let stands = |place| self.stands(self.mind.pool.see(place), posted.get(&place).copied());
         places.into_iter().map(stands).collect()
     }
 
     /// With the event whose plan it waits for.
-    fn stands(&self, intention: &Intention, posted: Option<&Event>) -> Standing {
-        let plan = |frame: &crate::intention::Frame| {
+    fn stands(&self, intention: &Intention, posted: Option<&QueuedEvent>) -> IntentionSummary {
+        let plan = |frame: &crate::intention::PlanFrame| {
             let label = &self.mind.library.plan(frame.plan).label;
             let args = intention.args(*frame).iter();
             call(label, args.map(|a| a.map_or_else(|| "_".to_owned(), |v| v.to_string())))
@@ -55,7 +55,7 @@ impl Machine<'_> {
         if let Some(due) = intention.deadlines.iter().map(|d| d.timer.due).min() {
             waits += &format!(", deadline {}", show::time(due));
         }
-        Standing {
+        IntentionSummary {
             intention: intention.number,
             plans: intention.frames.iter().map(plan).collect(),
             waits,
@@ -63,22 +63,22 @@ impl Machine<'_> {
         }
     }
 
-    fn waits(&self, intention: &Intention, posted: Option<&Event>) -> String {
-        let until = |timer: Option<Timer>| {
+    fn waits(&self, intention: &Intention, posted: Option<&QueuedEvent>) -> String {
+        let until = |timer: Option<IntentionTimer>| {
             timer.map_or_else(String::new, |t| format!(", until {}", show::time(t.due)))
         };
         match intention.state {
-            State::Free | State::Ready | State::Held => "for its turn".to_owned(),
-            State::Posted => match posted.and_then(|e| Some(self.names()?.on(e.on, &e.args))) {
+            IntentionState::Free | IntentionState::Ready | IntentionState::Held => "for its turn".to_owned(),
+            IntentionState::Posted => match posted.and_then(|e| Some(self.names()?.on(e.on, &e.args))) {
                 Some(event) => format!("for a plan for {event}"),
                 None => "for a plan".to_owned(),
             },
-            State::Acting(_) => format!("for the end of {}", self.step_of(intention)),
-            State::Sleeping(timer) => self.step_of(intention) + &until(Some(timer)),
-            State::Awaiting { timer, .. } | State::Asking { timer, .. } => {
+            IntentionState::Acting(_) => format!("for the end of {}", self.step_of(intention)),
+            IntentionState::Sleeping(timer) => self.step_of(intention) + &until(Some(timer)),
+            IntentionState::Awaiting { timer, .. } | IntentionState::Asking { timer, .. } => {
                 self.step_of(intention) + &until(timer)
             }
-            State::Forked { left, all } => {
+            IntentionState::Forked { left, all } => {
                 let which = if all { "all" } else { "the first" };
                 format!("for {which} of its branches ({left} not finished)")
             }

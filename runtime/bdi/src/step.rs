@@ -1,14 +1,13 @@
 //! Execution of one step of a plan's body.
 
 use crate::{
-    Action, ActionToken, Cause, Logged, Outcome,
-    belief::{Annotations, sourced, typed},
-    code::{Op, settle},
-    cycle::Machine,
-    event::{Args, Event, Ground},
-    intention::{Deadline, State, Timer},
-    log::sources,
-    mind::Mind,
+    belief::{Annotations, Ground, sourced, typed},
+    code::{PlanOp, settle},
+    cycle::AgentMachine,
+    event::{ActionToken, AgentAction, Args, QueuedEvent},
+    intention::{GoalDeadline, IntentionState, IntentionTimer},
+    log::{FailureCause, LogItem, StepOutcome, sources},
+    mind::MentalState,
     unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
 };
 use hrdsl_ir::{
@@ -19,7 +18,7 @@ use hrdsl_ir::{
 };
 
 /// What becomes of the intention after a step that did not fail.
-pub(crate) enum Flow {
+pub(crate) enum StepFlow {
     /// It may go on.
     Next,
     /// It waits for something, or the step has seen to it.
@@ -30,7 +29,7 @@ fn values<C: Default + Extend<T>, T>(
     exprs: &[Expr],
     slots: &[Slot],
     of: impl Fn(Value) -> T,
-) -> Result<C, Cause> {
+) -> Result<C, FailureCause> {
     let mut all = C::default();
     for expr in exprs {
         all.extend(Some(of(eval(expr, slots)?)));
@@ -40,71 +39,73 @@ fn values<C: Default + Extend<T>, T>(
 
 /// Where a step is: its intention, its plan, and its place in the body.
 #[derive(Clone, Copy)]
-pub(crate) struct Here {
+pub(crate) struct StepLocation {
     pub place: u32,
     pub plan: u16,
     pub line: u16,
     pub site: u16,
 }
 
-impl<'p> Machine<'p> {
+impl<'p> AgentMachine<'p> {
     /// The next step of a ready intention.
     pub fn step(&mut self, place: u32) {
         match self.lines(place) {
-            Ok(Flow::Next) => self.resume(place),
-            Ok(Flow::Suspended) => {}
+            Ok(StepFlow::Next) => self.resume(place),
+            Ok(StepFlow::Suspended) => {}
             Err(cause) => self.fail(place, cause),
         }
     }
 
     /// Executes lines up to the end of one step: the beginning of a `while` takes no turn.
-    fn lines(&mut self, place: u32) -> Result<Flow, Cause> {
+    fn lines(&mut self, place: u32) -> Result<StepFlow, FailureCause> {
         loop {
-            let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(Flow::Next) };
+            let Some(top) = self.mind.pool.see(place).frames.last().copied() else {
+                return Ok(StepFlow::Next);
+            };
             let code = self.mind.library.code(top.plan);
-            let Some(line) = code.get(usize::from(top.next)) else { return Ok(Flow::Next) };
-            let here = Here { place, plan: top.plan, line: top.next, site: line.site };
+            let Some(line) = code.get(usize::from(top.next)) else { return Ok(StepFlow::Next) };
+            let here = StepLocation { place, plan: top.plan, line: top.next, site: line.site };
             self.working = top.plan;
             let after = line.after;
             // A copy of the little that the line has, so that the machine is free to change.
             match &line.op {
-                Op::Plain(step) => {
+                PlanOp::Plain(step) => {
                     let step = *step;
                     self.move_on(here, after);
                     return self.plain(here, step);
                 }
-                Op::Branch { condition, otherwise } => {
+                PlanOp::Branch { condition, otherwise } => {
                     let (condition, to) = (*condition, settle(code, *otherwise));
                     self.move_on(here, after);
                     return self.branch(here, condition, to);
                 }
-                Op::Jump(to) => {
+                PlanOp::Jump(to) => {
                     let to = settle(code, *to);
                     self.jump(place, to);
                 }
-                Op::Enter(variables) => {
+                PlanOp::Enter(variables) => {
                     let variables = variables.clone();
                     self.enter_loop(place, &variables, Vec::new());
                     self.jump(place, after);
                 }
-                Op::While { condition, end } => {
+                PlanOp::While { condition, end } => {
                     let (condition, end) = (*condition, settle(code, *end));
                     self.move_on(here, after);
                     return self.again(here, condition, end);
                 }
-                Op::For { condition, variables } => {
+                PlanOp::For { condition, variables } => {
                     let (condition, variables) = (*condition, variables.clone());
                     self.move_on(here, after);
                     return self.each_answer(here, condition, &variables);
                 }
                 // The next answer of a `for` is found by `resume`, and so is the end of a branch.
-                Op::Next { .. } | Op::Join => return Ok(Flow::Next),
-                Op::Fork { branches, all, end } => {
+                PlanOp::Next { .. } | PlanOp::Join => return Ok(StepFlow::Next),
+                PlanOp::Fork { branches, all, end } => {
                     let (branches, all, end) = (branches.clone(), *all, settle(code, *end));
                     self.move_on(here, end);
-                    self.done(here, Outcome::Branches(branches.len()));
+                    self.done(here, StepOutcome::Branches(branches.len()));
                     self.fork(here, &branches, all);
-                    return Ok(Flow::Suspended);
+                    return Ok(StepFlow::Suspended);
                 }
             }
         }
@@ -112,7 +113,7 @@ impl<'p> Machine<'p> {
 
     /// The step at this line begins; this line is the next.
     #[inline]
-    fn move_on(&mut self, here: Here, next: u16) {
+    fn move_on(&mut self, here: StepLocation, next: u16) {
         if let Some(top) = self.mind.pool.at(here.place).frames.last_mut() {
             (top.at, top.next) = (here.line, next);
         }
@@ -125,54 +126,54 @@ impl<'p> Machine<'p> {
     }
 
     /// Logs the step, with the variables as they are before it.
-    pub fn done(&mut self, here: Here, outcome: Outcome) {
-        let Here { place, plan, line, .. } = here;
-        if self.log.detail >= crate::Detail::Steps {
+    pub fn done(&mut self, here: StepLocation, outcome: StepOutcome) {
+        let StepLocation { place, plan, line, .. } = here;
+        if self.log.detail >= crate::log::LogDetail::Steps {
             let intention = self.mind.pool.see(place);
             let (number, vars) = (intention.number, intention.vars().to_vec());
-            self.enter(number, Logged::Step { plan, line, vars, outcome });
+            self.enter(number, LogItem::Step { plan, line, vars, outcome });
         }
     }
 
     // ── Plain steps ──
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn plain(&mut self, here: Here, step: &'p StepKind) -> Result<Flow, Cause> {
-        self.done(here, Outcome::Done);
-        let Here { place, .. } = here;
+    fn plain(&mut self, here: StepLocation, step: &'p StepKind) -> Result<StepFlow, FailureCause> {
+        self.done(here, StepOutcome::Done);
+        let StepLocation { place, .. } = here;
         let slots = self.mind.pool.see(place).vars();
         match step {
             StepKind::Do { event, args } => {
                 let args = values(args, slots, |v| v)?;
                 self.act(place, *event, args)?;
-                Ok(Flow::Suspended)
+                Ok(StepFlow::Suspended)
             }
             StepKind::Achieve { goal, args, within: None } => {
                 self.post_goal(here, *goal, args, Some(place))?;
-                Ok(Flow::Suspended)
+                Ok(StepFlow::Suspended)
             }
             StepKind::Achieve { goal, args, within: Some(within) } => {
                 let event = self.goal_event(here, *goal, args, Some(place))?;
                 self.set_deadline(place, within)?;
                 self.post(event);
-                Ok(Flow::Suspended)
+                Ok(StepFlow::Suspended)
             }
             StepKind::Spawn { goal, args } => {
                 self.post_goal(here, *goal, args, None)?;
-                Ok(Flow::Next)
+                Ok(StepFlow::Next)
             }
             StepKind::Query(literal) => self.query(here, literal),
             StepKind::Test(condition) => {
                 if self.holds(place, condition)? {
-                    Ok(Flow::Next)
+                    Ok(StepFlow::Next)
                 } else {
-                    Err(Cause::NoAnswer)
+                    Err(FailureCause::NoAnswer)
                 }
             }
             StepKind::Add(assertion) => {
                 let (args, annotations) = self.asserted(place, assertion)?;
                 self.believe(assertion.belief, &args, annotations);
-                Ok(Flow::Next)
+                Ok(StepFlow::Next)
             }
             StepKind::Remove(literal) => self.forget(place, literal),
             StepKind::Replace(assertion) => self.replace(place, assertion),
@@ -181,8 +182,8 @@ impl<'p> Machine<'p> {
             StepKind::Wait { seconds } => {
                 let time = self.time(place, seconds)?;
                 let timer = self.set_timer(place, time);
-                self.mind.pool.at(place).state = State::Sleeping(timer);
-                Ok(Flow::Suspended)
+                self.mind.pool.at(place).state = IntentionState::Sleeping(timer);
+                Ok(StepFlow::Suspended)
             }
             StepKind::Send { to, performative, content, args } => {
                 self.send(here, to.as_ref(), *performative, *content, args)
@@ -196,20 +197,26 @@ impl<'p> Machine<'p> {
             StepKind::Print { args } => {
                 let args: Vec<Value> = values(args, slots, |v| v)?;
                 let text: String = args.iter().map(|v| plain(*v)).collect();
-                self.entry(0, || Logged::Printed(text));
-                Ok(Flow::Next)
+                self.entry(0, || LogItem::Printed(text));
+                Ok(StepFlow::Next)
             }
             StepKind::Control { what, goal } => self.control(place, *what, goal.as_ref()),
-            StepKind::Fail => Err(Cause::Fail),
+            StepKind::Fail => Err(FailureCause::Fail),
             // INVARIANT: blocks are lines of their own.
             StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
-                Ok(Flow::Next)
+                Ok(StepFlow::Next)
             }
         }
     }
 
     /// Posts a goal with these arguments.
-    fn post_goal(&mut self, here: Here, goal: GoalId, args: &[Expr], of: Option<u32>) -> Result<(), Cause> {
+    fn post_goal(
+        &mut self,
+        here: StepLocation,
+        goal: GoalId,
+        args: &[Expr],
+        of: Option<u32>,
+    ) -> Result<(), FailureCause> {
         let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
         if declared.is_some_and(|g| g.params.is_some()) || self.mind.pool.see(here.place).atomic > 0 {
             let event = self.goal_event(here, goal, args, of)?;
@@ -217,11 +224,11 @@ impl<'p> Machine<'p> {
             return Ok(());
         }
         // The commonest step of all: the event is made where it waits, since moving it costs as much as the rest.
-        let Mind { pool, events, .. } = &mut self.mind;
-        let event = Event {
+        let MentalState { pool, events, .. } = &mut self.mind;
+        let event = QueuedEvent {
             of,
             by: Some((here.plan, here.site)),
-            ..Event::new(TriggerOn::GoalAdded(goal), Args::new())
+            ..QueuedEvent::new(TriggerOn::GoalAdded(goal), Args::new())
         };
         events.push_back(event);
         let slots = pool.see(here.place).vars();
@@ -237,15 +244,21 @@ impl<'p> Machine<'p> {
             }
         }
         if let Some(place) = of {
-            pool.at(place).state = State::Posted;
+            pool.at(place).state = IntentionState::Posted;
         }
         Ok(())
     }
 
     /// A goal with these arguments, as its declaration has them, if it is declared.
-    fn goal_event(&self, here: Here, goal: GoalId, args: &[Expr], of: Option<u32>) -> Result<Event, Cause> {
+    fn goal_event(
+        &self,
+        here: StepLocation,
+        goal: GoalId,
+        args: &[Expr],
+        of: Option<u32>,
+    ) -> Result<QueuedEvent, FailureCause> {
         let slots = self.mind.pool.see(here.place).vars();
-        let mut event = Event::new(TriggerOn::GoalAdded(goal), Args::new());
+        let mut event = QueuedEvent::new(TriggerOn::GoalAdded(goal), Args::new());
         (event.of, event.by) = (of, Some((here.plan, here.site)));
         for expr in args {
             event.args.push(Some(eval(expr, slots)?));
@@ -253,18 +266,22 @@ impl<'p> Machine<'p> {
         let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
         if let Some(params) = declared.and_then(|g| g.params.as_ref()) {
             let ground = event.args.iter().copied().flatten().collect();
-            let typed = typed(params, ground).ok_or(Cause::OutOfRange)?;
+            let typed = typed(params, ground).ok_or(FailureCause::OutOfRange)?;
             event.args = typed.into_iter().map(Some).collect();
         }
         Ok(event)
     }
 
-    fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), Cause> {
-        let args = typed(&self.mind.program.event(event).params, args).ok_or(Cause::OutOfRange)?;
+    fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), FailureCause> {
+        let args = typed(&self.mind.program.event(event).params, args).ok_or(FailureCause::OutOfRange)?;
         // Only the low half: a token need only differ from the intention's earlier ones.
         let serial = self.next_serial() as u32;
-        self.mind.pool.at(place).state = State::Acting(serial);
-        self.actions.push(Action { token: ActionToken::new(place, serial), event, args: args.into_vec() });
+        self.mind.pool.at(place).state = IntentionState::Acting(serial);
+        self.actions.push(AgentAction {
+            token: ActionToken::new(place, serial),
+            event,
+            args: args.into_vec(),
+        });
         Ok(())
     }
 
@@ -274,18 +291,18 @@ impl<'p> Machine<'p> {
         declared.and_then(|b| typed(&b.params, args))
     }
 
-    fn asserted(&self, place: u32, assertion: &Assertion) -> Result<(Ground, Annotations), Cause> {
+    fn asserted(&self, place: u32, assertion: &Assertion) -> Result<(Ground, Annotations), FailureCause> {
         let slots = self.mind.pool.see(place).vars();
         let args = values(&assertion.args, slots, |v| v)?;
-        let args = self.declared(assertion.belief, args).ok_or(Cause::OutOfRange)?;
+        let args = self.declared(assertion.belief, args).ok_or(FailureCause::OutOfRange)?;
         let mut annotations = Annotations::new();
         let declared = self.mind.agent.map(|a| &a.beliefs[usize::from(assertion.belief.0)].annotations);
         for (what, value) in &assertion.annotations {
             let mut value = eval(value, slots)?;
             if let Annotation::Declared(at) = what {
-                let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(Cause::OutOfRange)?;
+                let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(FailureCause::OutOfRange)?;
                 let one = typed(std::slice::from_ref(param), Ground::from_slice(&[value]));
-                value = one.ok_or(Cause::OutOfRange)?[0];
+                value = one.ok_or(FailureCause::OutOfRange)?[0];
             }
             annotations.push((*what, value));
         }
@@ -293,24 +310,24 @@ impl<'p> Machine<'p> {
     }
 
     /// Asks the belief base, and the plans for the test goal if it has no answer.
-    fn query(&mut self, here: Here, literal: &'p Literal) -> Result<Flow, Cause> {
-        let Here { place, .. } = here;
+    fn query(&mut self, here: StepLocation, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
+        let StepLocation { place, .. } = here;
         self.solver.with(self.mind.pool.see(place).vars());
         if self.solver.answer(&self.mind, &mut self.dice, literal)? {
             let vars = self.mind.pool.at(place).vars_mut();
             vars.copy_from_slice(&self.solver.slots[..vars.len()]);
-            return Ok(Flow::Next);
+            return Ok(StepFlow::Next);
         }
         let on = TriggerOn::TestAdded(literal.belief);
         if !literal.annotations.is_empty() || !self.plans_answer(literal.belief) {
-            return Err(Cause::NoAnswer);
+            return Err(FailureCause::NoAnswer);
         }
         // A term that computes with a variable which this literal binds is compared with the answer.
         let slots = self.mind.pool.see(place).vars();
         let asked: Args = literal.args.iter().map(|term| known(term, slots)).collect();
         let by = Some((here.plan, here.site));
-        self.post(Event { of: Some(place), by, ..Event::new(on, asked) });
-        Ok(Flow::Suspended)
+        self.post(QueuedEvent { of: Some(place), by, ..QueuedEvent::new(on, asked) });
+        Ok(StepFlow::Suspended)
     }
 
     /// Whether a plan is relevant to a query of the belief, or to its failure.
@@ -320,7 +337,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Takes one source away from the first fact that has it.
-    fn forget(&mut self, place: u32, literal: &'p Literal) -> Result<Flow, Cause> {
+    fn forget(&mut self, place: u32, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
         let own = Term::Expr(Expr::Const(Value::Symbol(source_self())));
         let wanted = literal.annotations.iter().position(|(what, _)| *what == Annotation::Source);
         let source = wanted.map_or(&own, |at| &literal.annotations[at].1);
@@ -335,7 +352,7 @@ impl<'p> Machine<'p> {
         for row in self.mind.beliefs.of(belief).iter().collect::<Vec<_>>() {
             if let Some(gone) = self.source_of(literal, row, source, &others)? {
                 self.take(belief, row, gone);
-                return Ok(Flow::Next);
+                return Ok(StepFlow::Next);
             }
             if kept.is_none() && self.agrees(literal, row, &plain)? {
                 kept = Some(row);
@@ -346,9 +363,9 @@ impl<'p> Machine<'p> {
             let (args, from) = (facts.row(row).to_vec(), sources(facts.annotations(row)));
             let meant = known(source, &self.solver.slots);
             // An entry of its own accord: the step may have been meant otherwise.
-            self.enter(0, Logged::StillHeld { belief, args, meant, from });
+            self.enter(0, LogItem::StillHeld { belief, args, meant, from });
         }
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     /// The fact's first source that the term means, if the fact matches with it.
@@ -358,7 +375,7 @@ impl<'p> Machine<'p> {
         row: usize,
         source: &Term,
         others: &[&(Annotation, Term)],
-    ) -> Result<Option<Value>, Cause> {
+    ) -> Result<Option<Value>, FailureCause> {
         let facts = self.mind.beliefs.of(literal.belief);
         let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
         let mark = trail.len();
@@ -386,7 +403,7 @@ impl<'p> Machine<'p> {
         literal: &Literal,
         row: usize,
         annotations: &[&(Annotation, Term)],
-    ) -> Result<bool, Cause> {
+    ) -> Result<bool, FailureCause> {
         let facts = self.mind.beliefs.of(literal.belief);
         let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
         let mark = trail.len();
@@ -397,17 +414,17 @@ impl<'p> Machine<'p> {
         Ok(agrees)
     }
 
-    fn replace(&mut self, place: u32, assertion: &Assertion) -> Result<Flow, Cause> {
+    fn replace(&mut self, place: u32, assertion: &Assertion) -> Result<StepFlow, FailureCause> {
         let (args, annotations) = self.asserted(place, assertion)?;
         let belief = assertion.belief;
         for row in self.mind.beliefs.of(belief).others(&args) {
             self.remove(belief, row);
         }
         self.believe(belief, &args, annotations);
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
-    fn abolish(&mut self, place: u32, literal: &'p Literal) -> Result<Flow, Cause> {
+    fn abolish(&mut self, place: u32, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
         self.solver.with(self.mind.pool.see(place).vars());
         well_bound(&literal.args, &self.solver.slots)?;
         let annotations: Vec<&(Annotation, Term)> = literal.annotations.iter().collect();
@@ -416,7 +433,7 @@ impl<'p> Machine<'p> {
                 self.remove(literal.belief, row);
             }
         }
-        Ok(Flow::Next)
+        Ok(StepFlow::Next)
     }
 
     // ── Time ──
@@ -426,31 +443,32 @@ impl<'p> Machine<'p> {
         place: u32,
         events: &'p [EventPattern],
         within: Option<&Expr>,
-    ) -> Result<Flow, Cause> {
+    ) -> Result<StepFlow, FailureCause> {
         let timer = within.map(|e| self.time(place, e)).transpose()?.map(|t| self.set_timer(place, t));
-        self.mind.pool.at(place).state = State::Awaiting { events, timer };
+        self.mind.pool.at(place).state = IntentionState::Awaiting { events, timer };
         self.awaiting.push(place);
-        Ok(Flow::Suspended)
+        Ok(StepFlow::Suspended)
     }
 
     /// A time of at least 0, in nanoseconds.
-    pub fn time(&self, place: u32, seconds: &Expr) -> Result<Nanos, Cause> {
+    pub fn time(&self, place: u32, seconds: &Expr) -> Result<Nanos, FailureCause> {
         let seconds = eval(seconds, self.mind.pool.see(place).vars())?.as_f64();
-        seconds.filter(|s| s.is_finite() && *s >= 0.0).map(nanos).ok_or(Cause::BadWait)
+        seconds.filter(|s| s.is_finite() && *s >= 0.0).map(nanos).ok_or(FailureCause::BadWait)
     }
 
-    pub fn set_timer(&mut self, place: u32, time: Nanos) -> Timer {
-        let timer = Timer { due: self.mind.now.saturating_add(time), serial: self.next_serial(), of: place };
+    pub fn set_timer(&mut self, place: u32, time: Nanos) -> IntentionTimer {
+        let timer =
+            IntentionTimer { due: self.mind.now.saturating_add(time), serial: self.next_serial(), of: place };
         self.timers.insert(timer);
         timer
     }
 
-    fn set_deadline(&mut self, place: u32, within: &Expr) -> Result<(), Cause> {
+    fn set_deadline(&mut self, place: u32, within: &Expr) -> Result<(), FailureCause> {
         let time = self.time(place, within)?;
         let timer = self.set_timer(place, time);
         let intention = self.mind.pool.at(place);
         let height = intention.frames.len() as u32;
-        intention.deadlines.push(Deadline { height, timer });
+        intention.deadlines.push(GoalDeadline { height, timer });
         Ok(())
     }
 }

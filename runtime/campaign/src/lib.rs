@@ -13,11 +13,12 @@ use std::{
 };
 
 use hrdsl_harness::{
-    Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemFault, SystemFaultKind, SystemPlayer,
+    Harness, HarnessError, HarnessRun, Player, RunTermination, ScriptPlayer, SystemFault, SystemFaultKind,
+    SystemPlayer, WorldStage,
 };
 use hrdsl_ir::{Program, system::System, test::Test, value::seconds};
 use hrdsl_judge::TraceJudge;
-use hrdsl_results::{Judgement, OutputSummary, Ratios, RunEnd, RunMark, TestName, TestResult};
+use hrdsl_results::{CoverageRatios, Judgement, OutputSummary, RunEnd, RunMark, TestName, TestResult};
 use hrdsl_sim::SimWorld;
 use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, LockStep, Needs, Process, Reply, SutError};
 pub use hrdsl_sut::{
@@ -26,7 +27,7 @@ pub use hrdsl_sut::{
 };
 use hrdsl_trace::{
     Trace,
-    record::{self, Ending, Header},
+    record::{self, RecordingEnd, RecordingHeader},
 };
 
 use hrdsl_testgen::step_text;
@@ -61,7 +62,7 @@ pub struct Campaign<'a> {
 }
 
 /// A finished test, with what belongs to it.
-pub struct Done<'a> {
+pub struct FinishedRun<'a> {
     pub index: usize,
     pub result: &'a TestResult,
     /// JSON Lines.
@@ -86,7 +87,7 @@ pub struct CampaignOutcome {
 }
 
 /// A test that was run, and what wall time has to do with it.
-struct Attempt {
+struct TestAttempt {
     finished: FinishedTest,
     recording: String,
     output: Output,
@@ -122,21 +123,21 @@ impl Campaign<'_> {
     pub fn run(
         &self,
         tests: &[Test],
-        on_done: impl Fn(Done<'_>) -> Result<(), String> + Sync,
+        on_done: impl Fn(FinishedRun<'_>) -> Result<(), String> + Sync,
     ) -> Result<CampaignOutcome, String> {
         let system =
             self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
         let next = AtomicUsize::new(0);
         let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
-        let finish = |index: usize, mut attempt: Attempt| {
+        let finish = |index: usize, mut attempt: TestAttempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
-            let Attempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
-            if let Err(why) = on_done(Done { index, result, recording, output }) {
+            let TestAttempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
+            if let Err(why) = on_done(FinishedRun { index, result, recording, output }) {
                 attempt.finished.result.break_off(why);
             }
             results[index] = Some(attempt.finished);
         };
-        let again: Mutex<Vec<(usize, Attempt)>> = Mutex::default();
+        let again: Mutex<Vec<(usize, TestAttempt)>> = Mutex::default();
         std::thread::scope(|scope| {
             for _ in 0..self.jobs.max(1) {
                 scope.spawn(|| {
@@ -181,7 +182,7 @@ impl Campaign<'_> {
     }
 
     /// Runs a test once more that wall time has ended.
-    fn run_again(&self, system: &System, test: &Test, first: Attempt) -> Attempt {
+    fn run_again(&self, system: &System, test: &Test, first: TestAttempt) -> TestAttempt {
         if self.stop.is_set() {
             return first;
         }
@@ -197,38 +198,44 @@ impl Campaign<'_> {
     }
 
     /// Runs and judges one test.
-    fn run_one(&self, system: &System, test: &Test) -> Attempt {
+    fn run_one(&self, system: &System, test: &Test) -> TestAttempt {
         let (run, finished) = self.execute(system, test);
-        let header =
-            Header { test: Some(test.name.clone()), seed: Some(test.seed), ..Header::of(self.program) };
+        let header = RecordingHeader {
+            test: Some(test.name.clone()),
+            seed: Some(test.seed),
+            ..RecordingHeader::of(self.program)
+        };
         let ending = ending(&run, finished.as_ref());
         let recording = record::write(self.program, &header, &run.trace, &ending);
-        let judgement = judge(self.program, &run.trace, ending.how);
+        let judgement = judge(self.program, &run.trace, ending.kind);
         let fault = match &run.ended {
-            Ended::Fault(Fault::System(fault)) => Some(fault.kind),
-            Ended::Fault(Fault::Model(_) | Fault::World(_)) | Ended::Quiet | Ended::Limit => None,
+            RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
+            RunTermination::Fault(HarnessError::Model(_) | HarnessError::World(_))
+            | RunTermination::Quiet
+            | RunTermination::Limit => None,
         };
         let output = finished.as_ref().map(|f| f.output.clone()).unwrap_or_default();
         let finished = test_result(self.program, test, &run, (ending, judgement), finished);
-        Attempt { finished, recording, output, fault }
+        TestAttempt { finished, recording, output, fault }
     }
 
-    fn execute(&self, system: &System, test: &Test) -> (Run, Option<Finished>) {
-        let failed = |fault| (Run { trace: Trace::default(), ended: Ended::Fault(fault) }, None);
+    fn execute(&self, system: &System, test: &Test) -> (HarnessRun, Option<Finished>) {
+        let failed =
+            |fault| (HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }, None);
         let stage = match SimWorld::new(self.program) {
-            Ok(world) => world.map(|world| Stage::new(self.program, Box::new(world))),
-            Err(why) => return failed(Fault::World(why.to_string())),
+            Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
+            Err(why) => return failed(HarnessError::World(why.to_string())),
         };
         let mut process = match Process::spawn(&self.launch(system, test)) {
             Ok(process) => process,
-            Err(error) => return failed(Fault::System(SystemFault::from(error))),
+            Err(error) => return failed(HarnessError::System(SystemFault::from(error))),
         };
         let players: Vec<Box<dyn Player + '_>> = vec![
             Box::new(ScriptPlayer::new(self.program, test)),
             Box::new(SystemPlayer::new(self.program, system.actor, LockStep::new(&mut process))),
         ];
         let run = Harness::new(self.program, players, stage, system.limit).run();
-        if !matches!(run.ended, Ended::Fault(_)) {
+        if !matches!(run.ended, RunTermination::Fault(_)) {
             // It may have ended by itself: then nobody reads this.
             let _ = process.reply(&Reply { time: run.trace.end, answer: Answer::Stop });
         }
@@ -259,8 +266,8 @@ impl Campaign<'_> {
 fn test_result(
     program: &Program,
     test: &Test,
-    run: &Run,
-    (ending, judgement): (Ending, Judgement),
+    run: &HarnessRun,
+    (ending, judgement): (RecordingEnd, Judgement),
     finished: Option<Finished>,
 ) -> FinishedTest {
     let (output, others, executed) = finished
@@ -270,7 +277,7 @@ fn test_result(
         suite: test.provenance.suite.as_str().into(),
         method: test.provenance.method,
         seed: test.seed,
-        ended: ending.how,
+        ended: ending.kind,
         error: ending.error,
         marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
         duration: seconds(run.trace.end),
@@ -291,16 +298,16 @@ fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> Judgement {
 }
 
 /// How a run ended; that a file of its program could not be kept breaks it off, too.
-fn ending(run: &Run, finished: Option<&Finished>) -> Ending {
-    let broke_off = |error| Ending { how: RunEnd::Error, error: Some(error) };
-    let how = match &run.ended {
-        Ended::Fault(fault) => return broke_off(fault.to_string()),
-        Ended::Quiet => RunEnd::Quiet,
-        Ended::Limit => RunEnd::Limit,
+fn ending(run: &HarnessRun, finished: Option<&Finished>) -> RecordingEnd {
+    let broke_off = |error| RecordingEnd { kind: RunEnd::Error, error: Some(error) };
+    let kind = match &run.ended {
+        RunTermination::Fault(fault) => return broke_off(fault.to_string()),
+        RunTermination::Quiet => RunEnd::Quiet,
+        RunTermination::Limit => RunEnd::Limit,
     };
     match finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first()) {
         Some(file) => broke_off(format!("a file of the program could not be kept: {file}")),
-        None => Ending { how, error: None },
+        None => RecordingEnd { kind, error: None },
     }
 }
 
@@ -313,9 +320,9 @@ fn summary(output: &Output) -> OutputSummary {
 }
 
 /// Lines and branches of one run over all files.
-fn ratios(files: &[FileCoverage]) -> Ratios {
+fn ratios(files: &[FileCoverage]) -> CoverageRatios {
     let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let mut sum = Ratios::default();
+    let mut sum = CoverageRatios::default();
     for file in files {
         sum.lines += count(file.executed.len());
         sum.lines_total += count(file.statements.len());

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_ir::{Program, coverage::BinName, monitor::Monitor};
 use hrdsl_results::{
-    BinResult, CodeFile, FORMAT, GoalName, GoalStatus, Margin, Ratios, Requirement, Results, SuiteInfo,
-    SuiteName, Tally, TestMethod, VERSION, VerdictOutcome,
+    BinResult, CodeFile, CoverageRatios, FORMAT, GoalName, GoalStatus, RequirementResult, Results,
+    SmallestMargin, SuiteInfo, SuiteName, TestMethod, VERSION, VerdictOutcome, VerdictTally,
 };
 
-use hrdsl_testgen::Generated;
+use hrdsl_testgen::GeneratedSuite;
 
 use crate::{CampaignOutcome, FinishedTest};
 
@@ -18,7 +18,7 @@ use crate::{CampaignOutcome, FinishedTest};
 pub fn tally(
     program: &Program,
     seed: u64,
-    generated: &[Generated],
+    generated: &[GeneratedSuite],
     outcome: CampaignOutcome,
     sources: &BTreeMap<String, String>,
     rerun: String,
@@ -46,17 +46,17 @@ pub fn tally(
 /// Where each suite stands.
 type Places<'a> = BTreeMap<&'a SuiteName, usize>;
 
-fn requirements(program: &Program, tests: &[FinishedTest], place: &Places<'_>) -> Vec<Requirement> {
-    let empty = |m: &Monitor| Requirement {
+fn requirements(program: &Program, tests: &[FinishedTest], place: &Places<'_>) -> Vec<RequirementResult> {
+    let empty = |m: &Monitor| RequirementResult {
         name: m.name.as_str().into(),
         kind: m.kind,
         title: m.title.clone(),
         text: m.text.clone(),
-        tally: vec![Tally::default(); place.len()],
+        tally: vec![VerdictTally::default(); place.len()],
         failing: Vec::new(),
         worst_margin: None,
     };
-    let mut requirements: Vec<Requirement> = program.monitors.iter().map(empty).collect();
+    let mut requirements: Vec<RequirementResult> = program.monitors.iter().map(empty).collect();
     for test in tests.iter().map(|t| &t.result) {
         let suite = place.get(&test.suite).copied().unwrap_or(0);
         for (requirement, verdict) in requirements.iter_mut().zip(&test.judgement.verdicts) {
@@ -68,7 +68,7 @@ fn requirements(program: &Program, tests: &[FinishedTest], place: &Places<'_>) -
                 && requirement.worst_margin.as_ref().is_none_or(|m| *value < m.value)
             {
                 let (unit, test) = (unit.clone(), test.name.clone());
-                requirement.worst_margin = Some(Margin { value: *value, unit, test });
+                requirement.worst_margin = Some(SmallestMargin { value: *value, unit, test });
             }
         }
     }
@@ -76,7 +76,7 @@ fn requirements(program: &Program, tests: &[FinishedTest], place: &Places<'_>) -
 }
 
 /// The suites in the order of their first test, with their code coverage.
-fn suites(generated: &[Generated], tests: &[FinishedTest]) -> Vec<SuiteInfo> {
+fn suites(generated: &[GeneratedSuite], tests: &[FinishedTest]) -> Vec<SuiteInfo> {
     let mut names: Vec<(&SuiteName, TestMethod)> = Vec::new();
     for test in tests.iter().map(|t| &t.result) {
         if names.iter().all(|(n, _)| **n != test.suite) {
@@ -113,16 +113,19 @@ type Lines<'a> = BTreeSet<(&'a str, u32)>;
 type Branches<'a> = BTreeSet<(&'a str, (u32, i32))>;
 
 /// What the tests executed together, and the percentage of lines after each.
-fn accumulate(tests: &[&FinishedTest]) -> (Ratios, Vec<f64>) {
+fn accumulate(tests: &[&FinishedTest]) -> (CoverageRatios, Vec<f64>) {
     let (mut all, mut hit): (Lines<'_>, Lines<'_>) = Default::default();
-    let (mut ways, mut taken): (Branches<'_>, Branches<'_>) = Default::default();
+    let (mut branches, mut taken): (Branches<'_>, Branches<'_>) = Default::default();
     for file in tests.iter().flat_map(|t| &t.executed) {
         all.extend(file.statements.iter().map(|l| (file.file.as_str(), *l)));
-        ways.extend(file.branches.iter().map(|b| (file.file.as_str(), *b)));
+        branches.extend(file.branches.iter().map(|b| (file.file.as_str(), *b)));
     }
     let mut accumulated = Vec::new();
-    let mut ratios =
-        Ratios { lines_total: count(all.len()), branches_total: count(ways.len()), ..Ratios::default() };
+    let mut ratios = CoverageRatios {
+        lines_total: count(all.len()),
+        branches_total: count(branches.len()),
+        ..CoverageRatios::default()
+    };
     for test in tests {
         for file in &test.executed {
             hit.extend(file.executed.iter().map(|l| (file.file.as_str(), *l)));
@@ -137,7 +140,7 @@ fn accumulate(tests: &[&FinishedTest]) -> (Ratios, Vec<f64>) {
 
 fn bins(
     program: &Program,
-    generated: &[Generated],
+    generated: &[GeneratedSuite],
     tests: &[FinishedTest],
     place: &Places<'_>,
 ) -> Vec<BinResult> {
@@ -172,7 +175,7 @@ fn bins(
 }
 
 /// Why the search says that a bin cannot be reached.
-fn unreachable(generated: &[Generated], bin: &BinName) -> Option<String> {
+fn unreachable(generated: &[GeneratedSuite], bin: &BinName) -> Option<String> {
     let name = GoalName::of_bin(bin);
     let mut goals = generated.iter().flat_map(|g| &g.goals);
     goals.find(|g| g.goal == name && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone())
@@ -182,7 +185,7 @@ fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &Plac
     let names: BTreeSet<&str> = tests.iter().flat_map(|t| &t.executed).map(|f| f.file.as_str()).collect();
     let file = |name: &&str| {
         let mut lines: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        let (mut ways, mut taken) = (BTreeSet::new(), BTreeSet::new());
+        let (mut branches, mut taken) = (BTreeSet::new(), BTreeSet::new());
         for test in tests {
             let suite = place.get(&test.result.suite).copied().unwrap_or(0);
             for file in test.executed.iter().filter(|f| f.file == *name) {
@@ -192,7 +195,7 @@ fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &Plac
                 for line in &file.executed {
                     lines.entry(*line).or_insert_with(|| vec![0; place.len()])[suite] += 1;
                 }
-                ways.extend(file.branches.iter().copied());
+                branches.extend(file.branches.iter().copied());
                 taken.extend(file.executed_branches.iter().copied());
             }
         }
@@ -200,15 +203,15 @@ fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &Plac
             lines.into_iter().map(|(line, suites)| (line, suites.iter().sum(), suites)).collect();
         CodeFile {
             file: (*name).to_owned(),
-            ratios: Ratios {
+            ratios: CoverageRatios {
                 lines: count(lines.iter().filter(|(_, tests, _)| *tests > 0).count()),
                 lines_total: count(lines.len()),
                 branches: count(taken.len()),
-                branches_total: count(ways.len()),
+                branches_total: count(branches.len()),
             },
             lines: lines.iter().map(|(line, tests, _)| (*line, *tests)).collect(),
             suites: lines.into_iter().map(|(_, _, suites)| suites).collect(),
-            missed_branches: ways.difference(&taken).copied().collect(),
+            missed_branches: branches.difference(&taken).copied().collect(),
             source: sources.get(*name).cloned().unwrap_or_default(),
         }
     };

@@ -10,11 +10,11 @@ use hrdsl_ir::{EventId, Nanos, Program, Value, monitor::Assumption};
 /// like a requirement's deadline, the window includes its very end. Without `within` the whole test is the window.
 #[derive(Clone, Debug)]
 pub struct Assumptions {
-    watches: Vec<Watch>,
+    watches: Vec<AssumptionWatch>,
 }
 
 #[derive(Clone, Debug)]
-struct Watch {
+struct AssumptionWatch {
     assumption: Assumption,
     /// Times of the latest events, oldest first; never more than `at_most`.
     latest: VecDeque<Nanos>,
@@ -24,7 +24,7 @@ impl Assumptions {
     /// All assumptions of the program, at the start of a test.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        let watch = |a: &Assumption| Watch { assumption: a.clone(), latest: VecDeque::new() };
+        let watch = |a: &Assumption| AssumptionWatch { assumption: a.clone(), latest: VecDeque::new() };
         Self { watches: program.assumptions.iter().map(watch).collect() }
     }
 
@@ -67,7 +67,7 @@ impl Assumptions {
     }
 }
 
-impl Watch {
+impl AssumptionWatch {
     fn counts(&self, event: EventId, args: &[Value]) -> bool {
         self.assumption.events.iter().any(|p| p.matches(event, args))
     }

@@ -4,12 +4,12 @@ use hrdsl_ir::{
     EventId, Program, Value,
     coverage::{self as ir, BinName, PointId},
 };
-use hrdsl_trace::{Observer, Step, What};
+use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 use serde::{Deserialize, Serialize};
 
 /// What one test covers.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Coverage {
+pub struct TestCoverage {
     /// For each point, how often its events happened.
     pub numbers: Vec<i64>,
     /// For each point, the indices of its bins that hold the number, in order.
@@ -18,7 +18,7 @@ pub struct Coverage {
     pub crosses: Vec<Vec<u16>>,
 }
 
-impl Coverage {
+impl TestCoverage {
     /// The names of the cross-product bins hit, in source order.
     #[must_use]
     pub fn cross_names(&self, declared: &ir::Coverage) -> Vec<BinName> {
@@ -33,14 +33,14 @@ impl Coverage {
 
 /// Counts a trace's events for all coverage points of a program.
 #[derive(Clone, Debug)]
-pub struct Collector {
+pub struct CoverageCollector {
     declared: ir::Coverage,
     /// For each event of the program, the points that ask for it.
     by_event: Vec<Vec<usize>>,
     numbers: Vec<i64>,
 }
 
-impl Collector {
+impl CoverageCollector {
     #[must_use]
     pub fn new(program: &Program) -> Self {
         let declared = program.coverage.clone();
@@ -69,16 +69,16 @@ impl Collector {
 
     /// The coverage of what was seen so far.
     #[must_use]
-    pub fn finish(self) -> Coverage {
+    pub fn finish(self) -> TestCoverage {
         hits_from_numbers(&self.declared, &self.numbers)
     }
 }
 
-impl Observer for Collector {
-    fn step(&mut self, _: usize, step: &Step) {
+impl TraceObserver for CoverageCollector {
+    fn step(&mut self, _: usize, step: &TraceStep) {
         match &step.what {
-            What::Event { event, args } => self.event(*event, args),
-            What::Sample { .. } => {}
+            TraceStepKind::Event { event, args } => self.event(*event, args),
+            TraceStepKind::Sample { .. } => {}
         }
     }
 
@@ -87,7 +87,7 @@ impl Observer for Collector {
 
 /// Sorts a test's numbers into bins. Points without a number count as 0.
 #[must_use]
-pub fn hits_from_numbers(declared: &ir::Coverage, numbers: &[i64]) -> Coverage {
+pub fn hits_from_numbers(declared: &ir::Coverage, numbers: &[i64]) -> TestCoverage {
     let number = |point: PointId| numbers.get(usize::from(point.0)).copied().unwrap_or(0);
     let of_point = |(index, point): (usize, &ir::Point)| {
         let n = numbers.get(index).copied().unwrap_or(0);
@@ -99,7 +99,7 @@ pub fn hits_from_numbers(declared: &ir::Coverage, numbers: &[i64]) -> Coverage {
         }
         indices(&cross.bins, |bin| bin.when.holds(declared, &number))
     };
-    Coverage {
+    TestCoverage {
         numbers: (0..declared.points.len()).map(|i| numbers.get(i).copied().unwrap_or(0)).collect(),
         points: declared.points.iter().enumerate().map(of_point).collect(),
         crosses: declared.crosses.iter().map(of_cross).collect(),

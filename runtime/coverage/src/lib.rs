@@ -1,15 +1,15 @@
 //! Coverage: sorts tests into bins by what happened in their traces.
 //!
-//! A [`Collector`] watches one trace and counts, for each coverage point, the events it asks for; its memory is one number
-//! per point. [`Coverage`] is what one test covers, [`Merge`] what a set of tests covers, in whatever order and on however
+//! A [`CoverageCollector`] watches one trace and counts, for each coverage point, the events it asks for; its memory is one number
+//! per point. [`TestCoverage`] is what one test covers, [`MergedCoverage`] what a set of tests covers, in whatever order and on however
 //! many machines they ran. [`assume`] checks the assumptions under which stimuli are made.
 
 pub mod assume;
 mod collect;
 mod merge;
 
-pub use collect::{Collector, Coverage, hits_from_numbers};
-pub use merge::{Count, Merge, Mismatch, Row};
+pub use collect::{CoverageCollector, TestCoverage, hits_from_numbers};
+pub use merge::{BinCount, CoverageMismatchError, CoverageRow, MergedCoverage};
 
 #[cfg(test)]
 mod tests;

@@ -4,56 +4,56 @@ use hrdsl_ir::coverage::{self as ir, BinName};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::Coverage;
+use crate::collect::TestCoverage;
 
 /// How many tests hit a bin, and the name of the first of them in alphabetic order.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Count {
+pub struct BinCount {
     pub tests: u32,
     pub first: Option<String>,
 }
 
 /// What a set of tests covers together.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Merge {
+pub struct MergedCoverage {
     pub tests: u32,
     /// By point and bin.
-    pub points: Vec<Vec<Count>>,
+    pub points: Vec<Vec<BinCount>>,
     /// By cross and bin.
-    pub crosses: Vec<Vec<Count>>,
+    pub crosses: Vec<Vec<BinCount>>,
 }
 
 /// The coverage merged belongs to another scenario, or to another version of this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("the coverage was collected for other points and bins")]
-pub struct Mismatch;
+pub struct CoverageMismatchError;
 
 /// One bin in a table for people.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Row {
+pub struct CoverageRow {
     pub name: BinName,
     /// It is a cross-product bin, not a point's.
     pub cross: bool,
-    pub count: Count,
+    pub count: BinCount,
 }
 
-impl Count {
+impl BinCount {
     fn add(&mut self, test: &str) {
-        self.join(&Count { tests: 1, first: Some(test.to_owned()) });
+        self.join(&BinCount { tests: 1, first: Some(test.to_owned()) });
     }
 
-    fn join(&mut self, other: &Count) {
+    fn join(&mut self, other: &BinCount) {
         self.tests = self.tests.saturating_add(other.tests);
         let first = self.first.iter().chain(&other.first).min().cloned();
         self.first = first;
     }
 }
 
-impl Merge {
+impl MergedCoverage {
     /// No tests so far.
     #[must_use]
     pub fn new(declared: &ir::Coverage) -> Self {
-        let counts = |bins: usize| vec![Count::default(); bins];
+        let counts = |bins: usize| vec![BinCount::default(); bins];
         Self {
             tests: 0,
             points: declared.points.iter().map(|p| counts(p.bins.len())).collect(),
@@ -64,8 +64,8 @@ impl Merge {
     /// Adds one test. Adding a test twice counts it twice.
     ///
     /// # Errors
-    /// [`Mismatch`]; then nothing is added.
-    pub fn add(&mut self, test: &str, coverage: &Coverage) -> Result<(), Mismatch> {
+    /// [`CoverageMismatchError`]; then nothing is added.
+    pub fn add(&mut self, test: &str, coverage: &TestCoverage) -> Result<(), CoverageMismatchError> {
         fits(&self.points, &coverage.points)?;
         fits(&self.crosses, &coverage.crosses)?;
         let all = self.points.iter_mut().zip(&coverage.points);
@@ -81,11 +81,11 @@ impl Merge {
     /// Adds another set of tests that has none in common with this one.
     ///
     /// # Errors
-    /// [`Mismatch`]; then nothing is added.
-    pub fn join(&mut self, other: &Merge) -> Result<(), Mismatch> {
-        let shape = |table: &[Vec<Count>]| table.iter().map(Vec::len).collect::<Vec<_>>();
+    /// [`CoverageMismatchError`]; then nothing is added.
+    pub fn join(&mut self, other: &MergedCoverage) -> Result<(), CoverageMismatchError> {
+        let shape = |table: &[Vec<BinCount>]| table.iter().map(Vec::len).collect::<Vec<_>>();
         if shape(&self.points) != shape(&other.points) || shape(&self.crosses) != shape(&other.crosses) {
-            return Err(Mismatch);
+            return Err(CoverageMismatchError);
         }
         let all = self.points.iter_mut().zip(&other.points);
         for (counts, others) in all.chain(self.crosses.iter_mut().zip(&other.crosses)) {
@@ -99,11 +99,11 @@ impl Merge {
 
     /// All bins by name, in source order: the points' first.
     #[must_use]
-    pub fn rows(&self, declared: &ir::Coverage) -> Vec<Row> {
+    pub fn rows(&self, declared: &ir::Coverage) -> Vec<CoverageRow> {
         let mut rows = Vec::new();
         for (point, counts) in declared.points.iter().zip(&self.points) {
             for (bin, count) in point.bins.iter().zip(counts) {
-                rows.push(Row {
+                rows.push(CoverageRow {
                     name: BinName::new(&point.name, &bin.name),
                     cross: false,
                     count: count.clone(),
@@ -112,7 +112,7 @@ impl Merge {
         }
         for (cross, counts) in declared.crosses.iter().zip(&self.crosses) {
             for (bin, count) in cross.bins.iter().zip(counts) {
-                rows.push(Row {
+                rows.push(CoverageRow {
                     name: BinName::new(&cross.name, &bin.name),
                     cross: true,
                     count: count.clone(),
@@ -131,8 +131,12 @@ impl Merge {
 }
 
 /// Whether every bin hit is there to be counted.
-fn fits(counts: &[Vec<Count>], hits: &[Vec<u16>]) -> Result<(), Mismatch> {
+fn fits(counts: &[Vec<BinCount>], hits: &[Vec<u16>]) -> Result<(), CoverageMismatchError> {
     let in_range =
-        |(counts, hits): (&Vec<Count>, &Vec<u16>)| hits.iter().all(|h| usize::from(*h) < counts.len());
-    if counts.len() == hits.len() && counts.iter().zip(hits).all(in_range) { Ok(()) } else { Err(Mismatch) }
+        |(counts, hits): (&Vec<BinCount>, &Vec<u16>)| hits.iter().all(|h| usize::from(*h) < counts.len());
+    if counts.len() == hits.len() && counts.iter().zip(hits).all(in_range) {
+        Ok(())
+    } else {
+        Err(CoverageMismatchError)
+    }
 }

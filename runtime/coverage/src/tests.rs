@@ -6,10 +6,13 @@ use hrdsl_ir::{
     monitor::Assumption,
     world::SignalId,
 };
-use hrdsl_trace::{Observer, Step, Trace, What};
+use hrdsl_trace::{Trace, TraceObserver, TraceStep, TraceStepKind};
 use proptest::prelude::*;
 
-use crate::{Collector, Coverage, Merge, Mismatch, assume::Assumptions, hits_from_numbers};
+use crate::{
+    CoverageCollector, CoverageMismatchError, MergedCoverage, TestCoverage, assume::Assumptions,
+    hits_from_numbers,
+};
 
 const ASK: u16 = 0;
 const DECIDED: u16 = 1;
@@ -70,24 +73,25 @@ fn program(coverage: ir::Coverage, assumptions: Vec<Assumption>) -> Program {
     Program { events: vec![event("ask"), event("decided")], coverage, assumptions, ..Program::default() }
 }
 
-fn ask(time: Nanos) -> Step {
-    Step { time, what: What::Event { event: EventId(ASK), args: Vec::new() } }
+fn ask(time: Nanos) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Event { event: EventId(ASK), args: Vec::new() } }
 }
 
-fn decided(time: Nanos, yes: bool) -> Step {
-    Step { time, what: What::Event { event: EventId(DECIDED), args: vec![Value::Bool(yes)] } }
+fn decided(time: Nanos, yes: bool) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Event { event: EventId(DECIDED), args: vec![Value::Bool(yes)] } }
 }
 
-fn collect(steps: Vec<Step>) -> Coverage {
-    let mut collector = Collector::new(&program(declared(), Vec::new()));
+fn collect(steps: Vec<TraceStep>) -> TestCoverage {
+    let mut collector = CoverageCollector::new(&program(declared(), Vec::new()));
     Trace { steps, end: 100 }.replay(&mut collector);
     collector.finish()
 }
 
 #[test]
 fn events_are_counted_once_per_point() {
-    let unknown = Step { time: 2, what: What::Event { event: EventId(9), args: Vec::new() } };
-    let sample = Step { time: 2, what: What::Sample { signal: SignalId(0), value: Value::Bool(true) } };
+    let unknown = TraceStep { time: 2, what: TraceStepKind::Event { event: EventId(9), args: Vec::new() } };
+    let sample =
+        TraceStep { time: 2, what: TraceStepKind::Sample { signal: SignalId(0), value: Value::Bool(true) } };
     let covered = collect(vec![ask(0), decided(1, true), decided(1, false), unknown, sample]);
     assert_eq!(covered.numbers, [1, 2]);
     assert_eq!(covered.points, [vec![1], vec![1]]);
@@ -101,9 +105,9 @@ fn events_are_told_apart_by_symbols() {
     let declared = ir::Coverage { points: vec![of("slow"), of("fast")], crosses: Vec::new() };
     let went = |time, name| {
         let args = vec![symbol(name)];
-        Step { time, what: What::Event { event: EventId(DECIDED), args } }
+        TraceStep { time, what: TraceStepKind::Event { event: EventId(DECIDED), args } }
     };
-    let mut collector = Collector::new(&program(declared, Vec::new()));
+    let mut collector = CoverageCollector::new(&program(declared, Vec::new()));
     let steps = vec![went(0, "fast"), went(1, "slow"), went(2, "fast"), went(3, "still")];
     Trace { steps, end: 9 }.replay(&mut collector);
     assert_eq!(collector.finish().numbers, [1, 2]);
@@ -126,7 +130,7 @@ fn what_is_ignored_hits_no_cross_bin() {
 #[test]
 fn a_merge_counts_tests_and_names_the_first() {
     let declared = declared();
-    let mut merge = Merge::new(&declared);
+    let mut merge = MergedCoverage::new(&declared);
     merge.add("t2", &hits_from_numbers(&declared, &[1, 0])).unwrap();
     merge.add("t1", &hits_from_numbers(&declared, &[4, 2])).unwrap();
     let rows = merge.rows(&declared);
@@ -144,12 +148,12 @@ fn a_merge_counts_tests_and_names_the_first() {
 #[test]
 fn foreign_coverage_is_refused_whole() {
     let declared = declared();
-    let mut merge = Merge::new(&declared);
+    let mut merge = MergedCoverage::new(&declared);
     let mut foreign = hits_from_numbers(&declared, &[4, 2]);
     foreign.crosses[0].push(3);
-    assert_eq!(merge.add("t", &foreign), Err(Mismatch));
-    assert_eq!(merge.join(&Merge::default()), Err(Mismatch));
-    assert_eq!(merge, Merge::new(&declared));
+    assert_eq!(merge.add("t", &foreign), Err(CoverageMismatchError));
+    assert_eq!(merge.join(&MergedCoverage::default()), Err(CoverageMismatchError));
+    assert_eq!(merge, MergedCoverage::new(&declared));
 }
 
 #[test]
@@ -208,10 +212,10 @@ proptest! {
         seed in any::<prop::sample::Index>(),
     ) {
         let declared = declared();
-        let tests: Vec<(String, Coverage)> =
+        let tests: Vec<(String, TestCoverage)> =
             numbers.iter().enumerate().map(|(i, n)| (format!("t{i:03}"), hits_from_numbers(&declared, n))).collect();
-        let merged = |tests: &[(String, Coverage)]| {
-            let mut merge = Merge::new(&declared);
+        let merged = |tests: &[(String, TestCoverage)]| {
+            let mut merge = MergedCoverage::new(&declared);
             tests.iter().for_each(|(name, coverage)| merge.add(name, coverage).unwrap());
             merge
         };
@@ -227,7 +231,7 @@ proptest! {
         parts.join(&merged(a)).unwrap();
         prop_assert_eq!(&whole, &parts);
         let text = serde_json::to_string(&whole).unwrap();
-        prop_assert_eq!(serde_json::from_str::<Merge>(&text).unwrap(), whole);
+        prop_assert_eq!(serde_json::from_str::<MergedCoverage>(&text).unwrap(), whole);
     }
 
     #[test]
@@ -253,7 +257,7 @@ proptest! {
         let kept = times.iter().all(|t| inside(*t) <= n as usize);
         let events: Vec<_> = times.iter().map(|t| (*t, EventId(ASK), Vec::new())).collect();
         prop_assert_eq!(Assumptions::allows(&program(declared(), vec![at_most(n, within)]), &events), kept);
-        let mut collector = Collector::new(&program(declared(), Vec::new()));
+        let mut collector = CoverageCollector::new(&program(declared(), Vec::new()));
         events.iter().enumerate().for_each(|(i, e)| collector.step(i, &ask(e.0)));
         prop_assert_eq!(collector.finish().numbers[0] as usize, times.len());
     }

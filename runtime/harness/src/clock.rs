@@ -3,7 +3,7 @@
 use hrdsl_ir::Nanos;
 
 /// What lets time pass.
-pub trait Clock {
+pub trait TimeSource {
     /// Lets time pass from `now` to `due`, when the next thing is known to happen (`None`: nothing is), but not beyond
     /// `limit`. Where the outside owns time, it may come to stand earlier, because something came from there.
     ///
@@ -15,7 +15,7 @@ pub trait Clock {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VirtualClock;
 
-impl Clock for VirtualClock {
+impl TimeSource for VirtualClock {
     fn advance(&mut self, now: Nanos, due: Option<Nanos>, limit: Nanos) -> Option<Nanos> {
         due.map(|due| due.clamp(now, limit.max(now)))
     }

@@ -5,48 +5,49 @@ use std::{cell::RefCell, collections::VecDeque, rc::Rc};
 
 use hrdsl_ir::{
     Nanos, Value,
-    world::{RuleOn, SignalId, WorldAction},
+    world::{SignalId, WorldAction},
 };
 
 use crate::{
-    Begun, Clock, DeviceOrder, OrderError, OrderId, System, SystemAnswer, SystemFault, SystemRequest, Ticket,
-    World,
+    clock::TimeSource,
+    command::CheckedCommand,
+    system::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
+    world::{CommandId, WorldBackend},
 };
 
-/// A world in which signals have the values that a table says, and orders take the time that it says.
+/// A world in which signals have the values that a table says, and commands take the time that it says.
 #[derive(Clone, Debug, Default)]
 pub struct ToldWorld {
     /// From which time on a signal has which value; in order.
     pub signals: Vec<(Nanos, SignalId, Value)>,
-    /// By device and verb: how long the order takes, how it ends, and what rules see of it. Others are refused.
-    pub orders: Vec<(&'static str, &'static str, ToldOrder)>,
+    /// By device and command: how long it takes, and how it ends. Others cannot be done.
+    pub commands: Vec<(&'static str, &'static str, ToldCommand)>,
     /// What it was asked to do, each with the time.
     pub seen: Rc<RefCell<Vec<(Nanos, String)>>>,
     now: Nanos,
-    under_way: Vec<(Nanos, OrderId, Result<(), String>)>,
+    under_way: Vec<(Nanos, CommandId, Result<(), String>)>,
     count: u64,
 }
 
-/// What becomes of an order.
+/// What becomes of a command.
 #[derive(Clone, Debug)]
-pub struct ToldOrder {
+pub struct ToldCommand {
     pub takes: Nanos,
     pub ends: Result<(), String>,
-    pub sign: Option<RuleOn>,
 }
 
 impl ToldWorld {
-    /// A world with these [signals](Self::signals) and [orders](Self::orders).
+    /// A world with these [signals](Self::signals) and [commands](Self::commands).
     #[must_use]
     pub fn new(
         signals: Vec<(Nanos, SignalId, Value)>,
-        orders: Vec<(&'static str, &'static str, ToldOrder)>,
+        commands: Vec<(&'static str, &'static str, ToldCommand)>,
     ) -> Self {
-        Self { signals, orders, ..Self::default() }
+        Self { signals, commands, ..Self::default() }
     }
 }
 
-impl World for ToldWorld {
+impl WorldBackend for ToldWorld {
     fn next_wake(&self) -> Option<Nanos> {
         let ends = self.under_way.iter().map(|(end, _, _)| *end);
         let changes = self.signals.iter().map(|(time, _, _)| *time).filter(|time| *time > self.now);
@@ -67,24 +68,22 @@ impl World for ToldWorld {
         Ok(())
     }
 
-    fn order(&mut self, order: &DeviceOrder) -> Result<Begun, OrderError> {
-        let DeviceOrder { device, verb, args } = order;
-        self.seen.borrow_mut().push((self.now, format!("{device} {verb} {args:?}")));
-        let told = self.orders.iter().find(|(d, v, _)| (*d, *v) == (device.as_str(), verb.as_str()));
-        let Some((_, _, told)) = told else {
-            return Err(OrderError::Refused { error: format!("`{device}` cannot `{verb}`"), help: None });
-        };
-        let id = OrderId(self.count);
+    fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String> {
+        let names = (command.device.name.as_str(), command.command.name.as_str());
+        self.seen.borrow_mut().push((self.now, format!("{} {} {:?}", names.0, names.1, command.call)));
+        let told = self.commands.iter().find(|(device, command, _)| (*device, *command) == names);
+        let Some((_, _, told)) = told else { return Err("nobody said what becomes of it".to_owned()) };
+        let id = CommandId(self.count);
         self.count += 1;
         self.under_way.push((self.now + told.takes, id, told.ends.clone()));
-        Ok(Begun { id, sign: told.sign.clone() })
+        Ok(id)
     }
 
-    fn take_ended(&mut self) -> Vec<(OrderId, Result<(), String>)> {
+    fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {
         let (ended, rest): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.under_way).into_iter().partition(|(end, _, _)| *end <= self.now);
         self.under_way = rest;
-        ended.into_iter().map(|(_, id, how)| (id, how)).collect()
+        ended.into_iter().map(|(_, id, end)| (id, end)).collect()
     }
 }
 
@@ -95,7 +94,7 @@ pub struct ToldSystem {
     /// What it was answered: when, to which of its requests (from 0), what.
     pub answers: Rc<RefCell<Vec<(Nanos, u64, SystemAnswer)>>>,
     made: u64,
-    open: Vec<Ticket>,
+    open: Vec<RequestTicket>,
 }
 
 /// What a [`ToldSystem`] does next.
@@ -116,7 +115,7 @@ impl ToldSystem {
     }
 }
 
-impl System for ToldSystem {
+impl SystemActor for ToldSystem {
     fn is_ready(&self) -> bool {
         match self.steps.front() {
             Some(ToldStep::Then(_)) => self.open.is_empty(),
@@ -125,19 +124,19 @@ impl System for ToldSystem {
         }
     }
 
-    fn next(&mut self, _: Nanos) -> Result<Option<(Ticket, SystemRequest)>, SystemFault> {
+    fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
         let request = match self.steps.pop_front() {
             Some(ToldStep::Ask(request) | ToldStep::Then(request)) => request,
             Some(ToldStep::Fail(fault)) => return Err(fault),
             None => return Ok(None),
         };
-        let ticket = Ticket(self.made);
+        let ticket = RequestTicket(self.made);
         self.made += 1;
         self.open.push(ticket);
         Ok(Some((ticket, request)))
     }
 
-    fn answer(&mut self, ticket: Ticket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
+    fn answer(&mut self, ticket: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
         self.open.retain(|open| *open != ticket);
         self.answers.borrow_mut().push((now, ticket.0, answer));
         Ok(())
@@ -150,7 +149,7 @@ pub struct ToldClock {
     pub stops: VecDeque<Nanos>,
 }
 
-impl Clock for ToldClock {
+impl TimeSource for ToldClock {
     fn advance(&mut self, now: Nanos, due: Option<Nanos>, limit: Nanos) -> Option<Nanos> {
         let due = due.unwrap_or(limit).clamp(now, limit);
         while self.stops.front().is_some_and(|stop| *stop <= now) {

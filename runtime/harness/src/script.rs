@@ -7,7 +7,10 @@ use hrdsl_ir::{
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::{Context, Fault, Player, draw_samples, stimulus::Performance};
+use crate::{
+    player::{HarnessError, Player, PlayerContext},
+    stimulus::{Performance, draw_samples},
+};
 
 pub struct ScriptPlayer<'p> {
     program: &'p Program,
@@ -16,12 +19,12 @@ pub struct ScriptPlayer<'p> {
     rng: ChaCha8Rng,
     /// The step under way, or the next.
     at: usize,
-    state: State,
+    state: ScriptState,
     /// What was heard since the last await ended.
     heard: Vec<(EventId, Vec<Value>)>,
 }
 
-enum State {
+enum ScriptState {
     Ready,
     Performing(Performance),
     Awaiting { until: Nanos },
@@ -35,10 +38,10 @@ impl<'p> ScriptPlayer<'p> {
     pub fn new(program: &'p Program, test: &'p Test) -> Self {
         let actors = program.actors_of(Role::Environment).collect();
         let rng = ChaCha8Rng::seed_from_u64(test.seed);
-        Self { program, test, actors, rng, at: 0, state: State::Ready, heard: Vec::new() }
+        Self { program, test, actors, rng, at: 0, state: ScriptState::Ready, heard: Vec::new() }
     }
 
-    fn begin(&mut self, step: &'p TestStep, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn begin(&mut self, step: &'p TestStep, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.state = match step {
             TestStep::Do { event, args, samples } => {
                 let drawn = if samples.is_empty() {
@@ -46,33 +49,33 @@ impl<'p> ScriptPlayer<'p> {
                 } else {
                     samples.clone()
                 };
-                State::Performing(Performance::begin(self.program, *event, args, &drawn, cx)?)
+                ScriptState::Performing(Performance::begin(self.program, *event, args, &drawn, cx)?)
             }
-            TestStep::Await { within, .. } => State::Awaiting { until: cx.now + within },
-            TestStep::Wait { time } => State::Waiting { until: cx.now + time },
+            TestStep::Await { within, .. } => ScriptState::Awaiting { until: cx.now + within },
+            TestStep::Wait { time } => ScriptState::Waiting { until: cx.now + time },
         };
         Ok(())
     }
 
     /// Goes on as far as it can now.
-    fn go_on(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn go_on(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         loop {
             let over = match &mut self.state {
-                State::Finished => return Ok(()),
-                State::Ready => {
+                ScriptState::Finished => return Ok(()),
+                ScriptState::Ready => {
                     let Some(step) = self.test.steps.get(self.at) else {
-                        self.state = State::Finished;
+                        self.state = ScriptState::Finished;
                         return Ok(());
                     };
                     self.begin(step, cx)?;
                     continue;
                 }
-                State::Performing(performance) => {
+                ScriptState::Performing(performance) => {
                     performance.go_on(cx);
                     performance.is_done(cx.now)
                 }
-                State::Waiting { until } => *until <= cx.now,
-                State::Awaiting { until } => {
+                ScriptState::Waiting { until } => *until <= cx.now,
+                ScriptState::Awaiting { until } => {
                     let in_vain = cx.expire && *until <= cx.now;
                     let over = in_vain || self.awaited_was_heard();
                     if over {
@@ -85,7 +88,7 @@ impl<'p> ScriptPlayer<'p> {
                 return Ok(());
             }
             self.at += 1;
-            self.state = State::Ready;
+            self.state = ScriptState::Ready;
         }
     }
 
@@ -103,12 +106,17 @@ impl Player for ScriptPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.go_on(cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
-        if matches!(self.state, State::Finished) {
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
+        if matches!(self.state, ScriptState::Finished) {
             return Ok(());
         }
         self.heard.push((event, args.to_vec()));
@@ -117,14 +125,14 @@ impl Player for ScriptPlayer<'_> {
 
     fn next_wake(&self) -> Option<Nanos> {
         match &self.state {
-            State::Ready => Some(0),
-            State::Performing(performance) => Some(performance.until),
-            State::Awaiting { until } | State::Waiting { until } => Some(*until),
-            State::Finished => None,
+            ScriptState::Ready => Some(0),
+            ScriptState::Performing(performance) => Some(performance.until),
+            ScriptState::Awaiting { until } | ScriptState::Waiting { until } => Some(*until),
+            ScriptState::Finished => None,
         }
     }
 
     fn is_finished(&self) -> bool {
-        matches!(self.state, State::Finished)
+        matches!(self.state, ScriptState::Finished)
     }
 }

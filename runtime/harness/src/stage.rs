@@ -5,37 +5,41 @@ use hrdsl_ir::{
     expr::Expr,
     world::{Rule, RuleOn, SignalId, WorldAction},
 };
-use hrdsl_trace::{Step, Trace, What};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 use crate::{
-    Message,
-    world::{DeviceOrder, OrderError, OrderId, World},
+    command::{CommandRequest, NotBegun},
+    message::PlayerMessage,
+    world::{CommandId, WorldBackend},
 };
 
 /// The world of one run.
-pub struct Stage<'p> {
-    world: Box<dyn World + 'p>,
+pub struct WorldStage<'p> {
+    world: Box<dyn WorldBackend + 'p>,
+    /// What it has, as it was declared.
+    declared: Option<&'p hrdsl_ir::world::World>,
     rules: &'p [Rule],
     /// The signals that are recorded, with what was last recorded of each.
     recorded: Vec<(SignalId, Option<Value>)>,
     sample: Nanos,
     /// The period in which the signals were last sampled by the clock.
     sampled: Nanos,
-    /// Orders that ended and that their maker has not yet been told of.
-    ended: Vec<(OrderId, Result<(), String>)>,
-    /// Events set off by orders.
-    answers: Vec<Message>,
+    /// Commands that ended and that their maker has not yet been told of.
+    ended: Vec<(CommandId, Result<(), String>)>,
+    /// Events set off by commands.
+    answers: Vec<PlayerMessage>,
 }
 
-impl<'p> Stage<'p> {
+impl<'p> WorldStage<'p> {
     /// The world of a program on stage, with the rules and signals that the program says; without a `world` block it has no
     /// rules, and signals are recorded at events only.
     #[must_use]
-    pub fn new(program: &'p Program, world: Box<dyn World + 'p>) -> Self {
+    pub fn new(program: &'p Program, world: Box<dyn WorldBackend + 'p>) -> Self {
         let numbered = program.signals.iter().zip(0u16..);
         let recorded = numbered.filter(|(s, _)| s.recorded).map(|(_, i)| (SignalId(i), None)).collect();
         Self {
             world,
+            declared: program.world.as_ref(),
             rules: program.world.as_ref().map_or(&[], |world| &world.rules),
             recorded,
             sample: program.world.as_ref().map_or(Nanos::MAX, |world| world.sample.max(1)),
@@ -68,7 +72,9 @@ impl<'p> Stage<'p> {
             let value = on_grid(self.world.read(*signal));
             if last.is_none_or(|last| last.key() != value.key()) {
                 *last = Some(value);
-                trace.steps.push(Step { time: now, what: What::Sample { signal: *signal, value } });
+                trace
+                    .steps
+                    .push(TraceStep { time: now, what: TraceStepKind::Sample { signal: *signal, value } });
             }
         }
     }
@@ -86,44 +92,44 @@ impl<'p> Stage<'p> {
         self.world.act(action, vars)
     }
 
-    /// The system's order; sets off the rules that wait for its sign.
+    /// The system's command; sets off the rules that wait for it.
     ///
     /// # Errors
     /// Why it cannot begin.
-    pub fn order(&mut self, order: &DeviceOrder) -> Result<OrderId, OrderError> {
-        let begun = self.world.order(order)?;
-        if let Some(sign) = begun.sign {
-            let answers = self.fire(&|on| *on == sign);
-            self.answers.extend(answers);
-        }
-        Ok(begun.id)
+    pub fn command(&mut self, request: &CommandRequest) -> Result<CommandId, NotBegun> {
+        let checked = request.checked(self.declared)?;
+        let id = self.world.command(&checked).map_err(NotBegun::Failed)?;
+        let told = RuleOn::Commanded { device: checked.device_id, command: checked.command_id };
+        let answers = self.fire(&|on| *on == told);
+        self.answers.extend(answers);
+        Ok(id)
     }
 
     #[must_use]
-    pub fn has_ended_orders(&self) -> bool {
+    pub fn has_ended_commands(&self) -> bool {
         !self.ended.is_empty()
     }
 
-    /// How an order ended, if it has; told once.
-    pub fn take_ended(&mut self, id: OrderId) -> Option<Result<(), String>> {
+    /// How a command ended, if it has; told once.
+    pub fn take_ended(&mut self, id: CommandId) -> Option<Result<(), String>> {
         let at = self.ended.iter().position(|(ended, _)| *ended == id)?;
         Some(self.ended.remove(at).1)
     }
 
     /// What the world answers to an event.
-    pub fn hear(&mut self, event: EventId, args: &[Value]) -> Vec<Message> {
+    pub fn hear(&mut self, event: EventId, args: &[Value]) -> Vec<PlayerMessage> {
         self.fire(&|on| match on {
             RuleOn::Event(pattern) => EventPattern::matches(pattern, event, args),
-            RuleOn::Closes(_) | RuleOn::Opens(_) => false,
+            RuleOn::Commanded { .. } => false,
         })
     }
 
-    /// What the world answered to orders since this was last asked.
-    pub fn take_answers(&mut self) -> Vec<Message> {
+    /// What the world answered to commands since this was last asked.
+    pub fn take_answers(&mut self) -> Vec<PlayerMessage> {
         std::mem::take(&mut self.answers)
     }
 
-    fn fire(&mut self, is_set_off: &dyn Fn(&RuleOn) -> bool) -> Vec<Message> {
+    fn fire(&mut self, is_set_off: &dyn Fn(&RuleOn) -> bool) -> Vec<PlayerMessage> {
         let mut out = Vec::new();
         for rule in self.rules {
             if !is_set_off(&rule.on) {
@@ -134,7 +140,7 @@ impl<'p> Stage<'p> {
             let holds = rule.guard.as_ref().is_none_or(|g| eval(g) == Some(Value::Bool(true)));
             let args: Option<Vec<Value>> = rule.args.iter().map(eval).collect();
             if let (true, Some(args)) = (holds, args) {
-                out.push(Message::Event { event: rule.event, args });
+                out.push(PlayerMessage::Event { event: rule.event, args });
             }
         }
         out

@@ -8,17 +8,20 @@ use hrdsl_ir::{
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::{Context, Fault, Message};
+use crate::{
+    message::PlayerMessage,
+    player::{HarnessError, PlayerContext},
+};
 
 /// A stimulus under way.
 pub struct Performance {
-    steps: VecDeque<Primitive>,
+    steps: VecDeque<StimulusPrimitive>,
     vars: Vec<Value>,
     /// It holds until then.
     pub until: Nanos,
 }
 
-enum Primitive {
+enum StimulusPrimitive {
     Emit(EventId, Vec<Value>),
     Hold(Nanos),
     Act(WorldAction),
@@ -33,7 +36,7 @@ pub fn draw_samples(
     event: EventId,
     args: &[Value],
     rng: &mut ChaCha8Rng,
-) -> Result<Vec<Value>, Fault> {
+) -> Result<Vec<Value>, HarnessError> {
     let Some(stimulus) = &program.event(event).stimulus else { return Ok(Vec::new()) };
     let mut vars = args.to_vec();
     for sample in &stimulus.samples {
@@ -75,9 +78,9 @@ fn on_grid(x: f64) -> f64 {
     (x * 1e6).round() / 1e6
 }
 
-fn eval(program: &Program, event: EventId, expr: &Expr, vars: &[Value]) -> Result<Value, Fault> {
+fn eval(program: &Program, event: EventId, expr: &Expr, vars: &[Value]) -> Result<Value, HarnessError> {
     expr.eval(&|i| vars.get(i as usize).copied())
-        .map_err(|e| Fault::Model(format!("stimulus `{}`: {e}", program.event(event).name)))
+        .map_err(|e| HarnessError::Model(format!("stimulus `{}`: {e}", program.event(event).name)))
 }
 
 /// A step with its expressions evaluated.
@@ -86,17 +89,17 @@ fn primitive(
     event: EventId,
     step: &StimulusStep,
     vars: &[Value],
-) -> Result<Option<Primitive>, Fault> {
+) -> Result<Option<StimulusPrimitive>, HarnessError> {
     Ok(match step {
         StimulusStep::Emit { event: emitted, args } => {
             let args = args.iter().map(|a| eval(program, event, a, vars)).collect::<Result<_, _>>()?;
-            Some(Primitive::Emit(*emitted, args))
+            Some(StimulusPrimitive::Emit(*emitted, args))
         }
         StimulusStep::Hold { seconds } => {
             let time = eval(program, event, seconds, vars)?.as_f64().unwrap_or(0.0);
-            Some(Primitive::Hold(nanos(time.max(0.0))))
+            Some(StimulusPrimitive::Hold(nanos(time.max(0.0))))
         }
-        StimulusStep::Act(action) => Some(Primitive::Act(action.clone())),
+        StimulusStep::Act(action) => Some(StimulusPrimitive::Act(action.clone())),
         // INVARIANT: a branch has been taken.
         StimulusStep::If { .. } => None,
     })
@@ -112,9 +115,9 @@ impl Performance {
         event: EventId,
         args: &[Value],
         samples: &[Value],
-        cx: &mut Context<'_, '_>,
-    ) -> Result<Self, Fault> {
-        cx.out.push(Message::Event { event, args: args.to_vec() });
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<Self, HarnessError> {
+        cx.out.push(PlayerMessage::Event { event, args: args.to_vec() });
         let mut this = Self { steps: VecDeque::new(), vars: [args, samples].concat(), until: cx.now };
         if let Some(stimulus) = &program.event(event).stimulus {
             let holds = |c: &Expr| Ok(eval(program, event, c, &this.vars)?.as_bool() == Some(true));
@@ -127,14 +130,16 @@ impl Performance {
     }
 
     /// Runs steps until one holds beyond now. `is_done` tells whether any are left.
-    pub fn go_on(&mut self, cx: &mut Context<'_, '_>) {
+    pub fn go_on(&mut self, cx: &mut PlayerContext<'_, '_>) {
         while self.until <= cx.now {
             match self.steps.pop_front() {
                 None => return,
-                Some(Primitive::Emit(event, args)) => cx.out.push(Message::Event { event, args }),
-                Some(Primitive::Hold(time)) => self.until = cx.now + time,
-                Some(Primitive::Act(action)) => {
-                    cx.out.push(Message::Act { action, vars: self.vars.clone() });
+                Some(StimulusPrimitive::Emit(event, args)) => {
+                    cx.out.push(PlayerMessage::Event { event, args })
+                }
+                Some(StimulusPrimitive::Hold(time)) => self.until = cx.now + time,
+                Some(StimulusPrimitive::Act(action)) => {
+                    cx.out.push(PlayerMessage::Act { action, vars: self.vars.clone() });
                 }
             }
         }

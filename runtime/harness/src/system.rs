@@ -1,14 +1,16 @@
 //! The seam to the system: what plays the system actor, be it a process in lock-step or a robot outside.
 //!
-//! A system asks, and is answered. A request need not be answered before the next one comes: each has a [`Ticket`], and
+//! A system asks, and is answered. A request need not be answered before the next one comes: each has a [`RequestTicket`], and
 //! whoever waits for nothing goes on asking. A process in lock-step is a system that has at most one request open.
 
 use std::{collections::BTreeMap, fmt};
 
 use hrdsl_ir::{Nanos, Value};
 
+use crate::{argument::SystemArgument, command::CommandRequest};
+
 /// Whatever plays the system actor.
-pub trait System {
+pub trait SystemActor {
     /// Whether it may ask something now: if not, it is not asked before it was answered, or time has passed.
     fn is_ready(&self) -> bool;
 
@@ -16,18 +18,18 @@ pub trait System {
     ///
     /// # Errors
     /// What it did that no system should.
-    fn next(&mut self, now: Nanos) -> Result<Option<(Ticket, SystemRequest)>, SystemFault>;
+    fn next(&mut self, now: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault>;
 
     /// The answer to one of its requests.
     ///
     /// # Errors
     /// What it did that no system should.
-    fn answer(&mut self, ticket: Ticket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault>;
+    fn answer(&mut self, ticket: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault>;
 }
 
 /// Tells the open requests of a system apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Ticket(pub u64);
+pub struct RequestTicket(pub u64);
 
 /// What a system asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +47,7 @@ pub enum SystemRequest {
     /// The present value of a signal.
     Read { signal: String },
     /// Let a device do something, and tell it when that has ended.
-    Order(crate::world::DeviceOrder),
+    Command(CommandRequest),
     /// It has come to its normal end.
     Done,
 }
@@ -61,7 +63,7 @@ pub enum SystemAnswer {
     TimedOut,
     /// To read.
     Value(Value),
-    /// To an order: it ended, well or for this reason not.
+    /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
     /// To any request: it makes no sense.
     Refused {
@@ -69,16 +71,6 @@ pub enum SystemAnswer {
         /// What to write instead.
         help: Option<String>,
     },
-}
-
-/// An argument of an event or an order, as the system wrote it: what it means, its declaration tells.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SystemArgument {
-    /// The name of a value of an enumeration, perhaps.
-    Text(String),
-    /// A place (x, y, z; metres) or joint angles (radians).
-    Numbers(Vec<f64>),
-    Scalar(Value),
 }
 
 impl fmt::Display for SystemArgument {

@@ -9,8 +9,13 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    Context, Fault, Message, OrderError, OrderId, Player, Stage, System, SystemAnswer, SystemArgument,
-    SystemFault, SystemFaultKind, SystemRequest, Ticket, is_perceived,
+    argument::SystemArgument,
+    command::NotBegun,
+    message::PlayerMessage,
+    player::{HarnessError, Player, PlayerContext, is_perceived},
+    stage::WorldStage,
+    system::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest},
+    world::CommandId,
 };
 
 /// How many events wait in the system's mailbox at most; the oldest are dropped, as in a ROS subscriber's queue.
@@ -18,41 +23,41 @@ const MAILBOX: usize = 1_000;
 /// More requests at one instant are a system that never lets time pass.
 const REQUESTS_AT_AN_INSTANT: usize = 100_000;
 
-/// Plays the system actor by a [`System`].
+/// Plays the system actor by a [`SystemActor`].
 pub struct SystemPlayer<'p, S> {
     program: &'p Program,
     actors: [ActorId; 1],
     system: S,
     /// Its open requests, in the order in which they were made.
-    waits: Vec<(Ticket, Wait)>,
-    mailbox: VecDeque<Mail>,
+    waits: Vec<(RequestTicket, RequestWait)>,
+    mailbox: VecDeque<MailboxEvent>,
     /// How many requests it has made at the instant at which it made the last.
     at_instant: (Nanos, usize),
     /// It has come to its end.
     ended: bool,
 }
 
-struct Mail {
+struct MailboxEvent {
     event: EventId,
     args: Vec<Value>,
     time: Nanos,
 }
 
 /// What an open request waits for.
-enum Wait {
+enum RequestWait {
     Time(Nanos),
     Events { events: Vec<EventId>, until: Option<Nanos> },
-    Order(OrderId),
+    Command(CommandId),
 }
 
 /// What a request comes to at once.
 enum RequestResponse {
     Answer(SystemAnswer),
-    Wait(Wait),
+    Wait(RequestWait),
     End,
 }
 
-impl<'p, S: System> SystemPlayer<'p, S> {
+impl<'p, S: SystemActor> SystemPlayer<'p, S> {
     #[must_use]
     pub fn new(program: &'p Program, actor: ActorId, system: S) -> Self {
         Self {
@@ -66,14 +71,21 @@ impl<'p, S: System> SystemPlayer<'p, S> {
         }
     }
 
-    fn answer(&mut self, ticket: Ticket, now: Nanos, answer: SystemAnswer) -> Result<(), Fault> {
-        self.system.answer(ticket, now, answer).map_err(Fault::System)
+    fn answer(
+        &mut self,
+        ticket: RequestTicket,
+        now: Nanos,
+        answer: SystemAnswer,
+    ) -> Result<(), HarnessError> {
+        self.system.answer(ticket, now, answer).map_err(HarnessError::System)
     }
 
     /// Takes requests for as long as it makes some.
-    fn serve(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn serve(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         while !self.ended && self.system.is_ready() {
-            let Some((ticket, request)) = self.system.next(cx.now).map_err(Fault::System)? else { break };
+            let Some((ticket, request)) = self.system.next(cx.now).map_err(HarnessError::System)? else {
+                break;
+            };
             self.count(cx.now)?;
             match self.response(request, cx) {
                 RequestResponse::Answer(answer) => self.answer(ticket, cx.now, answer)?,
@@ -86,7 +98,7 @@ impl<'p, S: System> SystemPlayer<'p, S> {
 
     /// Counts a request at this instant: waits that end at once let no time pass either, so that the count goes on over
     /// them, and starts anew only when time has moved.
-    fn count(&mut self, now: Nanos) -> Result<(), Fault> {
+    fn count(&mut self, now: Nanos) -> Result<(), HarnessError> {
         let (instant, requests) = &mut self.at_instant;
         if *instant != now {
             (*instant, *requests) = (now, 0);
@@ -99,18 +111,20 @@ impl<'p, S: System> SystemPlayer<'p, S> {
             "the program made {REQUESTS_AT_AN_INSTANT} requests without letting simulated time pass (at {} s)",
             seconds(now)
         );
-        Err(Fault::System(SystemFault { message, kind: SystemFaultKind::Program }))
+        Err(HarnessError::System(SystemFault { message, kind: SystemFaultKind::Program }))
     }
 
-    fn response(&mut self, request: SystemRequest, cx: &mut Context<'_, '_>) -> RequestResponse {
+    fn response(&mut self, request: SystemRequest, cx: &mut PlayerContext<'_, '_>) -> RequestResponse {
         match request {
             SystemRequest::Now => RequestResponse::Answer(SystemAnswer::Ok),
             SystemRequest::Done => RequestResponse::End,
-            SystemRequest::Sleep { time } => RequestResponse::Wait(Wait::Time(cx.now.saturating_add(time))),
+            SystemRequest::Sleep { time } => {
+                RequestResponse::Wait(RequestWait::Time(cx.now.saturating_add(time)))
+            }
             SystemRequest::Emit { event, args } => {
                 RequestResponse::Answer(match self.emission(&event, &args) {
                     Ok((event, args)) => {
-                        cx.out.push(Message::Event { event, args });
+                        cx.out.push(PlayerMessage::Event { event, args });
                         SystemAnswer::Ok
                     }
                     Err(answer) => answer,
@@ -121,14 +135,14 @@ impl<'p, S: System> SystemPlayer<'p, S> {
             SystemRequest::Read { signal } => {
                 RequestResponse::Answer(self.read(&signal, cx.stage.as_deref_mut()))
             }
-            SystemRequest::Order(order) => {
+            SystemRequest::Command(request) => {
                 let Some(stage) = cx.stage.as_deref_mut() else {
                     return RequestResponse::Answer(refuse("there is no world to act in", None));
                 };
-                match stage.order(&order) {
-                    Ok(id) => RequestResponse::Wait(Wait::Order(id)),
-                    Err(OrderError::Refused { error, help }) => RequestResponse::Answer(refuse(error, help)),
-                    Err(OrderError::Failed(why)) => RequestResponse::Answer(SystemAnswer::Ended(Err(why))),
+                match stage.command(&request) {
+                    Ok(id) => RequestResponse::Wait(RequestWait::Command(id)),
+                    Err(NotBegun::Refused { error, help }) => RequestResponse::Answer(refuse(error, help)),
+                    Err(NotBegun::Failed(why)) => RequestResponse::Answer(SystemAnswer::Ended(Err(why))),
                 }
             }
         }
@@ -144,7 +158,7 @@ impl<'p, S: System> SystemPlayer<'p, S> {
             return RequestResponse::Answer(self.event_answer(mail));
         }
         let until = timeout.map(|t| now.saturating_add(t));
-        RequestResponse::Wait(Wait::Events { events, until })
+        RequestResponse::Wait(RequestWait::Events { events, until })
     }
 
     fn drop_mail(&mut self, names: &[String]) -> SystemAnswer {
@@ -157,7 +171,7 @@ impl<'p, S: System> SystemPlayer<'p, S> {
         }
     }
 
-    fn read(&self, name: &str, stage: Option<&mut Stage<'_>>) -> SystemAnswer {
+    fn read(&self, name: &str, stage: Option<&mut WorldStage<'_>>) -> SystemAnswer {
         let readable = |s: &&Signal| s.to.contains(&self.actors[0]);
         let found = self.program.signals.iter().zip(0u16..).find(|(s, _)| s.name == name && readable(s));
         match (found, stage) {
@@ -210,20 +224,20 @@ impl<'p, S: System> SystemPlayer<'p, S> {
         Ok((id, values))
     }
 
-    fn event_answer(&self, mail: Mail) -> SystemAnswer {
+    fn event_answer(&self, mail: MailboxEvent) -> SystemAnswer {
         let event = self.program.event(mail.event);
         let args = event.params.iter().map(|p| p.name.clone()).zip(mail.args).collect();
         SystemAnswer::Event { name: event.name.clone(), args, time: mail.time }
     }
 
     /// The answer to an open request, if its time has come.
-    fn due(wait: &Wait, cx: &mut Context<'_, '_>) -> Option<SystemAnswer> {
+    fn due(wait: &RequestWait, cx: &mut PlayerContext<'_, '_>) -> Option<SystemAnswer> {
         match wait {
-            Wait::Time(until) => (*until <= cx.now).then_some(SystemAnswer::Ok),
-            Wait::Events { until, .. } => {
+            RequestWait::Time(until) => (*until <= cx.now).then_some(SystemAnswer::Ok),
+            RequestWait::Events { until, .. } => {
                 (cx.expire && until.is_some_and(|until| until <= cx.now)).then_some(SystemAnswer::TimedOut)
             }
-            Wait::Order(id) => Some(SystemAnswer::Ended(cx.stage.as_deref_mut()?.take_ended(*id)?)),
+            RequestWait::Command(id) => Some(SystemAnswer::Ended(cx.stage.as_deref_mut()?.take_ended(*id)?)),
         }
     }
 }
@@ -267,12 +281,12 @@ fn argument(event: &str, param: &Param, given: Option<&SystemArgument>) -> Resul
     })
 }
 
-impl<S: System> Player for SystemPlayer<'_, S> {
+impl<S: SystemActor> Player for SystemPlayer<'_, S> {
     fn actors(&self) -> &[ActorId] {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         let mut at = 0;
         while let Some((ticket, wait)) = self.waits.get(at) {
             let ticket = *ticket;
@@ -287,11 +301,16 @@ impl<S: System> Player for SystemPlayer<'_, S> {
         self.serve(cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
-        let mail = Mail { event, args: args.to_vec(), time: cx.now };
-        let waits_for = |(_, wait): &(Ticket, Wait)| match wait {
-            Wait::Events { events, .. } => events.contains(&event),
-            Wait::Time(_) | Wait::Order(_) => false,
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
+        let mail = MailboxEvent { event, args: args.to_vec(), time: cx.now };
+        let waits_for = |(_, wait): &(RequestTicket, RequestWait)| match wait {
+            RequestWait::Events { events, .. } => events.contains(&event),
+            RequestWait::Time(_) | RequestWait::Command(_) => false,
         };
         // Of several that wait for it, the one that has waited longest takes it.
         if let Some(at) = self.waits.iter().position(waits_for) {
@@ -311,10 +330,10 @@ impl<S: System> Player for SystemPlayer<'_, S> {
         if self.ended {
             return None;
         }
-        let until = |(_, wait): &(Ticket, Wait)| match wait {
-            Wait::Time(until) => Some(*until),
-            Wait::Events { until, .. } => *until,
-            Wait::Order(_) => None,
+        let until = |(_, wait): &(RequestTicket, RequestWait)| match wait {
+            RequestWait::Time(until) => Some(*until),
+            RequestWait::Events { until, .. } => *until,
+            RequestWait::Command(_) => None,
         };
         let asks = self.system.is_ready().then_some(0);
         self.waits.iter().filter_map(until).chain(asks).min()

@@ -1,16 +1,14 @@
 //! The seam to the world: what the harness asks of whatever holds the bodies, be it simulated or not.
 
-use std::collections::BTreeMap;
-
 use hrdsl_ir::{
     Nanos, Value,
-    world::{RuleOn, SignalId, WorldAction},
+    world::{SignalId, WorldAction},
 };
 
-use crate::system::SystemArgument;
+use crate::command::CheckedCommand;
 
 /// A world in which actors act. Times are those of the harness's clock; the calls come in the order of time.
-pub trait World {
+pub trait WorldBackend {
     /// When it next changes by itself; `None`: at rest.
     fn next_wake(&self) -> Option<Nanos>;
 
@@ -26,47 +24,17 @@ pub trait World {
     /// Why the world cannot do it.
     fn act(&mut self, action: &WorldAction, vars: &[Value]) -> Result<(), String>;
 
-    /// Begins what the system orders a device to do. A later order to the same device replaces it.
+    /// Begins a command of the system. Does not wait for its end: devices act side by side. A later command to the same device
+    /// replaces it.
     ///
     /// # Errors
-    /// An order that makes no sense, or one that cannot be done.
-    fn order(&mut self, order: &DeviceOrder) -> Result<Begun, OrderError>;
+    /// Why it cannot be done as things are.
+    fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String>;
 
-    /// The orders that have ended since the last call, in the order in which they did, and why those failed that did.
-    fn take_ended(&mut self) -> Vec<(OrderId, Result<(), String>)>;
+    /// The commands that have ended since the last call, in the order in which they did, and why those failed that did.
+    fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)>;
 }
 
-/// What the system orders a device to do, as it said it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DeviceOrder {
-    /// `robot.arm`
-    pub device: String,
-    /// `move_to`
-    pub verb: String,
-    pub args: BTreeMap<String, SystemArgument>,
-}
-
-/// An order under way.
+/// A command under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct OrderId(pub u64);
-
-/// An order that was begun.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Begun {
-    pub id: OrderId,
-    /// What rules of the world may wait for.
-    pub sign: Option<RuleOn>,
-}
-
-/// Why an order was not begun.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum OrderError {
-    /// It makes no sense: no such device or verb, or other arguments than it takes.
-    Refused {
-        error: String,
-        /// What to write instead.
-        help: Option<String>,
-    },
-    /// It makes sense, and cannot be done as things are.
-    Failed(String),
-}
+pub struct CommandId(pub u64);

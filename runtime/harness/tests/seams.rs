@@ -3,24 +3,30 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use hrdsl_harness::{
-    DeviceOrder, Ended, Fault, Harness, Player, Run, ScriptPlayer, Stage, SystemAnswer, SystemArgument,
-    SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
-    doubles::{ToldClock, ToldOrder, ToldStep, ToldSystem, ToldWorld},
+    CommandRequest, Harness, HarnessError, HarnessRun, Player, RunTermination, ScriptPlayer, SystemAnswer,
+    SystemArgument, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
+    doubles::{ToldClock, ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span, Type, Value,
+    Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span, Type, Unit, Value,
+    device::{
+        CommandParam, CommandType, Device, DeviceBody, DeviceCommand, DeviceKind, DevicePrimitive,
+        DeviceSort, NumberCount,
+    },
     event::{Stimulus, StimulusStep},
     test::{Provenance, Test, TestStep},
     value::SECOND,
-    world::{GripperId, Rule, RuleOn, Signal, SignalId, World},
+    world::{
+        ArmId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, Rule, RuleOn, Signal, SignalId, World,
+    },
 };
-use hrdsl_trace::{RunEnd, What, print};
+use hrdsl_trace::{RunEnd, TraceStepKind, print};
 
 const GUEST: ActorId = ActorId(0);
 const ROBOT: ActorId = ActorId(1);
 
-/// `ask` is a stimulus that makes `asked(n)`; the robot makes `done`; the world makes `gripped` when the gripper closes while
-/// `near`.
+/// `ask` is a stimulus that makes `asked(n)`; the robot makes `done`; the world makes `gripped` when the gripper is told to
+/// close while `near`. It has an arm that can `go` and a gripper that can `close`.
 fn program() -> Program {
     let event = |name: &str, from, params: &[&str], stimulus| Event {
         name: name.into(),
@@ -43,7 +49,7 @@ fn program() -> Program {
         origin: Span::default(),
     };
     let rule = Rule {
-        on: RuleOn::Closes(GripperId(0)),
+        on: RuleOn::Commanded { device: DeviceId(1), command: DeviceCommandId(0) },
         guard: Some(Expr::Var(0)),
         event: EventId(3),
         args: Vec::new(),
@@ -58,6 +64,11 @@ fn program() -> Program {
         joints: Vec::new(),
         arms: Vec::new(),
         grippers: Vec::new(),
+        devices: vec![
+            Device { name: "arm".into(), kind: DeviceKindId(0), body: DeviceBody::Arm(ArmId(0)) },
+            Device { name: "grip".into(), kind: DeviceKindId(1), body: DeviceBody::Gripper(GripperId(0)) },
+        ],
+        device_kinds: kinds(),
         currents: Vec::new(),
         rules: vec![rule],
         origin: Span::default(),
@@ -75,6 +86,33 @@ fn program() -> Program {
         world: Some(world),
         ..Program::default()
     }
+}
+
+/// An arm can `go(to, speed?)` and `bend(to)`, a gripper `close`.
+fn kinds() -> Vec<DeviceKind> {
+    let param = |name: &str, unit, count, optional| CommandParam {
+        name: name.into(),
+        ty: CommandType { unit, count },
+        optional,
+    };
+    let command = |name: &str, params, primitive| DeviceCommand {
+        name: name.into(),
+        doc: String::new(),
+        params,
+        primitive,
+        expect: None,
+    };
+    let kind =
+        |name: &str, sort, commands| DeviceKind { name: name.into(), doc: String::new(), sort, commands };
+    let to = param("to", Unit::Metre, NumberCount::Array(3), false);
+    let speed = param("speed", Unit::RadianPerSecond, NumberCount::One, true);
+    let angles = param("to", Unit::Radian, NumberCount::List, false);
+    let arm = vec![
+        command("go", vec![to, speed], DevicePrimitive::ReachPoint),
+        command("bend", vec![angles], DevicePrimitive::ReachJoints),
+    ];
+    let gripper = vec![command("close", Vec::new(), DevicePrimitive::CloseFingers)];
+    vec![kind("arm", DeviceSort::Arm, arm), kind("gripper", DeviceSort::Gripper, gripper)]
 }
 
 fn test(steps: Vec<TestStep>) -> Test {
@@ -106,9 +144,17 @@ fn emit(event: &str) -> SystemRequest {
     SystemRequest::Emit { event: event.into(), args: BTreeMap::new() }
 }
 
-fn order(device: &str, verb: &str) -> SystemRequest {
-    let args = BTreeMap::from([("to".to_owned(), SystemArgument::Numbers(vec![1.0, 2.0]))]);
-    SystemRequest::Order(DeviceOrder { device: device.into(), verb: verb.into(), args })
+fn command(device: &str, command: &str, args: &[(&str, SystemArgument)]) -> SystemRequest {
+    let args = args.iter().map(|(name, arg)| ((*name).to_owned(), arg.clone())).collect();
+    SystemRequest::Command(CommandRequest { device: device.into(), command: command.into(), args })
+}
+
+fn go() -> SystemRequest {
+    command("arm", "go", &[("to", SystemArgument::Numbers(vec![1.0, 2.0, 3.0]))])
+}
+
+fn close() -> SystemRequest {
+    command("grip", "close", &[])
 }
 
 type Answers = Rc<RefCell<Vec<(Nanos, u64, SystemAnswer)>>>;
@@ -125,30 +171,30 @@ fn run(
     system: ToldSystem,
     world: Option<ToldWorld>,
     clock: Option<ToldClock>,
-) -> (Vec<String>, Run) {
+) -> (Vec<String>, HarnessRun) {
     let (program, test) = (program(), test(steps));
     let players: Vec<Box<dyn Player + '_>> = vec![
         Box::new(ScriptPlayer::new(&program, &test)),
         Box::new(SystemPlayer::new(&program, ROBOT, system)),
     ];
-    let stage = world.map(|world| Stage::new(&program, Box::new(world)));
+    let stage = world.map(|world| WorldStage::new(&program, Box::new(world)));
     let mut harness = Harness::new(&program, players, stage, 60 * SECOND);
     if let Some(clock) = clock {
         harness = harness.with_clock(Box::new(clock));
     }
     let run = harness.run();
-    let line = |step: &hrdsl_trace::Step| {
+    let line = |step: &hrdsl_trace::TraceStep| {
         let (who, what) = print::who_did_what(&program, &step.what);
         format!("{} {who} {what}", step.time / SECOND)
     };
     (run.trace.steps.iter().map(line).collect(), run)
 }
 
-fn end(run: &Run) -> (RunEnd, Nanos) {
+fn end(run: &HarnessRun) -> (RunEnd, Nanos) {
     let how = match run.ended {
-        Ended::Quiet => RunEnd::Quiet,
-        Ended::Limit => RunEnd::Limit,
-        Ended::Fault(_) => RunEnd::Error,
+        RunTermination::Quiet => RunEnd::Quiet,
+        RunTermination::Limit => RunEnd::Limit,
+        RunTermination::Fault(_) => RunEnd::Error,
     };
     (how, run.trace.end / SECOND)
 }
@@ -187,15 +233,15 @@ fn a_system_may_ask_on_before_it_is_answered() {
     use ToldStep::{Ask, Then};
     let (system, answers) = system(vec![
         Ask(sleep(5)),
-        Ask(order("arm", "move")),
+        Ask(go()),
         Ask(wait_for("asked", None)),
         Ask(wait_for("done", Some(1))),
         Ask(wait_for("asked", Some(1))),
         Ask(SystemRequest::Now),
         Then(SystemRequest::Done),
     ]);
-    let takes = ToldOrder { takes: 3 * SECOND, ends: Err("it slipped".into()), sign: None };
-    let world = ToldWorld::new(Vec::new(), vec![("arm", "move", takes)]);
+    let takes = ToldCommand { takes: 3 * SECOND, ends: Err("it slipped".into()) };
+    let world = ToldWorld::new(Vec::new(), vec![("arm", "go", takes)]);
     let seen = world.seen.clone();
     let (_, run) = run(vec![wait(2), ask(1), ask(2)], system, Some(world), None);
     assert_eq!(end(&run), (RunEnd::Quiet, 5));
@@ -203,7 +249,7 @@ fn a_system_may_ask_on_before_it_is_answered() {
     assert!(matches!(told[0], (0, 3, SystemAnswer::Refused { .. })), "its own events it does not hear");
     let slipped = Ended(Err("it slipped".into()));
     assert_eq!(told[1..], [(0, 5, Ok), (1, 4, TimedOut), (2, 2, asked(1, 2)), (3, 1, slipped), (5, 0, Ok)]);
-    assert_eq!(*seen.borrow(), [(0, "arm move {\"to\": Numbers([1.0, 2.0])}".to_owned())]);
+    assert_eq!(*seen.borrow(), [(0, "arm go ReachPoint { to: [1.0, 2.0, 3.0], speed: None }".to_owned())]);
 }
 
 #[test]
@@ -221,11 +267,11 @@ fn of_several_that_wait_the_first_takes_the_event() {
 }
 
 #[test]
-fn the_world_is_sampled_read_and_answers_to_orders() {
+fn the_world_is_sampled_read_and_answers_to_commands() {
     use SystemAnswer::{Ended, Ok as Fine, Value as Is};
     use ToldStep::Then;
     let near = SignalId(0);
-    let closes = ToldOrder { takes: 0, ends: Ok(()), sign: Some(RuleOn::Closes(GripperId(0))) };
+    let closes = ToldCommand { takes: 0, ends: Ok(()) };
     let world = ToldWorld::new(
         vec![(0, near, Value::Bool(false)), (4 * SECOND, near, Value::Bool(true))],
         vec![("grip", "close", closes)],
@@ -233,18 +279,21 @@ fn the_world_is_sampled_read_and_answers_to_orders() {
     let read = || SystemRequest::Read { signal: "near".into() };
     let (system, answers) = system(vec![
         Then(read()),
-        Then(order("grip", "close")),
+        Then(close()),
         Then(sleep(6)),
         Then(read()),
-        Then(order("grip", "close")),
-        Then(order("grip", "sing")),
+        Then(close()),
+        Then(command("grip", "sing", &[])),
         Then(SystemRequest::Done),
     ]);
     let (lines, run) = run(vec![wait(7)], system, Some(world), None);
     let expected = ["0 signal near = false", "4 signal near = true", "6 guest gripped"];
     assert_eq!(lines, expected, "the first close met nothing");
     assert_eq!(end(&run), (RunEnd::Quiet, 7));
-    let refused = SystemAnswer::Refused { error: "`grip` cannot `sing`".into(), help: None };
+    let refused = SystemAnswer::Refused {
+        error: "`grip` is a gripper, and cannot `sing`".into(),
+        help: Some("a gripper can close".into()),
+    };
     let expected = [
         (0, 0, Is(Value::Bool(false))),
         (0, 1, Ended(Ok(()))),
@@ -257,14 +306,14 @@ fn the_world_is_sampled_read_and_answers_to_orders() {
 }
 
 #[test]
-fn without_a_world_nothing_can_be_read_or_ordered() {
+fn without_a_world_nothing_can_be_read_or_commanded() {
     use ToldStep::Then;
     let read = SystemRequest::Read { signal: "near".into() };
     let other = SystemRequest::Read { signal: "far".into() };
     let (system, answers) = system(vec![
         Then(read),
         Then(other),
-        Then(order("arm", "move")),
+        Then(go()),
         Then(emit("asked")),
         Then(wait_for("done", None)),
         Then(SystemRequest::Done),
@@ -287,13 +336,68 @@ fn without_a_world_nothing_can_be_read_or_ordered() {
     );
 }
 
+/// Devices act side by side: each command is answered when it ends, whatever the others do.
+#[test]
+fn commands_to_several_devices_run_at_once() {
+    use SystemAnswer::{Ended, Ok as Fine};
+    use ToldStep::{Ask, Then};
+    let takes = |seconds: i64| ToldCommand { takes: seconds * SECOND, ends: Ok(()) };
+    let world = ToldWorld::new(Vec::new(), vec![("arm", "go", takes(5)), ("grip", "close", takes(2))]);
+    let (system, answers) =
+        system(vec![Ask(go()), Ask(close()), Ask(sleep(3)), Then(close()), Then(SystemRequest::Done)]);
+    let (_, run) = run(vec![], system, Some(world), None);
+    assert_eq!(end(&run), (RunEnd::Quiet, 7));
+    let ended = || Ended(Ok(()));
+    assert_eq!(told(&answers), [(2, 1, ended()), (3, 2, Fine), (5, 0, ended()), (7, 3, ended())]);
+}
+
+#[test]
+fn what_makes_no_sense_of_a_device_is_refused_with_what_it_can() {
+    use SystemArgument::{Numbers, Scalar, Text};
+    use ToldStep::Then;
+    let to = ("to", Numbers(vec![1.0, 2.0, 3.0]));
+    let asked = [
+        command("leg", "go", &[]),
+        command("arm", "wave", &[]),
+        command("arm", "go", &[]),
+        command("arm", "go", &[("to", Numbers(vec![1.0, 2.0]))]),
+        command("arm", "go", &[("to", Scalar(Value::Float(1.0)))]),
+        command("arm", "go", &[to.clone(), ("speed", Text("fast".into()))]),
+        command("arm", "go", &[to.clone(), ("sped", Scalar(Value::Float(1.0)))]),
+        command("arm", "bend", &[("to", Text("there".into()))]),
+        command("grip", "close", std::slice::from_ref(&to)),
+    ];
+    let (system, answers) = system(asked.into_iter().map(Then).collect());
+    let world = ToldWorld::default();
+    let seen = world.seen.clone();
+    run(vec![], system, Some(world), None);
+    let said = |(_, _, answer)| match answer {
+        SystemAnswer::Refused { error, help } => format!("{error}: {}", help.unwrap_or_default()),
+        other => panic!("{other:?}"),
+    };
+    let said: Vec<String> = told(&answers).into_iter().map(said).collect();
+    let expected = [
+        "the world has no device `leg`: devices it can command: arm, grip",
+        "`arm` is an arm, and cannot `wave`: an arm can go(to, speed?), bend(to)",
+        "`go` needs `to`: 3 numbers in m: an arm can go(to, speed?), bend(to)",
+        "`go`: `to` is [1.0, 2.0], but must be 3 numbers in m: ",
+        "`go`: `to` is 1, but must be 3 numbers in m: ",
+        "`go`: `speed` is \"fast\", but must be a number in rad/s: ",
+        "`go` has no argument `sped`: arguments it can use: to, speed",
+        "`bend`: `to` is \"there\", but must be a list of numbers in rad: ",
+        "`close` has no argument `to`: ",
+    ];
+    assert_eq!(said, expected);
+    assert!(seen.borrow().is_empty(), "the world hears of none of them");
+}
+
 #[test]
 fn a_system_that_fails_ends_the_run() {
     use ToldStep::{Fail, Then};
     let fault = SystemFault { message: "it burns".into(), kind: SystemFaultKind::Program };
     let (system, _) = system(vec![Then(sleep(3)), Then(wait_for("asked", Some(0))), Fail(fault.clone())]);
     let (_, run) = run(vec![wait(9)], system, None, None);
-    assert!(matches!(&run.ended, Ended::Fault(Fault::System(found)) if *found == fault));
+    assert!(matches!(&run.ended, RunTermination::Fault(HarnessError::System(found)) if *found == fault));
     assert_eq!(run.trace.end, 3 * SECOND, "as soon as it may");
 }
 
@@ -302,7 +406,7 @@ fn a_system_that_never_lets_time_pass_ends_the_run() {
     let steps = (0..=100_000).map(|_| ToldStep::Then(sleep(0)));
     let (system, _) = system(steps.collect());
     let (_, run) = run(vec![wait(9)], system, None, None);
-    let Ended::Fault(Fault::System(fault)) = &run.ended else { panic!("{:?}", run.ended) };
+    let RunTermination::Fault(HarnessError::System(fault)) = &run.ended else { panic!("{:?}", run.ended) };
     assert!(
         fault.message.contains("100000 requests without letting simulated time pass (at 0 s)"),
         "{fault}"
@@ -334,5 +438,5 @@ fn a_run_ends_at_its_limit_with_what_happens_then() {
     assert_eq!(lines, ["60 robot done"]);
     assert_eq!(end(&run), (RunEnd::Limit, 60));
     assert_eq!(told(&answers).len(), 2);
-    assert!(matches!(run.trace.steps[0].what, What::Event { event: EventId(2), .. }));
+    assert!(matches!(run.trace.steps[0].what, TraceStepKind::Event { event: EventId(2), .. }));
 }

@@ -5,18 +5,18 @@
 //!
 //! # Steps
 //! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverage points;
-//! 2. the trace is shown to it, step by step ([`Observer`]), in memory that does not grow with the trace;
+//! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`Judgement`].
 //!
 //! [`judge_recording`] does all three with a recording, which it reads in one pass.
 
 mod recording;
 
-use hrdsl_coverage::Collector;
+use hrdsl_coverage::CoverageCollector;
 use hrdsl_ir::{Nanos, Program, value::seconds};
-use hrdsl_monitor::{Checker, Outcome, SeenStep, Verdict};
-use hrdsl_results::{Failure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
-use hrdsl_trace::{Observer, RunEnd, Step, What, print};
+use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
+use hrdsl_results::{FirstFailure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+use hrdsl_trace::{RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
 pub use recording::{JudgeError, JudgedRecording, judge_recording};
 
@@ -24,14 +24,14 @@ pub use recording::{JudgeError, JudgedRecording, judge_recording};
 #[derive(Clone, Debug)]
 pub struct TraceJudge<'p> {
     program: &'p Program,
-    checker: Checker,
-    collector: Collector,
+    checker: MonitorRunner,
+    collector: CoverageCollector,
 }
 
 impl<'p> TraceJudge<'p> {
     #[must_use]
     pub fn new(program: &'p Program) -> Self {
-        Self { program, checker: Checker::new(program), collector: Collector::new(program) }
+        Self { program, checker: MonitorRunner::new(program), collector: CoverageCollector::new(program) }
     }
 
     /// The judgement on a run that ended like this. A run that broke off can show a violation, but nothing else.
@@ -49,10 +49,10 @@ impl<'p> TraceJudge<'p> {
     }
 }
 
-impl Observer for TraceJudge<'_> {
-    fn step(&mut self, index: usize, step: &Step) {
+impl TraceObserver for TraceJudge<'_> {
+    fn step(&mut self, index: usize, step: &TraceStep) {
         self.checker.step(index, step);
-        if let What::Event { event, args } = &step.what {
+        if let TraceStepKind::Event { event, args } = &step.what {
             self.collector.event(*event, args);
         }
     }
@@ -62,16 +62,16 @@ impl Observer for TraceJudge<'_> {
     }
 }
 
-fn verdict_result(program: &Program, verdict: &Verdict) -> VerdictResult {
+fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult {
     let monitor = &program.monitors[verdict.monitor];
     let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());
     VerdictResult {
         requirement: monitor.name.as_str().into(),
         outcome: match verdict.outcome {
-            Outcome::Pass => VerdictOutcome::Pass,
-            Outcome::Fail => VerdictOutcome::Fail,
-            Outcome::NotChecked => VerdictOutcome::NotChecked,
-            Outcome::Open => VerdictOutcome::Open,
+            MonitorOutcome::Pass => VerdictOutcome::Pass,
+            MonitorOutcome::Fail => VerdictOutcome::Fail,
+            MonitorOutcome::NotChecked => VerdictOutcome::NotChecked,
+            MonitorOutcome::Open => VerdictOutcome::Open,
         },
         triggered: verdict.triggered,
         failures: verdict.failures,
@@ -80,7 +80,7 @@ fn verdict_result(program: &Program, verdict: &Verdict) -> VerdictResult {
     }
 }
 
-fn failure(program: &Program, verdict: &Verdict) -> Option<Failure> {
+fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> {
     let violation = verdict.first_failure.as_ref()?;
     let step = |seen: &SeenStep| {
         let (who, what) = print::who_did_what(program, &seen.step.what);
@@ -88,7 +88,7 @@ fn failure(program: &Program, verdict: &Verdict) -> Option<Failure> {
     };
     let mut witness: Vec<WitnessStep> = violation.witness.iter().map(step).collect();
     witness.sort_by_key(|w| w.step);
-    Some(Failure {
+    Some(FirstFailure {
         time: seconds(violation.time),
         triggered_at: seconds(violation.trigger_time),
         deadline: violation.step.is_none(),

@@ -6,8 +6,8 @@ use hrdsl_ir::{Program, value::seconds};
 use hrdsl_results::Judgement;
 use hrdsl_trace::{
     RunEnd,
-    parse::{ReadError, Recorded, Recording},
-    record::Header,
+    parse::{ReadError, Recording, RecordingSummary},
+    record::RecordingHeader,
     vocabulary,
 };
 use thiserror::Error;
@@ -17,7 +17,7 @@ use crate::TraceJudge;
 /// A recording with the judgement on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedRecording {
-    pub recorded: Recorded,
+    pub recorded: RecordingSummary,
     pub judgement: Judgement,
 }
 
@@ -30,7 +30,7 @@ impl JudgedRecording {
 
     #[must_use]
     pub fn ended(&self) -> RunEnd {
-        self.recorded.ending.how
+        self.recorded.ending.kind
     }
 }
 
@@ -64,12 +64,12 @@ pub fn judge_recording(
     }
     let mut judge = TraceJudge::new(program);
     let recorded = recording.replay(program, &mut judge)?;
-    let judgement = judge.finish(recorded.ending.how);
+    let judgement = judge.finish(recorded.ending.kind);
     Ok(JudgedRecording { recorded, judgement })
 }
 
 /// Whether a recording is of this scenario as it is now. Recordings by other programs need not have a vocabulary.
-fn is_of(program: &Program, header: &Header) -> Result<(), JudgeError> {
+fn is_of(program: &Program, header: &RecordingHeader) -> Result<(), JudgeError> {
     if header.scenario != program.name {
         let (expected, found) = (program.name.clone(), header.scenario.clone());
         return Err(JudgeError::Scenario { expected, found });

@@ -1,48 +1,51 @@
 //! Requirements at work: executes [`Monitor`](hrdsl_ir::monitor::Monitor) automata over a trace and gives verdicts.
 //!
-//! The [`Checker`] is an [`Observer`]: it is shown the steps of a run, live or recorded, one by one, and keeps nothing but
+//! The [`MonitorRunner`] is an [`TraceObserver`]: it is shown the steps of a run, live or recorded, one by one, and keeps nothing but
 //! each automaton's state, counters, first failure, and the latest sample of each signal. Its memory does not grow with
 //! the trace.
 //!
 //! # Steps
-//! 1. [`Checker::new`] readies all monitors of a program and indexes them by the events and signals they read.
-//! 2. [`Observer::step`] first lets time pass up to the step, which fires the deadlines reached strictly before it, then
+//! 1. [`MonitorRunner::new`] readies all monitors of a program and indexes them by the events and signals they read.
+//! 2. [`TraceObserver::step`] first lets time pass up to the step, which fires the deadlines reached strictly before it, then
 //!    shows the step to the monitors that read it.
-//! 3. [`Observer::end`] fires the deadlines reached up to and including the end of the run: the time of such an
+//! 3. [`TraceObserver::end`] fires the deadlines reached up to and including the end of the run: the time of such an
 //!    obligation is over, and no event can meet it any more.
-//! 4. [`Checker::verdicts`] judges.
+//! 4. [`MonitorRunner::verdicts`] judges.
 
+mod latest;
 mod machine;
 mod verdict;
 
-use hrdsl_ir::{EventPattern, Nanos, Program, Value, monitor::On, world::SignalId};
-use hrdsl_trace::{Observer, Step, What};
+use hrdsl_ir::{EventPattern, Nanos, Program, monitor::On};
+use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
-use machine::{Machine, Moment};
-pub use verdict::{Outcome, SeenStep, Verdict, Violation};
+use latest::{LatestSamples, SampleReading};
+use machine::{MonitorMachine, TraceMoment};
+pub use verdict::{MonitorOutcome, MonitorVerdict, SeenStep, Violation};
 
 /// Runs all monitors of a program over one trace.
 #[derive(Clone, Debug)]
-pub struct Checker {
-    machines: Vec<Machine>,
+pub struct MonitorRunner {
+    machines: Vec<MonitorMachine>,
     /// For each event of the program, the monitors with an edge or a margin on it.
     by_event: Vec<Vec<usize>>,
     /// For each signal of the program, the monitors that read it.
     by_signal: Vec<Vec<usize>>,
-    signals: Latest,
+    signals: LatestSamples,
     /// For each monitor the last of the samples of this instant that it has not yet reacted to.
-    sampled: Vec<Option<Moment>>,
+    sampled: Vec<Option<TraceMoment>>,
     now: Nanos,
     /// No deadline is due before this; it may be too early (then a scan finds nothing), never too late.
     next_due: Nanos,
     ended: bool,
 }
 
-impl Checker {
+impl MonitorRunner {
     /// All monitors of the program in their initial states, at time 0.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        let machines: Vec<Machine> = program.monitors.iter().cloned().map(Machine::new).collect();
+        let machines: Vec<MonitorMachine> =
+            program.monitors.iter().cloned().map(MonitorMachine::new).collect();
         let mut by_event = vec![Vec::new(); program.events.len()];
         let mut by_signal = vec![Vec::new(); program.signals.len()];
         for (index, monitor) in program.monitors.iter().enumerate() {
@@ -59,16 +62,16 @@ impl Checker {
             }
         }
         let next_due = earliest(&machines);
-        let signals = Latest(vec![None; program.signals.len()]);
+        let signals = LatestSamples::new(program.signals.len());
         let sampled = vec![None; machines.len()];
         Self { machines, by_event, by_signal, signals, sampled, now: 0, next_due, ended: false }
     }
 
     /// The verdicts, in the order of the program's monitors.
     ///
-    /// Without a call of [`Observer::end`] they are those of the trace so far: no time has passed since its last step.
+    /// Without a call of [`TraceObserver::end`] they are those of the trace so far: no time has passed since its last step.
     #[must_use]
-    pub fn verdicts(mut self) -> Vec<Verdict> {
+    pub fn verdicts(mut self) -> Vec<MonitorVerdict> {
         self.take_all_samples();
         self.machines.into_iter().enumerate().map(|(index, machine)| machine.verdict(index)).collect()
     }
@@ -99,9 +102,9 @@ impl Checker {
     }
 }
 
-impl Observer for Checker {
+impl TraceObserver for MonitorRunner {
     /// A step earlier than the one before it counts as simultaneous with that one; a step after the end is ignored.
-    fn step(&mut self, index: usize, step: &Step) {
+    fn step(&mut self, index: usize, step: &TraceStep) {
         if self.ended {
             return;
         }
@@ -110,9 +113,9 @@ impl Observer for Checker {
         }
         self.now = self.now.max(step.time);
         self.fire_before(self.now);
-        let at = Moment { time: self.now, step: Some(index) };
+        let at = TraceMoment { time: self.now, step: Some(index) };
         match &step.what {
-            What::Event { event, args } => {
+            TraceStepKind::Event { event, args } => {
                 let event_index = usize::from(event.0);
                 for k in 0..self.by_event.get(event_index).map_or(0, Vec::len) {
                     let reader = self.by_event[event_index][k];
@@ -122,8 +125,8 @@ impl Observer for Checker {
                     self.next_due = self.next_due.min(machine.due().unwrap_or(Nanos::MAX));
                 }
             }
-            What::Sample { signal, value } => {
-                self.signals.set(*signal, Reading { value: *value, step: index, time: step.time });
+            TraceStepKind::Sample { signal, value } => {
+                self.signals.set(*signal, SampleReading { value: *value, step: index, time: step.time });
                 for &reader in self.by_signal.get(usize::from(signal.0)).into_iter().flatten() {
                     self.sampled[reader] = Some(at);
                 }
@@ -143,46 +146,6 @@ impl Observer for Checker {
     }
 }
 
-/// The latest sample of each signal of the program.
-#[derive(Clone, Debug)]
-pub(crate) struct Latest(Vec<Option<Reading>>);
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reading {
-    pub value: Value,
-    /// The step of the trace that brought it.
-    pub step: usize,
-    pub time: Nanos,
-}
-
-impl Reading {
-    /// The step that brought it.
-    pub fn seen(self, signal: SignalId) -> SeenStep {
-        let what = What::Sample { signal, value: self.value };
-        SeenStep { index: self.step, step: Step { time: self.time, what } }
-    }
-}
-
-impl Latest {
-    pub fn get(&self, signal: SignalId) -> Option<Reading> {
-        self.0.get(usize::from(signal.0)).copied().flatten()
-    }
-
-    /// The sample that is this step of the trace, if it is the latest of its signal.
-    pub fn of_step(&self, index: usize) -> Option<SeenStep> {
-        let of =
-            |(signal, reading): (u16, &Option<Reading>)| Some((signal, reading.filter(|r| r.step == index)?));
-        let (signal, reading) = (0u16..).zip(&self.0).find_map(of)?;
-        Some(reading.seen(SignalId(signal)))
-    }
-
-    fn set(&mut self, signal: SignalId, reading: Reading) {
-        if let Some(slot) = self.0.get_mut(usize::from(signal.0)) {
-            *slot = Some(reading);
-        }
-    }
-}
-
 fn pattern_key(pattern: &EventPattern) -> usize {
     usize::from(pattern.event.0)
 }
@@ -196,8 +159,8 @@ fn enter(index: &mut [Vec<usize>], key: usize, monitor: usize) {
     }
 }
 
-fn earliest(machines: &[Machine]) -> Nanos {
-    machines.iter().filter_map(Machine::due).min().unwrap_or(Nanos::MAX)
+fn earliest(machines: &[MonitorMachine]) -> Nanos {
+    machines.iter().filter_map(MonitorMachine::due).min().unwrap_or(Nanos::MAX)
 }
 
 #[cfg(test)]

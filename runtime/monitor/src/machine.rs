@@ -5,13 +5,16 @@ use hrdsl_ir::{
     monitor::{Edge, Effect, Monitor, On},
 };
 
-use hrdsl_trace::{Step, What};
+use hrdsl_trace::{TraceStep, TraceStepKind};
 
-use crate::{Latest, Outcome, SeenStep, Verdict, Violation};
+use crate::{
+    latest::LatestSamples,
+    verdict::{MonitorOutcome, MonitorVerdict, SeenStep, Violation},
+};
 
 /// When something happened, and by which step of the trace; a deadline has none.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment {
+pub(crate) struct TraceMoment {
     pub time: Nanos,
     pub step: Option<usize>,
 }
@@ -26,7 +29,7 @@ struct Obligation {
 
 /// A monitor with its state, clock and counters.
 #[derive(Clone, Debug)]
-pub(crate) struct Machine {
+pub(crate) struct MonitorMachine {
     monitor: Monitor,
     /// For each state the indices of its edges, in order.
     leaving: Vec<Vec<usize>>,
@@ -51,28 +54,28 @@ pub(crate) struct Machine {
 
 /// What an edge may be waiting for.
 #[derive(Clone, Copy)]
-enum Cause<'a> {
+enum EdgeCause<'a> {
     Event(EventId, &'a [Value]),
     Sample,
     Deadline,
 }
 
-impl Cause<'_> {
+impl EdgeCause<'_> {
     fn starts(self, on: &On) -> bool {
         match (self, on) {
-            (Cause::Event(event, args), On::Event(patterns)) => {
+            (EdgeCause::Event(event, args), On::Event(patterns)) => {
                 patterns.iter().any(|p| p.matches(event, args))
             }
-            (Cause::Sample, On::Sample) | (Cause::Deadline, On::Deadline) => true,
+            (EdgeCause::Sample, On::Sample) | (EdgeCause::Deadline, On::Deadline) => true,
             (
-                Cause::Event(..) | Cause::Sample | Cause::Deadline,
+                EdgeCause::Event(..) | EdgeCause::Sample | EdgeCause::Deadline,
                 On::Event(_) | On::Sample | On::Deadline,
             ) => false,
         }
     }
 }
 
-impl Machine {
+impl MonitorMachine {
     pub fn new(monitor: Monitor) -> Self {
         let mut leaving = vec![Vec::new(); monitor.states.len()];
         for (index, edge) in monitor.edges.iter().enumerate() {
@@ -107,42 +110,42 @@ impl Machine {
     }
 
     /// Fires, in order, the deadlines that are reached strictly before `time`.
-    pub fn fire_before(&mut self, time: Nanos, signals: &Latest) {
+    pub fn fire_before(&mut self, time: Nanos, signals: &LatestSamples) {
         while let Some(due) = self.due.filter(|due| *due < time) {
             self.due = None;
             self.burst = if self.burst.0 == due { (due, self.burst.1 + 1) } else { (due, 1) };
             // Deadlines that follow each other in no time, round and round, would stop time.
             if self.burst.1 <= self.monitor.states.len() {
-                self.react(Cause::Deadline, Moment { time: due, step: None }, signals);
+                self.react(EdgeCause::Deadline, TraceMoment { time: due, step: None }, signals);
             }
         }
     }
 
-    pub fn event(&mut self, at: Moment, event: EventId, args: &[Value], signals: &Latest) {
+    pub fn event(&mut self, at: TraceMoment, event: EventId, args: &[Value], signals: &LatestSamples) {
         let measured = |m: &Monitor| {
             m.margin.as_ref().is_some_and(|margin| margin.at.iter().any(|p| p.matches(event, args)))
         };
         if measured(&self.monitor) {
             self.measure(at.time, signals);
         }
-        self.react(Cause::Event(event, args), at, signals);
+        self.react(EdgeCause::Event(event, args), at, signals);
     }
 
     /// One of the monitor's signals has a new sample.
-    pub fn sample(&mut self, at: Moment, signals: &Latest) {
+    pub fn sample(&mut self, at: TraceMoment, signals: &LatestSamples) {
         if self.monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty()) {
             self.measure(at.time, signals);
         }
         let complete = || self.monitor.signals.iter().all(|s| signals.get(*s).is_some());
         if self.watches && self.triggered == 0 && complete() {
             self.triggered = 1;
-            self.obligation = Some(obligation(Cause::Sample, at, signals));
+            self.obligation = Some(obligation(EdgeCause::Sample, at, signals));
         }
-        self.react(Cause::Sample, at, signals);
+        self.react(EdgeCause::Sample, at, signals);
     }
 
     /// Takes the first edge that the cause starts and whose guard holds.
-    fn react(&mut self, cause: Cause<'_>, at: Moment, signals: &Latest) {
+    fn react(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
         let enabled = |edge: &Edge| {
             cause.starts(&edge.on)
                 && edge.guard.as_ref().is_none_or(|g| self.value(g, signals) == Some(Value::Bool(true)))
@@ -153,7 +156,7 @@ impl Machine {
         }
     }
 
-    fn take(&mut self, edge: usize, cause: Cause<'_>, at: Moment, signals: &Latest) {
+    fn take(&mut self, edge: usize, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
         let to = usize::from(self.monitor.edges[edge].to.0);
         let moves = to != self.state;
         let has = |effect| self.monitor.edges[edge].effects.contains(&effect);
@@ -194,7 +197,7 @@ impl Machine {
         self.due = deadline.map(|d| self.zero.saturating_add(d).max(now));
     }
 
-    fn fail(&mut self, cause: Cause<'_>, at: Moment, signals: &Latest) {
+    fn fail(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
         self.failures = self.failures.saturating_add(1);
         if self.first_failure.is_some() {
             return;
@@ -213,7 +216,7 @@ impl Machine {
             Some(Violation { time: at.time, step: at.step, trigger_time: trigger.time, witness, values });
     }
 
-    fn measure(&mut self, time: Nanos, signals: &Latest) {
+    fn measure(&mut self, time: Nanos, signals: &LatestSamples) {
         let Some(margin) = &self.monitor.margin else { return };
         let measured = self.value(&margin.value, signals).and_then(Value::as_f64);
         if let Some(value) = measured.filter(|v| v.is_finite())
@@ -224,7 +227,7 @@ impl Machine {
     }
 
     /// The expression's value; none if it reads a signal without a sample, or has no value for another reason.
-    fn value(&self, expr: &Expr, signals: &Latest) -> Option<Value> {
+    fn value(&self, expr: &Expr, signals: &LatestSamples) -> Option<Value> {
         let var = |i: u16| {
             let signal = self.monitor.signals.get(usize::from(i))?;
             signals.get(*signal).map(|reading| reading.value)
@@ -232,19 +235,19 @@ impl Machine {
         expr.eval(&var).ok()
     }
 
-    pub fn verdict(self, index: usize) -> Verdict {
+    pub fn verdict(self, index: usize) -> MonitorVerdict {
         let pending = self.monitor.states.get(self.state).is_some_and(|s| s.pending);
         let outcome = if self.failures > 0 {
-            Outcome::Fail
+            MonitorOutcome::Fail
         } else if pending {
-            Outcome::Open
+            MonitorOutcome::Open
         } else if self.triggered == 0 {
-            Outcome::NotChecked
+            MonitorOutcome::NotChecked
         } else {
-            Outcome::Pass
+            MonitorOutcome::Pass
         };
         let since = self.obligation.as_ref().map_or(self.entered, |trigger| trigger.time);
-        Verdict {
+        MonitorVerdict {
             monitor: index,
             outcome,
             triggered: self.triggered,
@@ -258,14 +261,14 @@ impl Machine {
 }
 
 /// What is due from a moment on, with the step that it is due to.
-fn obligation(cause: Cause<'_>, at: Moment, signals: &Latest) -> Obligation {
+fn obligation(cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) -> Obligation {
     let step = at.step.and_then(|index| match cause {
-        Cause::Event(event, args) => {
-            let what = What::Event { event, args: args.to_vec() };
-            Some(SeenStep { index, step: Step { time: at.time, what } })
+        EdgeCause::Event(event, args) => {
+            let what = TraceStepKind::Event { event, args: args.to_vec() };
+            Some(SeenStep { index, step: TraceStep { time: at.time, what } })
         }
-        Cause::Sample => signals.of_step(index),
-        Cause::Deadline => None,
+        EdgeCause::Sample => signals.of_step(index),
+        EdgeCause::Deadline => None,
     });
     Obligation { time: at.time, step }
 }

@@ -1,10 +1,10 @@
 //! Unit tests of the checker on small automata built by hand.
 
 use hrdsl_ir::{
-    ActorId, ArgPattern, Event, EventId, Expr, Span, Symbol, Type, Unit,
+    ActorId, ArgPattern, Event, EventId, Expr, Span, Symbol, Type, Unit, Value,
     expr::BinaryOp,
     monitor::{Edge, Effect, Margin, Monitor, RequirementKind, State, StateId},
-    world::Signal,
+    world::{Signal, SignalId},
 };
 use hrdsl_trace::Trace;
 
@@ -65,16 +65,16 @@ fn on(event: u16) -> On {
     On::Event(vec![EventPattern { event: EventId(event), args: Vec::new() }])
 }
 
-fn happens(time: Nanos, event: u16) -> Step {
-    Step { time, what: What::Event { event: EventId(event), args: Vec::new() } }
+fn happens(time: Nanos, event: u16) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Event { event: EventId(event), args: Vec::new() } }
 }
 
-fn reads(time: Nanos, signal: u16, value: f64) -> Step {
-    Step { time, what: What::Sample { signal: SignalId(signal), value: Value::Float(value) } }
+fn reads(time: Nanos, signal: u16, value: f64) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Sample { signal: SignalId(signal), value: Value::Float(value) } }
 }
 
-fn check(monitor: Monitor, steps: Vec<Step>, end: Nanos) -> Verdict {
-    let mut checker = Checker::new(&program(vec![monitor]));
+fn check(monitor: Monitor, steps: Vec<TraceStep>, end: Nanos) -> MonitorVerdict {
+    let mut checker = MonitorRunner::new(&program(vec![monitor]));
     Trace { steps, end }.replay(&mut checker);
     checker.verdicts().remove(0)
 }
@@ -96,9 +96,9 @@ fn response() -> Monitor {
 #[test]
 fn an_answer_at_the_very_deadline_is_in_time() {
     let verdict = check(response(), vec![happens(5, 0), happens(15, 1)], 100);
-    assert_eq!((verdict.outcome, verdict.discharged), (Outcome::Pass, 1));
+    assert_eq!((verdict.outcome, verdict.discharged), (MonitorOutcome::Pass, 1));
     let verdict = check(response(), vec![happens(5, 0), happens(16, 1)], 100);
-    assert_eq!((verdict.outcome, verdict.discharged), (Outcome::Fail, 0));
+    assert_eq!((verdict.outcome, verdict.discharged), (MonitorOutcome::Fail, 0));
 }
 
 #[test]
@@ -113,23 +113,23 @@ fn a_missed_deadline_is_a_violation_at_its_own_time() {
 #[test]
 fn the_end_of_the_run_decides_between_open_and_failed() {
     let open = check(response(), vec![happens(5, 0)], 14);
-    assert_eq!((open.outcome, open.open_since), (Outcome::Open, Some(5)));
+    assert_eq!((open.outcome, open.open_since), (MonitorOutcome::Open, Some(5)));
     let over = check(response(), vec![happens(5, 0)], 15);
-    assert_eq!((over.outcome, over.open_since), (Outcome::Fail, None));
+    assert_eq!((over.outcome, over.open_since), (MonitorOutcome::Fail, None));
     let answered_last = check(response(), vec![happens(5, 0), happens(15, 1)], 15);
-    assert_eq!(answered_last.outcome, Outcome::Pass);
+    assert_eq!(answered_last.outcome, MonitorOutcome::Pass);
 }
 
 #[test]
 fn a_trace_that_never_triggers_says_nothing() {
     let verdict = check(response(), vec![happens(5, 1), happens(6, 2)], 100);
-    assert_eq!((verdict.outcome, verdict.triggered), (Outcome::NotChecked, 0));
+    assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::NotChecked, 0));
 }
 
 #[test]
 fn a_failed_requirement_may_have_an_open_obligation_too() {
     let verdict = check(response(), vec![happens(0, 0), happens(50, 0)], 55);
-    assert_eq!((verdict.outcome, verdict.open_since), (Outcome::Fail, Some(50)));
+    assert_eq!((verdict.outcome, verdict.open_since), (MonitorOutcome::Fail, Some(50)));
 }
 
 #[test]
@@ -201,13 +201,13 @@ fn margins_count_only_where_they_are_asked_for() {
     let steps = vec![reads(1, 0, 0.001), reads(2, 0, 0.5), happens(3, 0), reads(4, 0, 0.002)];
     let verdict = check(never_close(), steps, 10);
     assert_eq!(verdict.worst_margin, Some((0.5 - 0.05, 3)));
-    assert_eq!(verdict.outcome, Outcome::Pass);
+    assert_eq!(verdict.outcome, MonitorOutcome::Pass);
 }
 
 #[test]
 fn a_guard_without_samples_does_not_hold() {
     let verdict = check(never_close(), vec![happens(0, 0)], 10);
-    assert_eq!((verdict.outcome, verdict.worst_margin), (Outcome::Pass, None));
+    assert_eq!((verdict.outcome, verdict.worst_margin), (MonitorOutcome::Pass, None));
     // Neither a condition nor its negation holds on what was not measured, nor on what has no value.
     let reciprocal = Expr::binary(BinaryOp::Div, Expr::float(1.0), Expr::Var(0));
     let positive = Expr::binary(BinaryOp::Gt, reciprocal, Expr::float(0.0));
@@ -217,7 +217,7 @@ fn a_guard_without_samples_does_not_hold() {
         fails.guard = Some(guard);
         let verdict =
             check(monitor(&[(false, None)], vec![fails]), vec![reads(0, 1, 1.0), reads(1, 0, 0.0)], 10);
-        assert_eq!(verdict.outcome, Outcome::NotChecked);
+        assert_eq!(verdict.outcome, MonitorOutcome::NotChecked);
     }
 }
 
@@ -227,9 +227,9 @@ fn a_monitor_that_only_watches_is_triggered_by_its_first_complete_sample() {
     fails.guard = Some(below(0.05));
     let watch = monitor(&[(false, None)], vec![fails]);
     let verdict = check(watch.clone(), vec![reads(0, 0, 1.0)], 10);
-    assert_eq!(verdict.outcome, Outcome::NotChecked);
+    assert_eq!(verdict.outcome, MonitorOutcome::NotChecked);
     let verdict = check(watch, vec![reads(0, 0, 1.0), reads(1, 1, 1.0), reads(2, 0, 2.0)], 10);
-    assert_eq!((verdict.outcome, verdict.triggered), (Outcome::Pass, 1));
+    assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::Pass, 1));
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn the_first_enabled_edge_is_taken_and_only_that() {
     ];
     let states = [(false, None), (false, None), (true, None)];
     let verdict = check(monitor(&states, edges), vec![happens(3, 0)], 10);
-    assert_eq!((verdict.outcome, verdict.triggered, verdict.open_since), (Outcome::Open, 1, Some(3)));
+    assert_eq!((verdict.outcome, verdict.triggered, verdict.open_since), (MonitorOutcome::Open, 1, Some(3)));
 }
 
 #[test]
@@ -260,14 +260,17 @@ fn an_obligation_ends_when_it_is_met_or_lost() {
     let edges = vec![edge(0, 1, on(0), &[Trigger]), edge(1, 2, on(2), &[Fail])];
     let states = [(false, None), (true, None), (true, None)];
     let verdict = check(monitor(&states, edges), vec![happens(1, 0), happens(5, 2)], 10);
-    assert_eq!((verdict.outcome, verdict.open_since), (Outcome::Fail, Some(5)));
+    assert_eq!((verdict.outcome, verdict.open_since), (MonitorOutcome::Fail, Some(5)));
 }
 
 #[test]
 fn arguments_are_matched() {
     let pattern = EventPattern { event: EventId(0), args: vec![ArgPattern::Is(Value::Bool(true))] };
     let edges = vec![edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger])];
-    let yes_no = |b| Step { time: 0, what: What::Event { event: EventId(0), args: vec![Value::Bool(b)] } };
+    let yes_no = |b| TraceStep {
+        time: 0,
+        what: TraceStepKind::Event { event: EventId(0), args: vec![Value::Bool(b)] },
+    };
     let verdict = check(monitor(&[(false, None)], edges), vec![yes_no(true), yes_no(false)], 1);
     assert_eq!(verdict.triggered, 1);
 }
@@ -278,10 +281,13 @@ fn symbols_are_matched_and_guard() {
     let pattern = EventPattern { event: EventId(0), args: vec![ArgPattern::Is(symbol("go"))] };
     let is_fast = Expr::binary(BinaryOp::Eq, Expr::Var(0), Expr::Const(symbol("fast")));
     let trigger = Edge { guard: Some(is_fast), ..edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger]) };
-    let said = |time, name| Step { time, what: What::Event { event: EventId(0), args: vec![symbol(name)] } };
+    let said = |time, name| TraceStep {
+        time,
+        what: TraceStepKind::Event { event: EventId(0), args: vec![symbol(name)] },
+    };
     let feed = |time, name| {
         let value = symbol(name);
-        Step { time, what: What::Sample { signal: SignalId(0), value } }
+        TraceStep { time, what: TraceStepKind::Sample { signal: SignalId(0), value } }
     };
     // Only the one that is said while the signal is `fast` and says `go`.
     let steps =
@@ -297,7 +303,7 @@ fn bad_input_is_borne() {
     odd.edges.push(edge(0, 9, on(2), &[]));
     odd.signals.push(SignalId(77));
     // Unknown events and signals, time that goes backwards, steps after the end.
-    let mut checker = Checker::new(&program(vec![odd]));
+    let mut checker = MonitorRunner::new(&program(vec![odd]));
     for (i, step) in
         [happens(5, 0), happens(3, 1), happens(8, 99), reads(8, 99, 0.0), happens(9, 2)].iter().enumerate()
     {
@@ -307,5 +313,5 @@ fn bad_input_is_borne() {
     checker.step(5, &happens(11, 0));
     checker.end(100);
     let verdict = checker.verdicts().remove(0);
-    assert_eq!((verdict.outcome, verdict.triggered), (Outcome::Pass, 1));
+    assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::Pass, 1));
 }

@@ -3,11 +3,11 @@
 use std::fmt;
 
 use hrdsl_ir::{Nanos, Value, world::SignalId};
-use hrdsl_trace::Step;
+use hrdsl_trace::TraceStep;
 
 /// The judgement on one requirement in one trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Outcome {
+pub enum MonitorOutcome {
     /// It was triggered, and held.
     Pass,
     /// It was violated at least once.
@@ -18,23 +18,23 @@ pub enum Outcome {
     Open,
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for MonitorOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Outcome::Pass => "pass",
-            Outcome::Fail => "fail",
-            Outcome::NotChecked => "not checked",
-            Outcome::Open => "open",
+            MonitorOutcome::Pass => "pass",
+            MonitorOutcome::Fail => "fail",
+            MonitorOutcome::NotChecked => "not checked",
+            MonitorOutcome::Open => "open",
         })
     }
 }
 
 /// One monitor's outcome with the figures and steps that support it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
+pub struct MonitorVerdict {
     /// Index into [`Program::monitors`](hrdsl_ir::Program::monitors).
     pub monitor: usize,
-    pub outcome: Outcome,
+    pub outcome: MonitorOutcome,
     /// How often each effect was had.
     pub triggered: u32,
     pub discharged: u32,
@@ -65,5 +65,5 @@ pub struct Violation {
 pub struct SeenStep {
     /// Its place in the trace, from 0.
     pub index: usize,
-    pub step: Step,
+    pub step: TraceStep,
 }

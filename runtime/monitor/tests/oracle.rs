@@ -6,8 +6,8 @@ use hrdsl_ir::{
     monitor::{Edge, Effect, Margin, Monitor, On, RequirementKind, State, StateId},
     world::{Signal, SignalId},
 };
-use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_trace::{Step, Trace, What};
+use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 use proptest::prelude::*;
 
 use Effect::{Discharge, Fail, ResetClock, Trigger};
@@ -139,21 +139,21 @@ fn program(monitors: Vec<Monitor>) -> Program {
     }
 }
 
-fn judge(monitors: Vec<Monitor>, trace: &Trace) -> Vec<Verdict> {
-    let mut checker = Checker::new(&program(monitors));
+fn judge(monitors: Vec<Monitor>, trace: &Trace) -> Vec<MonitorVerdict> {
+    let mut checker = MonitorRunner::new(&program(monitors));
     trace.replay(&mut checker);
     checker.verdicts()
 }
 
-fn judge_one(monitor: Monitor, trace: &Trace) -> Verdict {
+fn judge_one(monitor: Monitor, trace: &Trace) -> MonitorVerdict {
     judge(vec![monitor], trace).remove(0)
 }
 
 /// Short traces with small gaps, so that steps coincide with each other and with deadlines.
 fn traces() -> impl Strategy<Value = Trace> {
-    let event = (0u16..4).prop_map(|e| What::Event { event: EventId(e), args: Vec::new() });
+    let event = (0u16..4).prop_map(|e| TraceStepKind::Event { event: EventId(e), args: Vec::new() });
     let sample = (0u16..2, 0i32..10)
-        .prop_map(|(s, v)| What::Sample { signal: SignalId(s), value: Value::Float(f64::from(v)) });
+        .prop_map(|(s, v)| TraceStepKind::Sample { signal: SignalId(s), value: Value::Float(f64::from(v)) });
     let step = (0i64..5, prop_oneof![2 => event, 1 => sample]);
     (prop::collection::vec(step, 0..40), 0i64..12).prop_map(|(gaps, rest)| {
         let mut time = 0;
@@ -161,7 +161,7 @@ fn traces() -> impl Strategy<Value = Trace> {
             .into_iter()
             .map(|(gap, what)| {
                 time += gap;
-                Step { time, what }
+                TraceStep { time, what }
             })
             .collect();
         Trace { steps, end: time + rest }
@@ -169,18 +169,18 @@ fn traces() -> impl Strategy<Value = Trace> {
 }
 
 fn events(trace: &Trace) -> Vec<(usize, Nanos, u16)> {
-    let only = |(i, s): (usize, &Step)| match &s.what {
-        What::Event { event, .. } => Some((i, s.time, event.0)),
-        What::Sample { .. } => None,
+    let only = |(i, s): (usize, &TraceStep)| match &s.what {
+        TraceStepKind::Event { event, .. } => Some((i, s.time, event.0)),
+        TraceStepKind::Sample { .. } => None,
     };
     trace.steps.iter().enumerate().filter_map(only).collect()
 }
 
 /// The samples of `x`.
 fn samples(trace: &Trace) -> Vec<(usize, Nanos, f64)> {
-    let only = |(i, s): (usize, &Step)| match s.what {
-        What::Sample { signal: SignalId(0), value } => Some((i, s.time, value.as_f64().unwrap())),
-        What::Sample { .. } | What::Event { .. } => None,
+    let only = |(i, s): (usize, &TraceStep)| match s.what {
+        TraceStepKind::Sample { signal: SignalId(0), value } => Some((i, s.time, value.as_f64().unwrap())),
+        TraceStepKind::Sample { .. } | TraceStepKind::Event { .. } => None,
     };
     trace.steps.iter().enumerate().filter_map(only).collect()
 }
@@ -194,7 +194,7 @@ struct Expected {
     open_since: Option<Nanos>,
 }
 
-fn agree(verdict: &Verdict, expected: &Expected) -> Result<(), TestCaseError> {
+fn agree(verdict: &MonitorVerdict, expected: &Expected) -> Result<(), TestCaseError> {
     prop_assert_eq!(verdict.triggered as usize, expected.triggered);
     prop_assert_eq!(verdict.discharged as usize, expected.discharged);
     prop_assert_eq!(verdict.failures as usize, expected.failures.len());
@@ -202,10 +202,10 @@ fn agree(verdict: &Verdict, expected: &Expected) -> Result<(), TestCaseError> {
     prop_assert_eq!(first, expected.failures.first().copied());
     prop_assert_eq!(verdict.open_since, expected.open_since);
     let outcome = match expected {
-        e if !e.failures.is_empty() => Outcome::Fail,
-        e if e.open_since.is_some() => Outcome::Open,
-        e if e.triggered == 0 => Outcome::NotChecked,
-        _ => Outcome::Pass,
+        e if !e.failures.is_empty() => MonitorOutcome::Fail,
+        e if e.open_since.is_some() => MonitorOutcome::Open,
+        e if e.triggered == 0 => MonitorOutcome::NotChecked,
+        _ => MonitorOutcome::Pass,
     };
     prop_assert_eq!(verdict.outcome, outcome);
     Ok(())
@@ -258,7 +258,7 @@ proptest! {
                 prop_assert_eq!(&seen.step, &trace.steps[seen.index], "what is shown is what was there");
             }
             prop_assert_eq!(trigger.time, violation.trigger_time);
-            prop_assert_eq!(&trigger.what, &What::Event { event: EventId(E), args: Vec::new() });
+            prop_assert_eq!(&trigger.what, &TraceStepKind::Event { event: EventId(E), args: Vec::new() });
         }
     }
 
@@ -336,9 +336,9 @@ proptest! {
     /// Steps that no monitor reads change nothing but the indices.
     #[test]
     fn foreign_steps_change_nothing(trace in traces(), within in 0i64..15) {
-        let foreign = |s: &Step| match &s.what {
-            What::Event { event, .. } => event.0 == 3,
-            What::Sample { signal, .. } => signal.0 == 1,
+        let foreign = |s: &TraceStep| match &s.what {
+            TraceStepKind::Event { event, .. } => event.0 == 3,
+            TraceStepKind::Sample { signal, .. } => signal.0 == 1,
         };
         let mut bare = trace.clone();
         bare.steps.retain(|s| !foreign(s));
@@ -346,7 +346,7 @@ proptest! {
             let (with, without) = (judge_one(monitor.clone(), &trace), judge_one(monitor, &bare));
             prop_assert_eq!((with.outcome, with.triggered, with.discharged, with.failures, with.worst_margin),
                 (without.outcome, without.triggered, without.discharged, without.failures, without.worst_margin));
-            let time = |v: Verdict| v.first_failure.map(|f| (f.time, f.trigger_time));
+            let time = |v: MonitorVerdict| v.first_failure.map(|f| (f.time, f.trigger_time));
             prop_assert_eq!(time(with), time(without));
         }
     }
@@ -354,11 +354,13 @@ proptest! {
 
 #[test]
 fn a_long_trace_is_no_trouble() {
-    let step =
-        |i: i64| Step { time: i * 7, what: What::Event { event: EventId((i % 4) as u16), args: Vec::new() } };
+    let step = |i: i64| TraceStep {
+        time: i * 7,
+        what: TraceStepKind::Event { event: EventId((i % 4) as u16), args: Vec::new() },
+    };
     let trace = Trace { steps: (0..200_000).map(step).collect(), end: 1_400_000 };
     let verdict = judge_one(causes(Some(7)), &trace);
-    assert_eq!((verdict.outcome, verdict.discharged), (Outcome::Pass, 50_000));
+    assert_eq!((verdict.outcome, verdict.discharged), (MonitorOutcome::Pass, 50_000));
 }
 
 /// Two signals that move together: between their samples of one instant one is new and the other old.
@@ -373,14 +375,17 @@ fn samples_of_one_instant_are_one() {
         ],
         vec![SignalId(0), SignalId(1)],
     );
-    let sample = |time, signal, x| Step {
+    let sample = |time, signal, x| TraceStep {
         time,
-        what: What::Sample { signal: SignalId(signal), value: Value::Float(x) },
+        what: TraceStepKind::Sample { signal: SignalId(signal), value: Value::Float(x) },
     };
     let mut steps = vec![sample(0, 0, 1.0), sample(0, 1, 1.0), sample(7, 0, 2.0), sample(7, 1, 2.0)];
     let together = judge_one(equal.clone(), &Trace { steps: steps.clone(), end: 9 });
-    assert_eq!((together.outcome, together.triggered), (Outcome::Pass, 2));
+    assert_eq!((together.outcome, together.triggered), (MonitorOutcome::Pass, 2));
     steps[3].time = 8;
     let apart = judge_one(equal, &Trace { steps, end: 9 });
-    assert_eq!((apart.outcome, apart.failures, apart.first_failure.unwrap().time), (Outcome::Fail, 1, 7));
+    assert_eq!(
+        (apart.outcome, apart.failures, apart.first_failure.unwrap().time),
+        (MonitorOutcome::Fail, 1, 7)
+    );
 }

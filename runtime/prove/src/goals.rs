@@ -1,25 +1,32 @@
 //! Goals decided under the assumptions of a program, by up to three searches.
 
 use hrdsl_ir::{Program, ta::Formula};
-use hrdsl_ta::{Counter, Error, Exhausted, Goal, GoalKind, Limit, Outcome, Report};
+use hrdsl_ta::{
+    EventCounter, EventLimit, GoalKind, GoalOutcome, ReachabilityGoal, SearchCutoff, SearchError,
+    SearchReport,
+};
 
-use super::{Observed, Run, Settings, Watch, keeps_assumptions, settings::search};
+use super::{
+    observer::ObservedNetwork,
+    run::{ObservedRun, keeps_assumptions},
+    settings::{ProofOptions, SearchWatch, search},
+};
 
 /// How a goal ended.
 #[derive(Clone, Debug)]
-pub enum Fate {
-    Reached(Box<Run>),
+pub enum GoalFate {
+    Reached(Box<ObservedRun>),
     /// No run that keeps the assumptions reaches it.
     Unreachable,
     /// Not decided: why.
-    Open(String),
+    Inconclusive(String),
 }
 
 /// What became of several goals.
 #[derive(Clone, Debug)]
-pub struct Decided {
+pub struct GoalDecision {
     /// One for each goal.
-    pub fates: Vec<Fate>,
+    pub fates: Vec<GoalFate>,
     /// Symbolic states stored, of all searches.
     pub states: usize,
     /// Symbolic states whose successors were computed, of all searches.
@@ -29,7 +36,7 @@ pub struct Decided {
 
 /// How assumptions with a window restrict a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Windows {
+enum WindowTreatment {
     /// Not at all: what cannot be reached is proved.
     Ignored,
     /// As if the window were the whole test: what is reached keeps them.
@@ -40,8 +47,8 @@ enum Windows {
 
 /// The goal that a formula holds.
 #[must_use]
-pub fn of_formula(formula: &Formula) -> Goal {
-    Goal { what: GoalKind::Formula(formula.clone()), settled: false }
+pub fn of_formula(formula: &Formula) -> ReachabilityGoal {
+    ReachabilityGoal { what: GoalKind::Formula(formula.clone()), settled: false }
 }
 
 /// Decides goals about a network: each is reached by a run that keeps the assumptions, or by none, or open.
@@ -50,28 +57,28 @@ pub fn of_formula(formula: &Formula) -> Goal {
 /// If a run that keeps the assumptions meets a fault of the model, or the engine contradicts itself.
 pub fn decide(
     program: &Program,
-    observed: &Observed,
-    goals: &[Goal],
-    counters: &[Counter],
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Decided, Error> {
+    observed: &ObservedNetwork,
+    goals: &[ReachabilityGoal],
+    counters: &[EventCounter],
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<GoalDecision, SearchError> {
     let windowed = program.assumptions.iter().any(|a| a.within.is_some());
-    let ways: &[Windows] = match (windowed, settings.keep_first) {
-        (false, _) => &[Windows::Exact],
-        (true, false) => &[Windows::Ignored, Windows::Whole, Windows::Exact],
-        (true, true) => &[Windows::Whole, Windows::Ignored, Windows::Exact],
+    let treatments: &[WindowTreatment] = match (windowed, settings.keep_first) {
+        (false, _) => &[WindowTreatment::Exact],
+        (true, false) => &[WindowTreatment::Ignored, WindowTreatment::Whole, WindowTreatment::Exact],
+        (true, true) => &[WindowTreatment::Whole, WindowTreatment::Ignored, WindowTreatment::Exact],
     };
-    let mut decided = Decided { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
-    let mut fates: Vec<Option<Fate>> = vec![None; goals.len()];
+    let mut decided = GoalDecision { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut fates: Vec<Option<GoalFate>> = vec![None; goals.len()];
     let mut why = String::new();
-    for way in ways {
+    for treatment in treatments {
         let open: Vec<usize> = (0..goals.len()).filter(|g| fates[*g].is_none()).collect();
         if open.is_empty() {
             break;
         }
-        let questions: Vec<Goal> = open.iter().map(|g| goals[*g].clone()).collect();
-        let (restricted, limits) = match restricted(program, observed, *way) {
+        let questions: Vec<ReachabilityGoal> = open.iter().map(|g| goals[*g].clone()).collect();
+        let (restricted, limits) = match restricted(program, observed, *treatment) {
             Ok(made) => made,
             Err(reason) => {
                 why = reason;
@@ -81,8 +88,8 @@ pub fn decide(
         let report = match search(&restricted, &questions, counters, &limits, settings, watch) {
             Ok(report) => report,
             // Only a run that breaks the assumptions: another search tells.
-            Err(Error::Model { witness: Some(witness), .. })
-                if *way == Windows::Ignored && !keeps_assumptions(program, &witness) =>
+            Err(SearchError::Model { witness: Some(witness), .. })
+                if *treatment == WindowTreatment::Ignored && !keeps_assumptions(program, &witness) =>
             {
                 continue;
             }
@@ -91,11 +98,11 @@ pub fn decide(
         decided.states += report.states_stored;
         decided.visited += report.states_visited;
         decided.searches += 1;
-        for (goal, fate) in open.iter().zip(settled(program, &restricted, &report, *way, &mut why)) {
+        for (goal, fate) in open.iter().zip(settled(program, &restricted, &report, *treatment, &mut why)) {
             fates[*goal] = fate;
         }
     }
-    let left = |fate: Option<Fate>| fate.unwrap_or_else(|| Fate::Open(why.clone()));
+    let left = |fate: Option<GoalFate>| fate.unwrap_or_else(|| GoalFate::Inconclusive(why.clone()));
     decided.fates = fates.into_iter().map(left).collect();
     Ok(decided)
 }
@@ -103,19 +110,24 @@ pub fn decide(
 /// The fates that a search settles.
 fn settled(
     program: &Program,
-    observed: &Observed,
-    report: &Report,
-    way: Windows,
+    observed: &ObservedNetwork,
+    report: &SearchReport,
+    treatment: WindowTreatment,
     why: &mut String,
-) -> Vec<Option<Fate>> {
+) -> Vec<Option<GoalFate>> {
     let mut fates = Vec::new();
     for outcome in &report.goals {
         fates.push(match outcome {
-            Outcome::Reached(witness) => keeps_assumptions(program, witness).then(|| {
-                Fate::Reached(Box::new(Run { observed: observed.clone(), witness: (**witness).clone() }))
+            GoalOutcome::Reached(witness) => keeps_assumptions(program, witness).then(|| {
+                GoalFate::Reached(Box::new(ObservedRun {
+                    observed: observed.clone(),
+                    witness: (**witness).clone(),
+                }))
             }),
-            Outcome::Unreachable => (way != Windows::Whole).then_some(Fate::Unreachable),
-            Outcome::Open(what) => {
+            GoalOutcome::Unreachable => {
+                (treatment != WindowTreatment::Whole).then_some(GoalFate::Unreachable)
+            }
+            GoalOutcome::Inconclusive(what) => {
                 *why = exhausted(*what);
                 None
             }
@@ -124,28 +136,29 @@ fn settled(
     fates
 }
 
-pub(super) fn exhausted(what: Exhausted) -> String {
+pub(super) fn exhausted(what: SearchCutoff) -> String {
     match what {
-        Exhausted::States => "the budget of states was used up".to_owned(),
-        Exhausted::Memory => "the budget of memory was used up".to_owned(),
-        Exhausted::Stopped => "the time was over".to_owned(),
+        SearchCutoff::States => "the budget of states was used up".to_owned(),
+        SearchCutoff::Memory => "the budget of memory was used up".to_owned(),
+        SearchCutoff::Stopped => "the time was over".to_owned(),
     }
 }
 
 /// The network and the limits of one search.
 fn restricted(
     program: &Program,
-    observed: &Observed,
-    way: Windows,
-) -> Result<(Observed, Vec<Limit>), String> {
+    observed: &ObservedNetwork,
+    treatment: WindowTreatment,
+) -> Result<(ObservedNetwork, Vec<EventLimit>), String> {
     let mut restricted = observed.clone();
     let mut limits = Vec::new();
     for assumption in &program.assumptions {
-        let limit = Limit { patterns: assumption.events.clone(), at_most: i64::from(assumption.at_most) };
-        match (assumption.within, way) {
-            (None, _) | (Some(_), Windows::Whole) => limits.push(limit),
-            (Some(_), Windows::Ignored) => {}
-            (Some(within), Windows::Exact) => restricted.restrict(assumption, within)?,
+        let limit =
+            EventLimit { patterns: assumption.events.clone(), at_most: i64::from(assumption.at_most) };
+        match (assumption.within, treatment) {
+            (None, _) | (Some(_), WindowTreatment::Whole) => limits.push(limit),
+            (Some(_), WindowTreatment::Ignored) => {}
+            (Some(within), WindowTreatment::Exact) => restricted.restrict(assumption, within)?,
         }
     }
     Ok((restricted, limits))

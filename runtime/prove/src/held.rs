@@ -12,26 +12,26 @@ use hrdsl_ir::{
     expr::Expr,
     ta::{Automaton, Edge, Location, LocationId, LocationKind, Network, Sync},
 };
-use hrdsl_ta::Witness;
+use hrdsl_ta::WitnessRun;
 
-use super::{Settings, observer::number};
+use super::{observer::number, settings::ProofOptions};
 
 /// A program in which the holds of a network's stimuli take time.
-pub struct Held {
+pub struct TimedHolds {
     pub program: Program,
-    places: Vec<Place>,
+    places: Vec<HoldLocation>,
     /// By member of the network: its name, and where it starts.
     members: Vec<(String, LocationId)>,
 }
 
 /// A location that stands for a hold.
-struct Place {
+struct HoldLocation {
     member: usize,
     location: LocationId,
     stimulus: EventId,
 }
 
-impl Held {
+impl TimedHolds {
     /// `None`: holds keep nothing back in this network.
     pub fn of(program: &Program, network: &Network) -> Option<Self> {
         let mut held = Self { program: program.clone(), places: Vec::new(), members: Vec::new() };
@@ -41,8 +41,8 @@ impl Held {
             for first in 0..automaton.edges.len() {
                 let Sync::Send { event: stimulus, .. } = automaton.edges[first].sync else { continue };
                 let Some(body) = &program.events.get(usize::from(stimulus.0))?.stimulus else { continue };
-                let locations = let_pass(automaton, first, &Holds::of(&body.steps));
-                held.places.extend(locations.into_iter().map(|location| Place {
+                let locations = let_pass(automaton, first, &HoldSites::of(&body.steps));
+                held.places.extend(locations.into_iter().map(|location| HoldLocation {
                     member,
                     location,
                     stimulus,
@@ -53,18 +53,19 @@ impl Held {
     }
 
     /// The search for what was not found among so many states: it must not cost much more than the proof did.
-    pub fn settings(settings: &Settings, states: usize) -> Settings {
+    pub fn settings(settings: &ProofOptions, states: usize) -> ProofOptions {
         let mut settings = *settings;
         settings.budget.states = settings.budget.states.min(states.saturating_mul(4).saturating_add(1000));
         settings
     }
 
     /// What a run of this program, in which the holds take time, says about the network in which they take none.
-    pub fn because(&self, run: &Witness) -> Option<String> {
+    pub fn because(&self, run: &WitnessRun) -> Option<String> {
         let mut at: Vec<LocationId> = self.members.iter().map(|m| m.1).collect();
         let mut now = 0;
         for step in &run.steps {
-            let holding: Vec<&Place> = self.places.iter().filter(|p| at[p.member] == p.location).collect();
+            let holding: Vec<&HoldLocation> =
+                self.places.iter().filter(|p| at[p.member] == p.location).collect();
             let goes_on = step.moves.iter().any(|m| holding.iter().any(|p| p.member == m.automaton));
             if !holding.is_empty() && (step.time > now || !goes_on) {
                 return Some(self.told(&holding, &at));
@@ -80,8 +81,8 @@ impl Held {
         None
     }
 
-    fn told(&self, holding: &[&Place], at: &[LocationId]) -> String {
-        let stimulus = |p: &Place| format!("`{}`", self.program.event(p.stimulus).name);
+    fn told(&self, holding: &[&HoldLocation], at: &[LocationId]) -> String {
+        let stimulus = |p: &HoldLocation| format!("`{}`", self.program.event(p.stimulus).name);
         let stimuli: BTreeSet<String> = holding.iter().map(|p| stimulus(p)).collect();
         let stimuli: Vec<String> = stimuli.into_iter().collect();
         let place = |(member, here): (usize, &LocationId)| {
@@ -108,14 +109,14 @@ impl Held {
 
 /// Where the body of a stimulus holds.
 #[derive(Default)]
-struct Holds {
+struct HoldSites {
     /// The events that are emitted after a hold.
     before: BTreeSet<EventId>,
     /// It holds after the last of them.
     last: bool,
 }
 
-impl Holds {
+impl HoldSites {
     fn of(steps: &[StimulusStep]) -> Self {
         let mut holds = Self::default();
         holds.walk(steps);
@@ -148,7 +149,7 @@ impl Holds {
 }
 
 /// Lets time pass where the stimulus of this edge holds: the locations that now stand for it.
-fn let_pass(automaton: &mut Automaton, first: usize, holds: &Holds) -> Vec<LocationId> {
+fn let_pass(automaton: &mut Automaton, first: usize, holds: &HoldSites) -> Vec<LocationId> {
     let mut places = Vec::new();
     let mut ends = vec![first];
     let mut here = automaton.edges[first].to;

@@ -7,7 +7,7 @@ use hrdsl_ir::{
 };
 
 /// The receiving half of an edge.
-pub(super) struct Reception {
+pub(super) struct ReceptionHalf {
     /// The rule that it is for.
     pub rule: usize,
     pub event: EventId,
@@ -24,7 +24,7 @@ pub(super) fn receptions(
     program: &Program,
     rules: &[&[EventPattern]],
     binders: u16,
-) -> Result<Vec<Reception>, String> {
+) -> Result<Vec<ReceptionHalf>, String> {
     let mut events: Vec<EventId> = rules.iter().flat_map(|r| r.iter().map(|p| p.event)).collect();
     events.sort_unstable();
     events.dedup();
@@ -33,7 +33,7 @@ pub(super) fn receptions(
         of_event(program, rules, event, binders, &mut all)?;
     }
     // In the order of the rules, so that the edges stand as in the monitor.
-    all.sort_by_key(|r: &Reception| r.rule);
+    all.sort_by_key(|r: &ReceptionHalf| r.rule);
     Ok(all)
 }
 
@@ -55,7 +55,7 @@ fn of_event(
     rules: &[&[EventPattern]],
     event: EventId,
     binders: u16,
-    out: &mut Vec<Reception>,
+    out: &mut Vec<ReceptionHalf>,
 ) -> Result<(), String> {
     let params = &program.event(event).params;
     let of_rule =
@@ -71,14 +71,14 @@ fn of_event(
     let named: Vec<(usize, &Vec<Wanted>)> =
         conditions.iter().enumerate().filter(|(_, c)| !c.is_empty()).collect();
     // A single pattern needs no condition.
-    if let [(rule, ways)] = named.as_slice()
-        && let [only] = ways.as_slice()
+    if let [(rule, alternatives)] = named.as_slice()
+        && let [only] = alternatives.as_slice()
     {
         let arg = |i: usize| {
             only.iter().find(|(at, _)| *at == i).map_or(ArgPattern::Any, |(_, v)| ArgPattern::Is(*v))
         };
         let args = (0..params.len()).map(|i| ReceiveArg::Match(arg(i))).collect();
-        out.push(Reception { rule: *rule, event, args, guard: None });
+        out.push(ReceptionHalf { rule: *rule, event, args, guard: None });
         return Ok(());
     }
     if !told.iter().all(finite) {
@@ -95,13 +95,13 @@ fn of_event(
         .map(|i| if told.contains(&i) { ReceiveArg::Bind } else { ReceiveArg::Match(ArgPattern::Any) })
         .collect();
     let mut earlier: Vec<Expr> = Vec::new();
-    for (rule, ways) in named {
-        let here = any_of(ways.iter().map(|w| all_of(w.iter().map(|(i, v)| equal(slot(*i), *v)))));
+    for (rule, alternatives) in named {
+        let here = any_of(alternatives.iter().map(|w| all_of(w.iter().map(|(i, v)| equal(slot(*i), *v)))));
         let all = here == Expr::bool(true);
         let not_before = earlier.iter().map(|e| Expr::Unary(UnaryOp::Not, Box::new(e.clone())));
         let guard = all_of(not_before.chain((!all).then(|| here.clone())));
         let guard = (guard != Expr::bool(true)).then_some(guard);
-        out.push(Reception { rule, event, args: args.clone(), guard });
+        out.push(ReceptionHalf { rule, event, args: args.clone(), guard });
         if all {
             // Nothing is left for later rules.
             break;

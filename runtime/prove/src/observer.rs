@@ -24,7 +24,7 @@ use super::matching::receptions;
 
 /// A program with observers in one of its networks.
 #[derive(Clone, Debug)]
-pub struct Observed {
+pub struct ObservedNetwork {
     pub program: Program,
     /// The network with the observers behind its own automata.
     pub network: Network,
@@ -32,14 +32,14 @@ pub struct Observed {
 
 /// What to look for in the network with an observer.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdicts {
+pub struct ObserverFormulas {
     /// The requirement is violated. `None`: it cannot be, whatever happens.
     pub violated: Option<Formula>,
     /// It was triggered.
     pub triggered: Formula,
 }
 
-impl Observed {
+impl ObservedNetwork {
     /// A copy of the program with this network, without observers.
     #[must_use]
     pub fn new(program: &Program, network: &Network) -> Self {
@@ -50,8 +50,8 @@ impl Observed {
     ///
     /// # Errors
     /// Why the requirement cannot be judged on a model.
-    pub fn add(&mut self, monitor: &Monitor) -> Result<Verdicts, String> {
-        let plan = Plan::of(monitor)?;
+    pub fn add(&mut self, monitor: &Monitor) -> Result<ObserverFormulas, String> {
+        let plan = ObserverPlan::of(monitor)?;
         let shared_clocks = self.program.clocks.len();
         let before = self.members().map(|a| a.clocks.len()).sum::<usize>();
         let automaton = plan.automaton(&self.program)?;
@@ -80,7 +80,7 @@ pub(super) fn number(n: usize) -> u16 {
 }
 
 /// How a monitor is made an automaton.
-struct Plan<'m> {
+struct ObserverPlan<'m> {
     monitor: &'m Monitor,
     /// For each state: when it fails.
     deadlines: Vec<Option<Nanos>>,
@@ -89,7 +89,7 @@ struct Plan<'m> {
     telling: Option<Vec<u16>>,
 }
 
-impl<'m> Plan<'m> {
+impl<'m> ObserverPlan<'m> {
     fn of(monitor: &'m Monitor) -> Result<Self, String> {
         let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == On::Sample);
         if samples || !monitor.signals.is_empty() {
@@ -208,7 +208,7 @@ impl<'m> Plan<'m> {
     }
 
     /// The formulas over the network in which the observer has this place, and its clock and variable these numbers.
-    fn verdicts(&self, automaton: u16, clock: ClockId, flag: u16) -> Verdicts {
+    fn verdicts(&self, automaton: u16, clock: ClockId, flag: u16) -> ObserverFormulas {
         let at = |location: u16| Formula::At { automaton, location: LocationId(location) };
         let late = self.deadlines.iter().zip(0u16..).filter_map(|(d, state)| {
             let past = ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: Time::constant((*d)?) };
@@ -219,7 +219,7 @@ impl<'m> Plan<'m> {
             Some(locations) => Formula::Or(locations.iter().map(|l| at(*l)).collect()),
             None => Formula::Data(Expr::Var(flag)),
         };
-        Verdicts { violated: self.fails.then_some(violated), triggered }
+        ObserverFormulas { violated: self.fails.then_some(violated), triggered }
     }
 }
 

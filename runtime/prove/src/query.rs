@@ -4,23 +4,27 @@ use hrdsl_ir::{
     Program,
     ta::{Ask, Formula, Network, Query},
 };
-use hrdsl_ta::{Answer, Error, Extremum, Goal, Manner, Outcome, Quantity, Reach, Verdict};
+use hrdsl_ta::{
+    Extremum, ExtremumLimit, ExtremumValue, GoalOutcome, QueryAnswer, QueryOptions, QueryVerdict,
+    ReachabilityGoal, SearchError,
+};
 
 use super::{
-    Observed, Run, Settings, Watch,
     goals::{exhausted, of_formula},
-    held::Held,
-    settings::search,
+    held::TimedHolds,
+    observer::ObservedNetwork,
+    run::ObservedRun,
+    settings::{ProofOptions, SearchWatch, search},
 };
 
 /// What became of a query.
 #[derive(Clone, Debug)]
-pub struct Answered {
+pub struct QueryResult {
     /// Index into [`Program::queries`].
     pub query: usize,
-    pub found: Found,
+    pub found: QueryFinding,
     /// Shows it, if a run can.
-    pub run: Option<Box<Run>>,
+    pub run: Option<Box<ObservedRun>>,
     /// What a user should know.
     pub notes: Vec<String>,
     /// Symbolic states stored, if that is known.
@@ -28,7 +32,7 @@ pub struct Answered {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum QueryFinding {
     Satisfied,
     NotSatisfied,
     /// Of a `sup` or `inf`, for each measure.
@@ -46,29 +50,29 @@ pub enum Found {
 pub fn answer(
     program: &Program,
     query: usize,
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Answered, String> {
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<QueryResult, String> {
     let asked = program.queries.get(query).ok_or_else(|| format!("there is no query {query}"))?;
     let network = program
         .networks
-        .get(usize::from(asked.network))
+        .get(usize::from(asked.network.0))
         .ok_or_else(|| format!("query `{}` is about no network", asked.name))?;
-    let plain = Observed::new(program, network);
+    let plain = ObservedNetwork::new(program, network);
     let result = match reachability(&asked.ask) {
         Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
         None => in_general(program, network, asked, settings).map(|a| told(&plain, query, &asked.ask, a)),
     };
     match result {
         Ok(answered) => Ok(answered),
-        Err(Error::Model { error, witness }) => Ok(Answered {
+        Err(SearchError::Model { error, witness }) => Ok(QueryResult {
             query,
-            found: Found::Fault(error.to_string()),
-            run: witness.map(|witness| Box::new(Run { observed: plain, witness: *witness })),
+            found: QueryFinding::Fault(error.to_string()),
+            run: witness.map(|witness| Box::new(ObservedRun { observed: plain, witness: *witness })),
             notes: Vec::new(),
             states: None,
         }),
-        Err(Error::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
+        Err(SearchError::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
     }
 }
 
@@ -79,22 +83,22 @@ pub fn answer(
 pub fn answers(
     program: &Program,
     queries: &[usize],
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Vec<Answered>, String> {
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<Vec<QueryResult>, String> {
     let sought = |q: &usize| Some((*q, reachability(&program.queries.get(*q)?.ask)?));
-    let together: Vec<(usize, Sought)> = queries.iter().filter_map(sought).collect();
+    let together: Vec<(usize, SoughtFormula)> = queries.iter().filter_map(sought).collect();
     let network =
-        together.first().and_then(|(q, _)| program.networks.get(usize::from(program.queries[*q].network)));
-    let mut found: Vec<Answered> = Vec::new();
+        together.first().and_then(|(q, _)| program.networks.get(usize::from(program.queries[*q].network.0)));
+    let mut found: Vec<QueryResult> = Vec::new();
     if let Some(network) = network
         && together.len() > 1
     {
-        match by_search(&Observed::new(program, network), &together, settings, watch) {
+        match by_search(&ObservedNetwork::new(program, network), &together, settings, watch) {
             Ok(all) => found = all,
             // Which of them come upon the fault is seen one by one.
-            Err(Error::Model { .. }) => {}
-            Err(Error::Internal(what)) => return Err(format!("network `{}`: {what}", network.name)),
+            Err(SearchError::Model { .. }) => {}
+            Err(SearchError::Internal(what)) => return Err(format!("network `{}`: {what}", network.name)),
         }
     }
     let one = |query: &usize| match found.iter().position(|a| a.query == *query) {
@@ -105,22 +109,24 @@ pub fn answers(
 }
 
 /// What a search looks for, and what it means to find it.
-struct Sought {
+struct SoughtFormula {
     formula: Formula,
-    reached: Found,
-    not: Found,
+    reached: QueryFinding,
+    not: QueryFinding,
 }
 
 /// For what reachability decides.
-fn reachability(ask: &Ask) -> Option<Sought> {
+fn reachability(ask: &Ask) -> Option<SoughtFormula> {
     let sought = match ask {
-        Ask::Possibly(f) => {
-            Sought { formula: f.clone(), reached: Found::Satisfied, not: Found::NotSatisfied }
-        }
-        Ask::Invariantly(f) => Sought {
+        Ask::Possibly(f) => SoughtFormula {
+            formula: f.clone(),
+            reached: QueryFinding::Satisfied,
+            not: QueryFinding::NotSatisfied,
+        },
+        Ask::Invariantly(f) => SoughtFormula {
             formula: Formula::Not(Box::new(f.clone())),
-            reached: Found::NotSatisfied,
-            not: Found::Satisfied,
+            reached: QueryFinding::NotSatisfied,
+            not: QueryFinding::Satisfied,
         },
         Ask::PotentiallyAlways(_)
         | Ask::Eventually(_)
@@ -143,12 +149,12 @@ fn asks_deadlock(formula: &Formula) -> bool {
 
 /// One answer for each of the queries, all from one exploration.
 fn by_search(
-    plain: &Observed,
-    asked: &[(usize, Sought)],
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Vec<Answered>, Error> {
-    let goals: Vec<Goal> = asked.iter().map(|(_, sought)| of_formula(&sought.formula)).collect();
+    plain: &ObservedNetwork,
+    asked: &[(usize, SoughtFormula)],
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<Vec<QueryResult>, SearchError> {
+    let goals: Vec<ReachabilityGoal> = asked.iter().map(|(_, sought)| of_formula(&sought.formula)).collect();
     let report = search(plain, &goals, &[], &[], settings, watch)?;
     let states = Some(report.states_stored);
     let mut notes = Vec::new();
@@ -157,43 +163,45 @@ fn by_search(
     }
     let answered = asked.iter().zip(report.goals).map(|((query, sought), outcome)| {
         let (found, run) = match outcome {
-            Outcome::Reached(witness) => {
-                (sought.reached.clone(), Some(Box::new(Run { observed: plain.clone(), witness: *witness })))
-            }
-            Outcome::Open(what) => (Found::Open(exhausted(what)), None),
-            Outcome::Unreachable => (sought.not.clone(), None),
+            GoalOutcome::Reached(witness) => (
+                sought.reached.clone(),
+                Some(Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
+            ),
+            GoalOutcome::Inconclusive(what) => (QueryFinding::Open(exhausted(what)), None),
+            GoalOutcome::Unreachable => (sought.not.clone(), None),
         };
-        Answered { query: *query, found, run, notes: notes.clone(), states }
+        QueryResult { query: *query, found, run, notes: notes.clone(), states }
     });
-    let mut answered: Vec<Answered> = answered.collect();
+    let mut answered: Vec<QueryResult> = answered.collect();
     note_holds(plain, &goals, &mut answered, settings, watch);
     Ok(answered)
 }
 
 /// Notes of what is not possible if it is so only because holds take no time.
 fn note_holds(
-    plain: &Observed,
-    goals: &[Goal],
-    answered: &mut [Answered],
-    settings: &Settings,
-    watch: &Watch,
+    plain: &ObservedNetwork,
+    goals: &[ReachabilityGoal],
+    answered: &mut [QueryResult],
+    settings: &ProofOptions,
+    watch: &SearchWatch,
 ) {
     let impossible = |i: &usize| {
         let query = plain.program.queries.get(answered[*i].query);
-        answered[*i].found == Found::NotSatisfied && query.is_some_and(|q| matches!(q.ask, Ask::Possibly(_)))
+        answered[*i].found == QueryFinding::NotSatisfied
+            && query.is_some_and(|q| matches!(q.ask, Ask::Possibly(_)))
     };
     let open: Vec<usize> = (0..answered.len()).filter(impossible).collect();
     if open.is_empty() {
         return;
     }
-    let Some(held) = Held::of(&plain.program, &plain.network) else { return };
-    let goals: Vec<Goal> = open.iter().map(|i| goals[*i].clone()).collect();
+    let Some(held) = TimedHolds::of(&plain.program, &plain.network) else { return };
+    let goals: Vec<ReachabilityGoal> = open.iter().map(|i| goals[*i].clone()).collect();
     let states = open.iter().filter_map(|i| answered[*i].states).max().unwrap_or(0);
-    let settings = Held::settings(settings, states);
-    let observed = Observed::new(&held.program, &plain.network);
+    let settings = TimedHolds::settings(settings, states);
+    let observed = ObservedNetwork::new(&held.program, &plain.network);
     let Ok(report) = search(&observed, &goals, &[], &[], &settings, watch) else { return };
     for (i, outcome) in open.into_iter().zip(report.goals) {
-        if let Outcome::Reached(witness) = outcome {
+        if let GoalOutcome::Reached(witness) = outcome {
             answered[i].notes.extend(held.because(&witness));
         }
     }
@@ -203,34 +211,34 @@ fn in_general(
     program: &Program,
     network: &Network,
     query: &Query,
-    settings: &Settings,
-) -> Result<Answer, Error> {
-    let manner = Manner {
+    settings: &ProofOptions,
+) -> Result<QueryAnswer, SearchError> {
+    let options = QueryOptions {
         budget: settings.budget,
         witness: settings.witness,
         delays: settings.delays,
         seed: settings.seed,
         threads: settings.threads,
     };
-    hrdsl_ta::answer(program, network, query, &manner)
+    hrdsl_ta::answer(program, network, query, &options)
 }
 
-fn told(plain: &Observed, query: usize, ask: &Ask, answer: Answer) -> Answered {
+fn told(plain: &ObservedNetwork, query: usize, ask: &Ask, answer: QueryAnswer) -> QueryResult {
     let bounds = matches!(ask, Ask::Sup { .. } | Ask::Inf { .. });
     let run = answer.run.or_else(|| answer.extrema.iter().find_map(|e| e.run.clone()));
     let found = match answer.verdict {
-        Verdict::Open => Found::Open(answer.why.clone()),
-        Verdict::Holds | Verdict::Fails if bounds => {
-            Found::Bounds(answer.extrema.iter().map(bound).collect())
+        QueryVerdict::Open => QueryFinding::Open(answer.why.clone()),
+        QueryVerdict::Holds | QueryVerdict::Fails if bounds => {
+            QueryFinding::Bounds(answer.extrema.iter().map(bound).collect())
         }
-        Verdict::Holds => Found::Satisfied,
-        Verdict::Fails => Found::NotSatisfied,
+        QueryVerdict::Holds => QueryFinding::Satisfied,
+        QueryVerdict::Fails => QueryFinding::NotSatisfied,
     };
-    let said = matches!(found, Found::Open(_) | Found::Bounds(_));
-    Answered {
+    let said = matches!(found, QueryFinding::Open(_) | QueryFinding::Bounds(_));
+    QueryResult {
         query,
         found,
-        run: run.map(|witness| Box::new(Run { observed: plain.clone(), witness: *witness })),
+        run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
         notes: if said { Vec::new() } else { vec![answer.why] },
         states: None,
     }
@@ -238,17 +246,17 @@ fn told(plain: &Observed, query: usize, ask: &Ask, answer: Answer) -> Answered {
 
 /// `5 s`, `less than 5 s`, `no bound`
 fn bound(extremum: &Extremum) -> String {
-    let text = |q: &Quantity| match q {
-        Quantity::Nanos(t) => format!("{} s", decimal(*t)),
-        Quantity::Number(n) => n.to_string(),
+    let text = |q: &ExtremumValue| match q {
+        ExtremumValue::Nanos(t) => format!("{} s", decimal(*t)),
+        ExtremumValue::Number(n) => n.to_string(),
     };
     match &extremum.limit {
-        Reach::At { value, attained: true } => text(value),
-        Reach::At { value, attained: false } => format!("{}, which is not attained", text(value)),
-        Reach::Unbounded => "without bound".to_owned(),
-        Reach::Nowhere => "the formula holds nowhere".to_owned(),
-        Reach::Open { seen: Some(seen) } => format!("open; at least {} is attained", text(seen)),
-        Reach::Open { seen: None } => "open".to_owned(),
+        ExtremumLimit::At { value, attained: true } => text(value),
+        ExtremumLimit::At { value, attained: false } => format!("{}, which is not attained", text(value)),
+        ExtremumLimit::Unbounded => "without bound".to_owned(),
+        ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
+        ExtremumLimit::Open { seen: Some(seen) } => format!("open; at least {} is attained", text(seen)),
+        ExtremumLimit::Open { seen: None } => "open".to_owned(),
     }
 }
 

@@ -6,20 +6,21 @@ use hrdsl_ir::{
     suite::{Delays, WitnessKind},
     ta::Formula,
 };
-pub use hrdsl_ta::Order;
+pub use hrdsl_ta::SearchOrder;
 use hrdsl_ta::{
-    Budget, Counter, Error, Goal, GoalKind, Limit, Model, Observe, Options, Outcome, Report, Timing, Witness,
+    CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal,
+    ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport, WitnessRun,
 };
 
-use super::Observed;
+use super::observer::ObservedNetwork;
 
 /// How to search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Settings {
-    pub budget: Budget,
+pub struct ProofOptions {
+    pub budget: SearchBudget,
     /// In which order states are looked at; `None`: as the witness needs it. Another order than breadth first finds witnesses
     /// that are not the shortest.
-    pub order: Option<Order>,
+    pub order: Option<SearchOrder>,
     /// Each automaton has a time of its own, where that serves.
     pub local_time: bool,
     /// States with a committed location are not stored: less memory, more time.
@@ -37,20 +38,20 @@ pub struct Settings {
 
 /// For watching a search from another thread.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub struct SearchWatch {
     /// Set: the search ends soon, and what is not decided is open.
     pub stop: AtomicBool,
     /// How many states are stored so far.
     pub stored: AtomicUsize,
 }
 
-impl Settings {
-    pub(super) fn options(&self) -> Options {
+impl ProofOptions {
+    pub(super) fn options(&self) -> SearchOptions {
         let usual = match self.witness {
-            WitnessKind::Shortest => Options::shortest(),
-            WitnessKind::Any | WitnessKind::Fastest => Options::default(),
+            WitnessKind::Shortest => SearchOptions::shortest(),
+            WitnessKind::Any | WitnessKind::Fastest => SearchOptions::default(),
         };
-        Options {
+        SearchOptions {
             order: self.order.unwrap_or(usual.order),
             threads: self.threads.max(1),
             local_time: self.local_time,
@@ -61,12 +62,12 @@ impl Settings {
         }
     }
 
-    pub(super) fn timing(&self) -> Timing {
-        Timing { delays: self.delays, seed: self.seed, prompt: false }
+    pub(super) fn timing(&self) -> ScheduleOptions {
+        ScheduleOptions { delays: self.delays, seed: self.seed, prompt: false }
     }
 }
 
-fn formula(goal: &Goal) -> Option<Formula> {
+fn formula(goal: &ReachabilityGoal) -> Option<Formula> {
     match &goal.what {
         GoalKind::Formula(f) => Some(f.clone()),
         GoalKind::Edge { .. }
@@ -78,29 +79,29 @@ fn formula(goal: &Goal) -> Option<Formula> {
 }
 
 pub(crate) fn search(
-    observed: &Observed,
-    goals: &[Goal],
-    counters: &[Counter],
-    limits: &[Limit],
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Report, Error> {
-    let observe = Observe {
+    observed: &ObservedNetwork,
+    goals: &[ReachabilityGoal],
+    counters: &[EventCounter],
+    limits: &[EventLimit],
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<SearchReport, SearchError> {
+    let observe = ObservationOptions {
         counters: counters.to_vec(),
         limits: limits.to_vec(),
         pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
         uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
         formulas: goals.iter().filter_map(formula).collect(),
-        ..Observe::default()
+        ..ObservationOptions::default()
     };
-    let model = Model::new(&observed.program, &observed.network, &observe)?;
-    let go_on = |p: &hrdsl_ta::Progress| {
+    let model = CompiledNetwork::new(&observed.program, &observed.network, &observe)?;
+    let go_on = |p: &hrdsl_ta::SearchProgress| {
         watch.stored.store(p.stored, Ordering::Relaxed);
         !watch.stop.load(Ordering::Relaxed)
     };
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
-        if let Outcome::Reached(found) = outcome
+        if let GoalOutcome::Reached(found) = outcome
             && let Some(run) = chosen(&model, goal, found, settings)?
         {
             *found = run;
@@ -111,11 +112,11 @@ pub(crate) fn search(
 
 /// The run that the settings ask for, instead of the one that was found; `None`: that one.
 fn chosen(
-    model: &Model<'_>,
-    goal: &Goal,
-    found: &Witness,
-    settings: &Settings,
-) -> Result<Option<Box<Witness>>, Error> {
+    model: &CompiledNetwork<'_>,
+    goal: &ReachabilityGoal,
+    found: &WitnessRun,
+    settings: &ProofOptions,
+) -> Result<Option<Box<WitnessRun>>, SearchError> {
     let by_time = !matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. });
     if settings.witness == WitnessKind::Fastest
         && by_time

@@ -14,14 +14,14 @@ use hrdsl_ir::{
 };
 
 use super::{
-    matching::{Reception, receptions},
-    observer::{Observed, number},
+    matching::{ReceptionHalf, receptions},
+    observer::{ObservedNetwork, number},
 };
 
 /// So many clocks are still worth an exact search.
 const MAX_KEPT: u32 = 16;
 
-impl Observed {
+impl ObservedNetwork {
     /// Lets the network do nothing that breaks the assumption.
     ///
     /// # Errors
@@ -30,7 +30,7 @@ impl Observed {
         if assumption.at_most > MAX_KEPT {
             return Err(format!("`{}` counts more than {MAX_KEPT} events", assumption.text));
         }
-        let window = Window {
+        let window = AssumptionWindow {
             shared: number(self.program.shared.len()),
             first: number(self.program.clocks.len()),
             kept: assumption.at_most as u16,
@@ -48,7 +48,7 @@ impl Observed {
     }
 }
 
-struct Window {
+struct AssumptionWindow {
     /// The number of shared variables: the slot of the automaton's own.
     shared: u16,
     /// The automaton's first clock.
@@ -58,7 +58,7 @@ struct Window {
     origin: Span,
 }
 
-impl Window {
+impl AssumptionWindow {
     fn automaton(&self, assumption: &Assumption, actor: Option<ActorId>, edges: Vec<Edge>) -> Automaton {
         let location = |name: &str, invariant| Location {
             name: name.to_owned(),
@@ -83,7 +83,7 @@ impl Window {
         }
     }
 
-    fn edges(&self, reception: &Reception, out: &mut Vec<Edge>) {
+    fn edges(&self, reception: &ReceptionHalf, out: &mut Vec<Edge>) {
         let seen = Expr::Var(self.shared);
         let full = |op| Expr::binary(op, seen.clone(), Expr::int(i64::from(self.kept)));
         let seen_one = Update::Assign {
@@ -118,7 +118,7 @@ impl Window {
     /// `oldest`: how the time since the oldest event compares with the window.
     fn edge(
         &self,
-        reception: &Reception,
+        reception: &ReceptionHalf,
         seen: Expr,
         oldest: Option<ClockOp>,
         to: u16,

@@ -12,9 +12,9 @@ use hrdsl_ir::{
     },
     value::SECOND,
 };
-use hrdsl_monitor::{Checker, Outcome};
-use hrdsl_prove::{Fate, Observed, Settings, Watch, decide, of_formula};
-use hrdsl_trace::{Observer as _, Step, What};
+use hrdsl_monitor::{MonitorOutcome, MonitorRunner};
+use hrdsl_prove::{GoalFate, ObservedNetwork, ProofOptions, SearchWatch, decide, of_formula};
+use hrdsl_trace::{TraceObserver as _, TraceStep, TraceStepKind};
 
 /// A small generator, so that each case is the same everywhere.
 struct Dice(u64);
@@ -172,13 +172,14 @@ fn monitor(dice: &mut Dice) -> Monitor {
     }
 }
 
-fn is_reached(program: &Program, observed: &Observed, formula: &Formula) -> bool {
+fn is_reached(program: &Program, observed: &ObservedNetwork, formula: &Formula) -> bool {
     let goals = [of_formula(formula)];
-    let decided = decide(program, observed, &goals, &[], &Settings::default(), &Watch::default()).unwrap();
+    let decided =
+        decide(program, observed, &goals, &[], &ProofOptions::default(), &SearchWatch::default()).unwrap();
     match &decided.fates[0] {
-        Fate::Reached(_) => true,
-        Fate::Unreachable => false,
-        Fate::Open(why) => panic!("open: {why}"),
+        GoalFate::Reached(_) => true,
+        GoalFate::Unreachable => false,
+        GoalFate::Inconclusive(why) => panic!("open: {why}"),
     }
 }
 
@@ -192,15 +193,15 @@ fn an_observer_sees_what_its_monitor_does() {
         let end = script.last().map_or(0, |s| s.0) + dice.roll(6) as i64 * SECOND + SECOND / 2;
         let (mut program, network) = with_script(program(), &script, end);
         program.monitors.push(monitor.clone());
-        let mut checker = Checker::new(&program);
+        let mut checker = MonitorRunner::new(&program);
         for (index, (time, event, args)) in script.iter().enumerate() {
-            let what = What::Event { event: *event, args: args.clone() };
-            checker.step(index, &Step { time: *time, what });
+            let what = TraceStepKind::Event { event: *event, args: args.clone() };
+            checker.step(index, &TraceStep { time: *time, what });
         }
         checker.end(end);
         let verdict = checker.verdicts().remove(0);
-        let fails = verdict.outcome == Outcome::Fail;
-        let mut observed = Observed::new(&program, &network);
+        let fails = verdict.outcome == MonitorOutcome::Fail;
+        let mut observed = ObservedNetwork::new(&program, &network);
         // One after the other at one clock that is not reset: its deadline is not counted from there.
         let Ok(verdicts) = observed.add(&monitor) else { continue };
         let seen = verdicts.violated.as_ref().is_some_and(|f| is_reached(&program, &observed, f));
@@ -232,7 +233,7 @@ fn a_window_lets_happen_what_the_assumption_allows() {
         });
         let last = Formula::At { automaton: 0, location: LocationId(script.len() as u16) };
         let allows = Assumptions::allows(&program, &script);
-        let observed = Observed::new(&program, &network);
+        let observed = ObservedNetwork::new(&program, &network);
         assert_eq!(is_reached(&program, &observed, &last), allows, "seed {seed}: {script:?} {program:#?}");
         (allowed, forbidden) = (allowed + u32::from(allows), forbidden + u32::from(!allows));
     }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use hrdsl_results::{
-    BinResult, Failure, GoalStatus, Ratios, Requirement, RequirementKind, Results, Tally, TestName,
-    TestResult, VerdictOutcome as Outcome, VerdictResult,
+    BinResult, CoverageRatios, FirstFailure, GoalStatus, RequirementKind, RequirementResult, Results,
+    TestName, TestResult, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 use crate::text;
@@ -64,7 +64,7 @@ impl ShownOutcome for Outcome {
 }
 
 /// The kind of a requirement, as a word.
-pub fn kind(requirement: &Requirement) -> &'static str {
+pub fn kind(requirement: &RequirementResult) -> &'static str {
     match requirement.kind {
         RequirementKind::Safety => "safety",
         RequirementKind::Functional => "functional",
@@ -72,8 +72,8 @@ pub fn kind(requirement: &Requirement) -> &'static str {
 }
 
 /// All suites together.
-pub fn total(requirement: &Requirement) -> Tally {
-    requirement.tally.iter().fold(Tally::default(), |sum, t| Tally {
+pub fn total(requirement: &RequirementResult) -> VerdictTally {
+    requirement.tally.iter().fold(VerdictTally::default(), |sum, t| VerdictTally {
         pass: sum.pass + t.pass,
         fail: sum.fail + t.fail,
         not_checked: sum.not_checked + t.not_checked,
@@ -83,7 +83,7 @@ pub fn total(requirement: &Requirement) -> Tally {
 }
 
 /// Where a requirement stands after all tests: the worst thing that is known about it.
-pub fn standing(requirement: &Requirement) -> Outcome {
+pub fn standing(requirement: &RequirementResult) -> Outcome {
     let tally = total(requirement);
     if tally.fail > 0 {
         Outcome::Fail
@@ -142,8 +142,8 @@ pub fn bins_hit(results: &Results, suite: usize) -> usize {
 }
 
 /// Lines and branches of all files.
-pub fn code(results: &Results) -> Ratios {
-    results.code.iter().fold(Ratios::default(), |sum, f| Ratios {
+pub fn code(results: &Results) -> CoverageRatios {
+    results.code.iter().fold(CoverageRatios::default(), |sum, f| CoverageRatios {
         lines: sum.lines + f.ratios.lines,
         lines_total: sum.lines_total + f.ratios.lines_total,
         branches: sum.branches + f.ratios.branches,
@@ -157,7 +157,7 @@ pub fn violates(test: &TestResult, requirement: &str) -> bool {
 }
 
 /// The failure of a requirement in a test.
-pub fn failure<'a>(test: &'a TestResult, requirement: &str) -> Option<(&'a VerdictResult, &'a Failure)> {
+pub fn failure<'a>(test: &'a TestResult, requirement: &str) -> Option<(&'a VerdictResult, &'a FirstFailure)> {
     let verdict = failed(test, requirement)?;
     verdict.failure.as_ref().map(|failure| (verdict, failure))
 }
@@ -167,12 +167,12 @@ fn failed<'a>(test: &'a TestResult, requirement: &str) -> Option<&'a VerdictResu
 }
 
 /// The tests that violate a requirement, in order, each with its place in [`Results::tests`].
-pub fn failing<'a>(results: &'a Results, requirement: &Requirement) -> Vec<(usize, &'a TestResult)> {
+pub fn failing<'a>(results: &'a Results, requirement: &RequirementResult) -> Vec<(usize, &'a TestResult)> {
     results.tests.iter().enumerate().filter(|(_, t)| violates(t, &requirement.name)).collect()
 }
 
 /// Which obligation a violation is of, in a sentence; nothing if it needs none.
-pub fn how(failure: &Failure) -> String {
+pub fn how(failure: &FirstFailure) -> String {
     let since = text::moment(failure.triggered_at);
     let passed = text::moment(failure.time - failure.triggered_at);
     match (failure.deadline, failure.triggered_at < failure.time) {
@@ -183,7 +183,7 @@ pub fn how(failure: &Failure) -> String {
 }
 
 /// A violation in a few words: the step that violates, with the margin if it has one, or what was not done.
-pub fn in_short(verdict: &VerdictResult, failure: &Failure) -> String {
+pub fn in_short(verdict: &VerdictResult, failure: &FirstFailure) -> String {
     let step = failure.witness.last().map(|s| text::line(&s.text)).unwrap_or_default();
     let passed = text::moment(failure.time - failure.triggered_at);
     match (failure.deadline, failure.witness.as_slice()) {
@@ -260,7 +260,7 @@ fn errors(results: &Results, gaps: &mut Vec<String>) {
 }
 
 fn unchecked(results: &Results, gaps: &mut Vec<String>) {
-    let checked = |t: &Tally| t.pass + t.fail > 0;
+    let checked = |t: &VerdictTally| t.pass + t.fail > 0;
     let never: Vec<String> = results
         .requirements
         .iter()
@@ -271,8 +271,9 @@ fn unchecked(results: &Results, gaps: &mut Vec<String>) {
         gaps.push(format!("{} got no verdict from any test.", text::enumeration(&never)));
     }
     for (i, suite) in results.suites.iter().enumerate() {
-        let here =
-            |r: &&Requirement| !r.tally.get(i).is_some_and(checked) && !never.contains(&r.name.to_string());
+        let here = |r: &&RequirementResult| {
+            !r.tally.get(i).is_some_and(checked) && !never.contains(&r.name.to_string())
+        };
         let names: Vec<String> =
             results.requirements.iter().filter(here).map(|r| r.name.to_string()).collect();
         if !names.is_empty() {

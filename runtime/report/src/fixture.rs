@@ -1,10 +1,11 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
 use hrdsl_results::{
-    AgentCoverage, BinName, BinResult, CodeFile, Explanation, FORMAT, Failure, GoalReport, GoalStatus,
-    ItemKind, Judgement, KindCoverage, Margin, ModelCoverage, OutputSummary, Ratios, Requirement,
-    RequirementKind, Results, RunEnd, RunMark, SuiteInfo, Tally, TestExplanation, TestMethod, TestResult,
-    Uncovered, Unreached, VERSION, VerdictOutcome as Outcome, VerdictResult, WitnessStep,
+    AgentCoverage, BinName, BinResult, CodeFile, CoverageRatios, FORMAT, FirstFailure, GoalReport,
+    GoalStatus, ItemKind, Judgement, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
+    RequirementResult, Results, RunEnd, RunMark, SmallestMargin, SuiteExplanation, SuiteInfo,
+    TestExplanation, TestMethod, TestResult, UncoveredGoal, UnreachedItem, VERSION,
+    VerdictOutcome as Outcome, VerdictResult, VerdictTally, WitnessStep,
 };
 
 const SUITES: [(&str, TestMethod); 3] = [
@@ -290,22 +291,22 @@ fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
     }
 }
 
-fn failure(r: usize, time: f64) -> Failure {
+fn failure(r: usize, time: f64) -> FirstFailure {
     let step = |step: usize, time: f64, text: &str| WitnessStep { step, time, text: text.to_owned() };
     match r {
-        4 => Failure {
+        4 => FirstFailure {
             time,
             triggered_at: time,
             deadline: false,
             witness: vec![step(188, time, "gripper_closing, distance(person.hand, robot.palm) = 0.018 m")],
         },
-        2 => Failure {
+        2 => FirstFailure {
             time,
             triggered_at: time - 3.5,
             deadline: false,
             witness: vec![step(301, time - 3.5, "sensed(true, false, true)"), step(316, time, "released")],
         },
-        _ => Failure {
+        _ => FirstFailure {
             time,
             triggered_at: time - 10.0,
             deadline: true,
@@ -337,8 +338,8 @@ fn executed(s: usize, i: usize) -> Executed {
     Executed { branches: BRANCHES.iter().copied().filter(taken).collect(), lines }
 }
 
-fn ratios(executed: &Executed) -> Ratios {
-    Ratios {
+fn ratios(executed: &Executed) -> CoverageRatios {
+    CoverageRatios {
         lines: executed.lines.len() as u32,
         lines_total: STATEMENTS.len() as u32,
         branches: executed.branches.len() as u32,
@@ -356,11 +357,11 @@ fn together(tests: &[&Made]) -> Executed {
     }
 }
 
-fn requirement(r: usize, tests: &[Made]) -> Requirement {
+fn requirement(r: usize, tests: &[Made]) -> RequirementResult {
     let (name, kind, title, text) = REQUIREMENTS[r];
-    let mut tally = vec![Tally::default(); SUITES.len()];
+    let mut tally = vec![VerdictTally::default(); SUITES.len()];
     let mut failing = Vec::new();
-    let mut worst_margin: Option<Margin> = None;
+    let mut worst_margin: Option<SmallestMargin> = None;
     for test in tests.iter().map(|t| &t.result) {
         let suite = SUITES.iter().position(|(name, _)| test.suite == *name).unwrap_or(0);
         let verdict = &test.judgement.verdicts[r];
@@ -371,10 +372,10 @@ fn requirement(r: usize, tests: &[Made]) -> Requirement {
         if let Some((value, unit)) = verdict.worst_margin.clone()
             && worst_margin.as_ref().is_none_or(|m| value < m.value)
         {
-            worst_margin = Some(Margin { value, unit, test: test.name.clone() });
+            worst_margin = Some(SmallestMargin { value, unit, test: test.name.clone() });
         }
     }
-    Requirement {
+    RequirementResult {
         name: name.into(),
         kind,
         title: title.into(),
@@ -432,12 +433,12 @@ fn suite(s: usize, tests: &[&Made]) -> SuiteInfo {
 }
 
 /// What the agents of the first suite reached.
-pub(crate) fn model() -> (ModelCoverage, Explanation) {
+pub(crate) fn model() -> (ModelCoverage, SuiteExplanation) {
     let reached = [2, 1, 0, 0, 0, 0, 0, 1, 0];
     let all = [3, 2, 0, 0, 0, 0, 0, 2, 0];
     let kinds = ItemKind::ALL.into_iter().zip(reached).zip(all);
     let unreached =
-        |kind, item: &str, reason: &str| Unreached { kind, item: item.into(), reason: reason.into() };
+        |kind, item: &str, reason: &str| UnreachedItem { kind, item: item.into(), reason: reason.into() };
     let before = "`+!leg` came twice: twice a plan before it was selected (`leg#1` twice)";
     let human = AgentCoverage {
         agent: "Human".into(),
@@ -463,9 +464,9 @@ pub(crate) fn model() -> (ModelCoverage, Explanation) {
         first: first.iter().map(|s| (*s).into()).collect(),
         only: only.iter().map(|s| (*s).into()).collect(),
     };
-    let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
+    let uncovered = |goal: &str, reason: &str| UncoveredGoal { goal: goal.into(), reason: reason.into() };
     let released = "bin human_robot.1 leg, released";
-    let explanation = Explanation {
+    let explanation = SuiteExplanation {
         tests: vec![
             test("t001", "wants(0)", &["plan Human.table#1", "plan Human.leg#1"], &[]),
             test("t002", "wants(1)", &[released], &[released]),

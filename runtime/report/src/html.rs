@@ -5,15 +5,18 @@
 
 mod code;
 mod model;
+mod pieces;
 mod tests_list;
 mod violations;
 
 use hrdsl_results::{
-    BinResult, GoalReport, GoalStatus, Ratios, Requirement, Results, SuiteInfo, Tally, TestName,
-    VerdictOutcome as Outcome,
+    BinResult, GoalReport, GoalStatus, RequirementResult, Results, SuiteInfo, TestName,
+    VerdictOutcome as Outcome, VerdictTally,
 };
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
+
+use pieces::{Link, Ratio, branches_of, lines_of};
 
 use crate::{
     facts::{self, Bin, ShownOutcome},
@@ -118,13 +121,6 @@ struct Suite {
     notes: Vec<String>,
 }
 
-#[derive(Serialize)]
-struct Ratio {
-    percent: String,
-    part: u32,
-    whole: u32,
-}
-
 /// A column of the requirement table.
 #[derive(Serialize)]
 struct Column {
@@ -155,13 +151,6 @@ struct WorstMargin {
     value: String,
     is_negative: bool,
     test: Link,
-}
-
-/// A test by name, with its place in the list.
-#[derive(Serialize)]
-struct Link {
-    name: String,
-    place: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -315,18 +304,6 @@ fn heading(results: &Results) -> Vec<Fact> {
     facts
 }
 
-fn lines_of(ratios: Ratios) -> Ratio {
-    Ratio { percent: format!("{:.1}", ratios.line_percent()), part: ratios.lines, whole: ratios.lines_total }
-}
-
-fn branches_of(ratios: Ratios) -> Ratio {
-    Ratio {
-        percent: format!("{:.1}", ratios.branch_percent()),
-        part: ratios.branches,
-        whole: ratios.branches_total,
-    }
-}
-
 fn suite(results: &Results, index: usize) -> Suite {
     let info: &SuiteInfo = &results.suites[index];
     let tests = || results.tests.iter().filter(|t| t.suite == info.name);
@@ -347,7 +324,7 @@ fn suite(results: &Results, index: usize) -> Suite {
 
 fn rows(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Row> {
     let mut section = 0;
-    let row = |requirement: &Requirement| {
+    let row = |requirement: &RequirementResult| {
         let standing = facts::standing(requirement);
         let is_violated = standing == Outcome::Fail;
         section += usize::from(is_violated);
@@ -376,7 +353,7 @@ fn rows(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Row> {
     results.requirements.iter().map(row).collect()
 }
 
-fn in_words(standing: Outcome, total: &Tally) -> String {
+fn in_words(standing: Outcome, total: &VerdictTally) -> String {
     let checked = match standing {
         Outcome::Fail => {
             format!("violated in {} of {} tests that checked it", total.fail, total.pass + total.fail)

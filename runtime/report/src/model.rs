@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hrdsl_results::ItemKind;
 
 use super::text;
-use hrdsl_results::{AgentCoverage, Explanation, KindCoverage, ModelCoverage, TestExplanation};
+use hrdsl_results::{AgentCoverage, KindCoverage, ModelCoverage, SuiteExplanation, TestExplanation};
 
 /// Goals that are listed for a test, at most.
 const LISTED: usize = 12;
@@ -44,7 +44,7 @@ pub fn of(agent: &AgentCoverage, kind: ItemKind) -> KindCoverage {
 
 /// What a suite's tests are for, what of the model was not reached, and why: as plain text.
 #[must_use]
-pub fn explain_text(suite: &str, explanation: &Explanation, coverage: Option<&ModelCoverage>) -> String {
+pub fn explain_text(suite: &str, explanation: &SuiteExplanation, coverage: Option<&ModelCoverage>) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}", text::line(suite));
     if let Some(model) = coverage {

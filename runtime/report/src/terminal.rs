@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hrdsl_results::{
-    BinResult, ItemKind, Ratios, Requirement, Results, RunMark, SuiteInfo, TestResult,
+    BinResult, CoverageRatios, ItemKind, RequirementResult, Results, RunMark, SuiteInfo, TestResult,
     VerdictOutcome as Outcome,
 };
 
@@ -210,7 +210,7 @@ fn requirements(page: &mut Page, results: &Results) {
 
 fn requirement_line(
     page: &mut Page,
-    requirement: &Requirement,
+    requirement: &RequirementResult,
     suites: &[usize],
     (columns, gap): (&[(Outcome, usize)], usize),
     label: usize,
@@ -238,7 +238,7 @@ fn requirement_line(
 }
 
 fn violations(page: &mut Page, results: &Results) {
-    let violated: Vec<(&Requirement, Vec<(usize, &TestResult)>)> = results
+    let violated: Vec<(&RequirementResult, Vec<(usize, &TestResult)>)> = results
         .requirements
         .iter()
         .map(|r| (r, facts::failing(results, r)))
@@ -407,7 +407,7 @@ fn code(page: &mut Page, results: &Results) {
     if all.lines_total == 0 {
         return;
     }
-    let mut entries: Vec<(String, Ratios)> =
+    let mut entries: Vec<(String, CoverageRatios)> =
         results.suites.iter().map(|s| (text::line(&s.name), s.code)).collect();
     if entries.len() > 1 {
         entries.push(("all".to_owned(), all));

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 /// Executed and all, of lines and of branches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Ratios {
+pub struct CoverageRatios {
     pub lines: u32,
     pub lines_total: u32,
     pub branches: u32,
     pub branches_total: u32,
 }
 
-impl Ratios {
+impl CoverageRatios {
     /// Lines executed, in percent; 100 of nothing.
     #[must_use]
     pub fn line_percent(self) -> f64 {
@@ -33,7 +33,7 @@ fn percent(part: u32, whole: u32) -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CodeFile {
     pub file: String,
-    pub ratios: Ratios,
+    pub ratios: CoverageRatios,
     /// For each executable line the number of tests that executed it.
     pub lines: Vec<(u32, u32)>,
     /// For each of these lines the number of tests of each suite that executed it, in the order of the suites.

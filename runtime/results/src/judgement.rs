@@ -52,14 +52,14 @@ pub struct VerdictResult {
     /// How often it was violated.
     pub failures: u32,
     /// The first violation.
-    pub failure: Option<Failure>,
+    pub failure: Option<FirstFailure>,
     /// The least margin, with the symbol of its unit.
     pub worst_margin: Option<(f64, String)>,
 }
 
 /// The first violation in a test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Failure {
+pub struct FirstFailure {
     /// Seconds.
     pub time: f64,
     /// When the violated obligation was made, in seconds.

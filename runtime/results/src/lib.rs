@@ -7,7 +7,7 @@
 //! # Map
 //! - [`Results`] is the file `results.json`; [`Results::to_json`] writes it, [`Results::from_json`] reads it back.
 //! - [`TestResult`] is one test: how its run ended, and the [`Judgement`] on it.
-//! - [`Requirement`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
+//! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
 
 mod code;
 mod judgement;
@@ -21,16 +21,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-pub use code::{CodeFile, Ratios};
+pub use code::{CodeFile, CoverageRatios};
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::ItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
-pub use judgement::{Failure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+pub use judgement::{FirstFailure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};
 pub use suite::{
-    AgentCoverage, Explanation, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteInfo,
-    TestExplanation, Uncovered, Unreached,
+    AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
+    TestExplanation, UncoveredGoal, UnreachedItem,
 };
-pub use tally::{BinResult, Margin, Requirement, Tally};
+pub use tally::{BinResult, RequirementResult, SmallestMargin, VerdictTally};
 pub use test::{OutputSummary, RunMark, TestResult};
 
 /// What kind of file `results.json` is: its `format`.
@@ -58,7 +58,7 @@ pub struct Results {
     /// The command that runs one test again, up to its name, as it is typed in the folder of the results; empty if there is
     /// none.
     pub rerun: String,
-    pub requirements: Vec<Requirement>,
+    pub requirements: Vec<RequirementResult>,
     /// In the order of their first tests.
     pub suites: Vec<SuiteInfo>,
     pub bins: Vec<BinResult>,
@@ -80,7 +80,7 @@ pub enum ResultsError {
 
 /// What every version of the format begins with.
 #[derive(Deserialize)]
-struct Preamble {
+struct ResultsPreamble {
     #[serde(default)]
     format: String,
     #[serde(default)]
@@ -103,8 +103,8 @@ impl Results {
     pub fn from_json(text: &str) -> Result<Self, ResultsError> {
         let read = serde_json::from_str::<Self>(text);
         // What another version lacks or has too much of is not what is wrong with it.
-        let Preamble { format, version } = match &read {
-            Ok(results) => Preamble { format: results.format.clone(), version: results.version },
+        let ResultsPreamble { format, version } = match &read {
+            Ok(results) => ResultsPreamble { format: results.format.clone(), version: results.version },
             Err(_) => serde_json::from_str(text)?,
         };
         if format != FORMAT {

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    code::Ratios,
+    code::CoverageRatios,
     names::{GoalName, SuiteName},
     schema,
 };
@@ -26,10 +26,10 @@ pub struct SuiteInfo {
     pub model: Option<ModelCoverage>,
     /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub explanation: Option<Explanation>,
+    pub explanation: Option<SuiteExplanation>,
     pub notes: Vec<String>,
     /// Lines and branches executed by any of the suite's tests, over all files.
-    pub code: Ratios,
+    pub code: CoverageRatios,
     /// Accumulated percentage of lines after each test, in order.
     pub code_accumulated: Vec<f64>,
     /// Percentage of lines of each test alone, in order.
@@ -73,7 +73,7 @@ pub struct AgentCoverage {
     pub agent: String,
     /// One for each kind, in order.
     pub kinds: Vec<KindCoverage>,
-    pub unreached: Vec<Unreached>,
+    pub unreached: Vec<UnreachedItem>,
 }
 
 /// Items of a kind.
@@ -87,7 +87,7 @@ pub struct KindCoverage {
 
 /// An item that no run reached.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Unreached {
+pub struct UnreachedItem {
     #[schemars(schema_with = "schema::item_kind")]
     pub kind: ItemKind,
     /// `plan Human.leg#2 failed`
@@ -97,11 +97,11 @@ pub struct Unreached {
 
 /// What each test of a suite is for, and why goals stayed uncovered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Explanation {
+pub struct SuiteExplanation {
     /// One for each abstract test that was made concrete, in order.
     pub tests: Vec<TestExplanation>,
     /// The goals that no test reaches.
-    pub uncovered: Vec<Uncovered>,
+    pub uncovered: Vec<UncoveredGoal>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -119,7 +119,7 @@ pub struct TestExplanation {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Uncovered {
+pub struct UncoveredGoal {
     pub goal: GoalName,
     pub reason: String,
 }

@@ -12,23 +12,23 @@ use crate::{
 
 /// A requirement with its tally in each suite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Requirement {
+pub struct RequirementResult {
     pub name: RequirementName,
     #[schemars(schema_with = "schema::requirement_kind")]
     pub kind: RequirementKind,
     pub title: String,
     pub text: String,
     /// One for each suite, in their order.
-    pub tally: Vec<Tally>,
+    pub tally: Vec<VerdictTally>,
     /// The tests with a violation, in order.
     pub failing: Vec<TestName>,
     /// The least margin over all tests, with its test.
-    pub worst_margin: Option<Margin>,
+    pub worst_margin: Option<SmallestMargin>,
 }
 
 /// How many tests had each verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Tally {
+pub struct VerdictTally {
     pub pass: u32,
     pub fail: u32,
     pub not_checked: u32,
@@ -36,7 +36,7 @@ pub struct Tally {
     pub error: u32,
 }
 
-impl Tally {
+impl VerdictTally {
     /// Counts one more test.
     pub fn add(&mut self, outcome: VerdictOutcome) {
         *match outcome {
@@ -63,7 +63,7 @@ impl Tally {
 
 /// How far a requirement was from being violated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Margin {
+pub struct SmallestMargin {
     pub value: f64,
     /// The symbol.
     pub unit: String,

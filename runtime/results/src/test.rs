@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Judgement, Ratios,
+    code::CoverageRatios,
+    judgement::Judgement,
     names::{SuiteName, TestName},
     schema,
 };
@@ -35,7 +36,7 @@ pub struct TestResult {
     pub predicted: Vec<BinName>,
     /// Where the test came from.
     pub because: Vec<String>,
-    pub code: Ratios,
+    pub code: CoverageRatios,
     /// The test's steps as they are written.
     pub steps: Vec<String>,
     /// What the program wrote.

@@ -6,7 +6,7 @@ mod common;
 use common::{ARM, LEGS, OFFER, REST, STEP, move_to, named, number, run, settle, table, truth};
 use divan::Bencher;
 use hrdsl_ir::world::{BodyRef, SignalId, Term};
-use hrdsl_sim::{Command, Sim};
+use hrdsl_sim::{MotorCommand, Sim};
 
 fn main() {
     divan::main();
@@ -32,7 +32,7 @@ fn ten_steps_standing(bencher: Bencher) {
         .with_inputs(|| {
             let mut sim = Sim::new(&table(), &[]).expect("the world");
             settle(&mut sim);
-            sim.command(Command::Open { gripper: common::GRIP }).expect("a gripper");
+            sim.command(MotorCommand::OpenFingers { gripper: common::GRIP }).expect("a gripper");
             sim
         })
         .bench_local_refs(|sim| sim.advance(sim.now() + 10 * STEP));
@@ -51,7 +51,7 @@ fn a_minute_at_rest(bencher: Bencher) {
 fn hand_over(bencher: Bencher) {
     bencher.with_inputs(|| Sim::new(&table(), &[]).expect("the world")).bench_local_refs(|sim| {
         common::offer(sim);
-        run(sim, Command::Open { gripper: common::GRIP });
+        run(sim, MotorCommand::OpenFingers { gripper: common::GRIP });
         run(sim, move_to(REST));
     });
 }

@@ -4,12 +4,15 @@ use hrdsl_ir::Nanos;
 use hrdsl_ir::value::{nanos, seconds};
 use hrdsl_ir::world::{Arm, BodyId, JointId, Vec3, World};
 
-use crate::command::CommandId;
-use crate::error::{CommandError, SimError};
-use crate::kinematics::{Chain, Link};
-use crate::math::{V3, v3};
-use crate::profile::{Profile, brake_time, braking};
-use crate::stage::{Stage, bad, index};
+use hrdsl_harness::CommandId;
+
+use crate::{
+    error::{CommandError, SimError},
+    kinematics::{KinematicChain, KinematicLink},
+    math::{V3, v3},
+    physics::{PhysicsAdapter, bad, index},
+    profile::{MotionProfile, brake_time, braking},
+};
 
 /// How near the tool must come to its place, m.
 const ARRIVED: f64 = 0.005;
@@ -27,15 +30,15 @@ pub(crate) struct ArmControl {
     tool: V3,
     base: BodyId,
     max_speed: f64,
-    chain: Chain,
+    chain: KinematicChain,
     /// The motors' aim while no motion is under way.
     rest: Vec<f64>,
-    motion: Option<Motion>,
+    motion: Option<ArmMotion>,
 }
 
-struct Motion {
+struct ArmMotion {
     id: CommandId,
-    goal: Goal,
+    goal: ArmGoal,
     start: Nanos,
     /// Where the arm was and how fast it went when the motion was asked for.
     from: Vec<f64>,
@@ -44,20 +47,20 @@ struct Motion {
     go: Nanos,
     stop: Vec<f64>,
     to: Vec<f64>,
-    profile: Profile,
+    profile: MotionProfile,
 }
 
-enum Goal {
+enum ArmGoal {
     Place(V3),
     Joints,
 }
 
-impl Motion {
+impl ArmMotion {
     /// Angles and speeds aimed at.
     fn at(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
         if time < self.go {
-            let (way, rate) = braking(seconds(time - self.start));
-            let angle = self.from.iter().zip(&self.speed).map(|(q, v)| q + v * way);
+            let (travel, rate) = braking(seconds(time - self.start));
+            let angle = self.from.iter().zip(&self.speed).map(|(q, v)| q + v * travel);
             return (angle.collect(), self.speed.iter().map(|v| v * rate).collect());
         }
         let t = seconds(time - self.go);
@@ -73,7 +76,7 @@ impl Motion {
 }
 
 impl ArmControl {
-    pub fn new(arm: &Arm, world: &World, stage: &Stage) -> Result<ArmControl, SimError> {
+    pub fn new(arm: &Arm, world: &World, physics: &PhysicsAdapter) -> Result<ArmControl, SimError> {
         let what = || format!("arm `{}`", arm.name);
         if index(arm.tip) >= world.bodies.len() {
             return Err(bad(what(), "body", index(arm.tip)));
@@ -86,18 +89,18 @@ impl ArmControl {
         for id in &arm.joints {
             let at = usize::from(id.0);
             let joint = world.joints.get(at).ok_or_else(|| bad(what(), "joint", at))?;
-            if end.is_some_and(|e| stage.root(e) != stage.root(joint.parent)) {
+            if end.is_some_and(|e| physics.root(e) != physics.root(joint.parent)) {
                 return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
             }
             end = Some(joint.child);
             let axis = v3(joint.axis).normalize();
-            links.push(Link { anchor: v3(joint.anchor), axis, lo: joint.lo, hi: joint.hi });
+            links.push(KinematicLink { anchor: v3(joint.anchor), axis, lo: joint.lo, hi: joint.hi });
         }
-        if end.is_none_or(|e| stage.root(e) != stage.root(arm.tip)) {
+        if end.is_none_or(|e| physics.root(e) != physics.root(arm.tip)) {
             return Err(SimError::TipNotOnArm { arm: arm.name.clone() });
         }
         let tool = v3(arm.tool);
-        let chain = Chain { links, tool: stage.start(arm.tip).point(tool) };
+        let chain = KinematicChain { links, tool: physics.start(arm.tip).point(tool) };
         Ok(ArmControl {
             name: arm.name.clone(),
             joints: arm.joints.clone(),
@@ -114,7 +117,7 @@ impl ArmControl {
     /// Plans a motion of the tool to a place.
     pub fn plan(&self, now: Nanos, target: Vec3) -> Result<Vec<f64>, CommandError> {
         let found = self.chain.plan(&self.stop(now), v3(target));
-        if Chain::arrives(&found) {
+        if KinematicChain::arrives(&found) {
             Ok(found.joints)
         } else {
             Err(CommandError::Unreachable { distance: found.error })
@@ -122,10 +125,10 @@ impl ArmControl {
     }
 
     /// The place, as it would be if the arm's base were where it was at the start.
-    pub fn relative(&self, stage: &Stage, target: Vec3) -> Vec3 {
-        let now = stage.pose(self.base);
-        let start = stage.start(self.base);
-        if stage.motion(self.base) == hrdsl_ir::world::Motion::Fixed {
+    pub fn relative(&self, physics: &PhysicsAdapter, target: Vec3) -> Vec3 {
+        let now = physics.pose(self.base);
+        let start = physics.start(self.base);
+        if physics.motion(self.base) == hrdsl_ir::world::Motion::Fixed {
             return target;
         }
         crate::math::arr(start.point(now.inverse().point(v3(target))))
@@ -159,18 +162,18 @@ impl ArmControl {
         let moving = speed.iter().any(|v| *v != 0.0);
         let go = if moving { now + nanos(brake_time()) } else { now };
         let stop = self.stop(now);
-        let way = stop.iter().zip(&to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        let profile = Profile::new(way, limit);
-        let goal = place.map_or(Goal::Joints, |p| Goal::Place(v3(p)));
-        let next = Motion { id, goal, start: now, from, speed, go, stop, to, profile };
+        let travel = stop.iter().zip(&to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        let profile = MotionProfile::new(travel, limit);
+        let goal = place.map_or(ArmGoal::Joints, |p| ArmGoal::Place(v3(p)));
+        let next = ArmMotion { id, goal, start: now, from, speed, go, stop, to, profile };
         self.motion.replace(next).map(|old| old.id)
     }
 
     /// Where the arm would stand if it were stopped now.
     fn stop(&self, now: Nanos) -> Vec<f64> {
         let (from, speed) = self.aim(now);
-        let (way, _) = braking(brake_time());
-        from.iter().zip(&speed).map(|(q, v)| q + v * way).collect()
+        let (travel, _) = braking(brake_time());
+        from.iter().zip(&speed).map(|(q, v)| q + v * travel).collect()
     }
 
     fn aim(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
@@ -184,10 +187,10 @@ impl ArmControl {
     ///
     /// The speed is the mean over the step, and the angle that of its middle: the solver divides the step, and would be
     /// pulled ahead or back by the angle at either end.
-    pub fn drive(&self, now: Nanos, next: Nanos, stage: &mut Stage) {
+    pub fn drive(&self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
         if self.motion.is_none() {
             for (id, q) in self.joints.iter().zip(&self.rest) {
-                stage.drive(usize::from(id.0), *q, 0.0);
+                physics.drive(usize::from(id.0), *q, 0.0);
             }
             return;
         }
@@ -195,7 +198,7 @@ impl ArmControl {
         let (b, _) = self.aim(next);
         let h = seconds(next - now);
         for ((id, a), b) in self.joints.iter().zip(&a).zip(&b) {
-            stage.drive(usize::from(id.0), (a + b) / 2.0, (b - a) / h);
+            physics.drive(usize::from(id.0), (a + b) / 2.0, (b - a) / h);
         }
     }
 
@@ -203,22 +206,22 @@ impl ArmControl {
     pub fn check_arrival(
         &mut self,
         now: Nanos,
-        stage: &Stage,
+        physics: &PhysicsAdapter,
     ) -> Option<(CommandId, Result<(), CommandError>)> {
         let motion = self.motion.as_ref()?;
         if now < motion.end() {
             return None;
         }
-        let settled = self.speed(stage) < SETTLED;
+        let settled = self.speed(physics) < SETTLED;
         let (there, distance) = match motion.goal {
-            Goal::Place(place) => {
-                let distance = (self.tool_at(stage) - place).norm();
+            ArmGoal::Place(place) => {
+                let distance = (self.tool_at(physics) - place).norm();
                 (distance <= ARRIVED, distance)
             }
-            Goal::Joints => {
-                let angles = self.positions(stage);
+            ArmGoal::Joints => {
+                let angles = self.positions(physics);
                 let off = angles.iter().zip(&motion.to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-                (off <= ARRIVED_JOINT, (self.tool_at(stage) - self.chain.tool_at(&motion.to)).norm())
+                (off <= ARRIVED_JOINT, (self.tool_at(physics) - self.chain.tool_at(&motion.to)).norm())
             }
         };
         let result = if there && settled {
@@ -239,16 +242,16 @@ impl ArmControl {
     }
 
     /// Measured, rad.
-    pub fn positions(&self, stage: &Stage) -> Vec<f64> {
-        self.joints.iter().map(|id| stage.joint_angle(usize::from(id.0))).collect()
+    pub fn positions(&self, physics: &PhysicsAdapter) -> Vec<f64> {
+        self.joints.iter().map(|id| physics.joint_angle(usize::from(id.0))).collect()
     }
 
     /// The largest measured speed of a joint, rad/s.
-    pub fn speed(&self, stage: &Stage) -> f64 {
-        self.joints.iter().fold(0.0, |m, id| m.max(stage.joint_speed(usize::from(id.0)).abs()))
+    pub fn speed(&self, physics: &PhysicsAdapter) -> f64 {
+        self.joints.iter().fold(0.0, |m, id| m.max(physics.joint_speed(usize::from(id.0)).abs()))
     }
 
-    pub fn tool_at(&self, stage: &Stage) -> V3 {
-        stage.pose(self.tip).point(self.tool)
+    pub fn tool_at(&self, physics: &PhysicsAdapter) -> V3 {
+        physics.pose(self.tip).point(self.tool)
     }
 }

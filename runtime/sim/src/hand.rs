@@ -9,15 +9,18 @@ use hrdsl_ir::Nanos;
 use hrdsl_ir::world::{BodyId, Gripper, Motion, World};
 use rapier3d::prelude::ImpulseJointHandle;
 
-use crate::command::CommandId;
-use crate::error::{CommandError, SimError};
-use crate::math::{V3, v3};
-use crate::stage::{Stage, bad, index};
+use hrdsl_harness::CommandId;
+
+use crate::{
+    error::{CommandError, SimError},
+    math::{V3, v3},
+    physics::{PhysicsAdapter, bad, index},
+};
 
 /// Beyond its reach by this much (m), a hand loses what it holds.
 const SLACK: f64 = 0.05;
 
-pub(crate) struct Hand {
+pub(crate) struct GripperHand {
     pub name: String,
     palm: BodyId,
     tool: V3,
@@ -25,14 +28,14 @@ pub(crate) struct Hand {
     delay: Nanos,
     holds: Vec<BodyId>,
     dynamic: bool,
-    phase: Phase,
+    phase: GripPhase,
     /// Takes the first thing it can from now on.
     grasping: bool,
     held: Option<BodyId>,
     joint: Option<ImpulseJointHandle>,
 }
 
-enum Phase {
+enum GripPhase {
     Open,
     Closed,
     Closing { until: Nanos, id: Option<CommandId> },
@@ -41,8 +44,8 @@ enum Phase {
 
 type Finished = Vec<(CommandId, Result<(), CommandError>)>;
 
-impl Hand {
-    fn new(gripper: &Gripper, world: &World, stage: &Stage) -> Result<Hand, SimError> {
+impl GripperHand {
+    fn new(gripper: &Gripper, world: &World, physics: &PhysicsAdapter) -> Result<GripperHand, SimError> {
         let what = || format!("gripper `{}`", gripper.name);
         for body in gripper.holds.iter().chain([&gripper.palm]) {
             if index(*body) >= world.bodies.len() {
@@ -50,7 +53,7 @@ impl Hand {
             }
         }
         let jointed = |b: BodyId| world.joints.iter().any(|j| j.parent == b || j.child == b);
-        let unfit = |b: &&BodyId| stage.motion(**b) != Motion::Dynamic || jointed(**b);
+        let unfit = |b: &&BodyId| physics.motion(**b) != Motion::Dynamic || jointed(**b);
         if let Some(body) = gripper.holds.iter().find(unfit) {
             let body = world.bodies[index(*body)].name.clone();
             return Err(SimError::NotHoldable { gripper: gripper.name.clone(), body });
@@ -58,30 +61,30 @@ impl Hand {
         if !(gripper.reach.is_finite() && gripper.reach >= 0.0 && gripper.delay >= 0) {
             return Err(SimError::BadNumber { what: format!("reach or delay of {}", what()) });
         }
-        Ok(Hand {
+        Ok(GripperHand {
             name: gripper.name.clone(),
             palm: gripper.palm,
             tool: v3(gripper.tool),
             reach: gripper.reach,
             delay: gripper.delay,
             holds: gripper.holds.clone(),
-            dynamic: stage.motion(gripper.palm) == Motion::Dynamic,
-            phase: Phase::Open,
+            dynamic: physics.motion(gripper.palm) == Motion::Dynamic,
+            phase: GripPhase::Open,
             grasping: false,
             held: None,
             joint: None,
         })
     }
 
-    fn distance(&self, body: BodyId, stage: &Stage) -> f64 {
-        stage.distance_to_point(body, stage.pose(self.palm).point(self.tool))
+    fn distance(&self, body: BodyId, physics: &PhysicsAdapter) -> f64 {
+        physics.distance_to_point(body, physics.pose(self.palm).point(self.tool))
     }
 
     /// The nearest body in reach; of equally near ones the first.
-    fn choose(&self, stage: &Stage) -> Option<BodyId> {
+    fn choose(&self, physics: &PhysicsAdapter) -> Option<BodyId> {
         let mut best: Option<(f64, BodyId)> = None;
         for body in &self.holds {
-            let d = self.distance(*body, stage);
+            let d = self.distance(*body, physics);
             if d <= self.reach && best.is_none_or(|(b, _)| d < b) {
                 best = Some((d, *body));
             }
@@ -90,21 +93,21 @@ impl Hand {
     }
 
     fn is_busy(&self) -> bool {
-        matches!(self.phase, Phase::Closing { .. } | Phase::Opening { .. })
+        matches!(self.phase, GripPhase::Closing { .. } | GripPhase::Opening { .. })
     }
 }
 
 /// All hands of a world.
-pub(crate) struct Hands {
-    hands: Vec<Hand>,
+pub(crate) struct HandSet {
+    hands: Vec<GripperHand>,
     /// By body: whether any hand has ever taken it.
     taken: Vec<bool>,
 }
 
-impl Hands {
-    pub fn new(world: &World, stage: &Stage) -> Result<Hands, SimError> {
-        let hands = world.grippers.iter().map(|g| Hand::new(g, world, stage));
-        Ok(Hands { hands: hands.collect::<Result<_, _>>()?, taken: vec![false; world.bodies.len()] })
+impl HandSet {
+    pub fn new(world: &World, physics: &PhysicsAdapter) -> Result<HandSet, SimError> {
+        let hands = world.grippers.iter().map(|g| GripperHand::new(g, world, physics));
+        Ok(HandSet { hands: hands.collect::<Result<_, _>>()?, taken: vec![false; world.bodies.len()] })
     }
 
     pub fn named(&self, name: &str) -> Option<usize> {
@@ -124,7 +127,7 @@ impl Hands {
     }
 
     pub fn is_busy(&self) -> bool {
-        self.hands.iter().any(Hand::is_busy)
+        self.hands.iter().any(GripperHand::is_busy)
     }
 
     /// Tells a hand to close; gives the command that this one replaces.
@@ -138,7 +141,7 @@ impl Hands {
         let h = &mut self.hands[hand];
         h.grasping = grasping;
         let until = now + h.delay;
-        replace(&mut h.phase, Phase::Closing { until, id })
+        replace(&mut h.phase, GripPhase::Closing { until, id })
     }
 
     /// Tells a hand to open; gives the command that this one replaces.
@@ -146,77 +149,80 @@ impl Hands {
         let h = &mut self.hands[hand];
         h.grasping = false;
         let until = now + h.delay;
-        replace(&mut h.phase, Phase::Opening { until, id })
+        replace(&mut h.phase, GripPhase::Opening { until, id })
     }
 
     /// What the hands do at the end of a step, in the order of the grippers.
-    pub fn update(&mut self, now: Nanos, stage: &mut Stage, finished: &mut Finished) {
+    pub fn update(&mut self, now: Nanos, physics: &mut PhysicsAdapter, finished: &mut Finished) {
         for i in 0..self.hands.len() {
             match self.hands[i].phase {
-                Phase::Closing { until, id } if now >= until => {
-                    self.hands[i].phase = Phase::Closed;
-                    self.take(i, stage);
+                GripPhase::Closing { until, id } if now >= until => {
+                    self.hands[i].phase = GripPhase::Closed;
+                    self.take(i, physics);
                     finished.extend(id.map(|id| (id, Ok(()))));
                 }
-                Phase::Opening { until, id } if now >= until => {
-                    self.hands[i].phase = Phase::Open;
-                    self.release(i, stage);
+                GripPhase::Opening { until, id } if now >= until => {
+                    self.hands[i].phase = GripPhase::Open;
+                    self.release(i, physics);
                     finished.extend(id.map(|id| (id, Ok(()))));
                 }
-                Phase::Closed if self.hands[i].grasping => self.take(i, stage),
-                Phase::Open | Phase::Closed | Phase::Closing { .. } | Phase::Opening { .. } => {}
+                GripPhase::Closed if self.hands[i].grasping => self.take(i, physics),
+                GripPhase::Open
+                | GripPhase::Closed
+                | GripPhase::Closing { .. }
+                | GripPhase::Opening { .. } => {}
             }
             let hand = &self.hands[i];
-            if hand.held.is_some_and(|b| hand.distance(b, stage) > hand.reach + SLACK) {
-                self.release(i, stage);
+            if hand.held.is_some_and(|b| hand.distance(b, physics) > hand.reach + SLACK) {
+                self.release(i, physics);
             }
         }
     }
 
-    fn take(&mut self, hand: usize, stage: &mut Stage) {
+    fn take(&mut self, hand: usize, physics: &mut PhysicsAdapter) {
         if self.hands[hand].held.is_some() {
             return;
         }
-        if let Some(body) = self.hands[hand].choose(stage) {
+        if let Some(body) = self.hands[hand].choose(physics) {
             self.hands[hand].held = Some(body);
             self.taken[index(body)] = true;
-            self.rejoin(body, stage);
+            self.rejoin(body, physics);
         }
     }
 
-    fn release(&mut self, hand: usize, stage: &mut Stage) {
+    fn release(&mut self, hand: usize, physics: &mut PhysicsAdapter) {
         let hand = &mut self.hands[hand];
         if let Some(joint) = hand.joint.take() {
-            stage.detach(joint);
+            physics.detach(joint);
         }
         if let Some(body) = hand.held.take() {
-            self.rejoin(body, stage);
+            self.rejoin(body, physics);
         }
     }
 
     /// Makes the joints of a body those of the hands that shall lead it.
-    fn rejoin(&mut self, body: BodyId, stage: &mut Stage) {
+    fn rejoin(&mut self, body: BodyId, physics: &mut PhysicsAdapter) {
         let holders = || (0..self.hands.len()).filter(|&i| self.hands[i].held == Some(body));
         let motorised = holders().any(|i| self.hands[i].dynamic);
         let first = holders().next();
-        stage.set_held(body, first.is_some(), motorised);
+        physics.set_held(body, first.is_some(), motorised);
         for (i, hand) in self.hands.iter_mut().enumerate() {
             let leads = hand.held == Some(body) && if motorised { hand.dynamic } else { first == Some(i) };
             if leads && hand.joint.is_none() {
-                hand.joint = Some(stage.attach(hand.palm, body));
+                hand.joint = Some(physics.attach(hand.palm, body));
             } else if hand.held == Some(body)
                 && !leads
                 && let Some(joint) = hand.joint.take()
             {
-                stage.detach(joint);
+                physics.detach(joint);
             }
         }
     }
 }
 
-fn replace(phase: &mut Phase, next: Phase) -> Option<CommandId> {
+fn replace(phase: &mut GripPhase, next: GripPhase) -> Option<CommandId> {
     match std::mem::replace(phase, next) {
-        Phase::Closing { id, .. } | Phase::Opening { id, .. } => id,
-        Phase::Open | Phase::Closed => None,
+        GripPhase::Closing { id, .. } | GripPhase::Opening { id, .. } => id,
+        GripPhase::Open | GripPhase::Closed => None,
     }
 }

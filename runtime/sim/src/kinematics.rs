@@ -7,11 +7,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::math::{Frame, Quat, V3, about};
+use crate::math::{BodyFrame, Quat, V3, about};
 
 /// A joint as the planner sees it, in the world at the start.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Link {
+pub(crate) struct KinematicLink {
     pub anchor: V3,
     pub axis: V3,
     pub lo: f64,
@@ -20,22 +20,22 @@ pub(crate) struct Link {
 
 /// The geometry of an arm; all joints are zero at the start.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chain {
-    pub links: Vec<Link>,
+pub(crate) struct KinematicChain {
+    pub links: Vec<KinematicLink>,
     /// The tool point in the world at the start.
     pub tool: V3,
 }
 
 /// A posture that brings the tool to a place, or the nearest one found.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Posture {
+pub(crate) struct ArmPosture {
     pub joints: Vec<f64>,
     /// Metres from the place.
     pub error: f64,
 }
 
 /// Where the tool is in a posture, and what each joint's motion does to it.
-struct Forward {
+struct ForwardKinematics {
     tool: V3,
     up: V3,
     /// Axis and anchor of each joint.
@@ -50,17 +50,17 @@ const TILT: f64 = 0.15;
 const MARGIN: f64 = 0.02;
 const RESTARTS: u32 = 12;
 
-impl Chain {
-    fn forward(&self, q: &[f64]) -> Forward {
-        let mut frame = Frame::new(V3::zeros(), Quat::identity());
+impl KinematicChain {
+    fn forward(&self, q: &[f64]) -> ForwardKinematics {
+        let mut frame = BodyFrame::new(V3::zeros(), Quat::identity());
         let mut joints = Vec::with_capacity(q.len());
         for (link, angle) in self.links.iter().zip(q) {
             let anchor = frame.point(link.anchor);
             joints.push((frame.turn * link.axis, anchor));
             let turn = frame.turn * about(link.axis, *angle);
-            frame = Frame::new(anchor - turn * link.anchor, turn);
+            frame = BodyFrame::new(anchor - turn * link.anchor, turn);
         }
-        Forward { tool: frame.point(self.tool), up: frame.turn * V3::z(), joints }
+        ForwardKinematics { tool: frame.point(self.tool), up: frame.turn * V3::z(), joints }
     }
 
     /// The tool point, in the world if the base is where it was at the start.
@@ -74,18 +74,19 @@ impl Chain {
     /// Tried in order: from the present posture; then, if that does not arrive, from the middle of the limits and a fixed
     /// sequence of postures, of which the one with the shortest way is taken; then, if none arrives, from these postures
     /// whatever becomes of the palm.
-    pub fn plan(&self, from: &[f64], target: V3) -> Posture {
+    pub fn plan(&self, from: &[f64], target: V3) -> ArmPosture {
         let first = self.descend(from, from, target);
         if first.error <= CONVERGED {
             return first;
         }
-        let way = |p: &Posture| p.joints.iter().zip(from).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        let travel =
+            |p: &ArmPosture| p.joints.iter().zip(from).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
         let mut best = first;
         for n in 0..=RESTARTS {
             let found = self.descend(&self.seed(n), from, target);
             let arrives = found.error <= CONVERGED;
             let better = if best.error <= CONVERGED {
-                arrives && way(&found) < way(&best)
+                arrives && travel(&found) < travel(&best)
             } else {
                 found.error < best.error
             };
@@ -107,7 +108,7 @@ impl Chain {
     }
 
     /// Whether a posture of [`plan`](Self::plan) arrives.
-    pub fn arrives(posture: &Posture) -> bool {
+    pub fn arrives(posture: &ArmPosture) -> bool {
         posture.error <= CONVERGED
     }
 
@@ -124,7 +125,7 @@ impl Chain {
             .collect()
     }
 
-    fn descend(&self, seed: &[f64], near: &[f64], target: V3) -> Posture {
+    fn descend(&self, seed: &[f64], near: &[f64], target: V3) -> ArmPosture {
         let wish: Vec<f64> = near.iter().map(|q| q / 1.2).collect();
         let mut q = self.within(seed);
         for _ in 0..160 {
@@ -134,7 +135,7 @@ impl Chain {
     }
 
     /// Goes on to the target from a posture within the limits, in so many steps, whatever becomes of the palm.
-    fn approach(&self, mut q: Vec<f64>, steps: u32, target: V3) -> Posture {
+    fn approach(&self, mut q: Vec<f64>, steps: u32, target: V3) -> ArmPosture {
         for _ in 0..steps {
             if (target - self.forward(&q).tool).norm() < CONVERGED / 10.0 {
                 break;
@@ -142,7 +143,7 @@ impl Chain {
             self.iterate(&mut q, None, target);
         }
         let error = (target - self.forward(&q).tool).norm();
-        Posture { joints: q, error }
+        ArmPosture { joints: q, error }
     }
 
     fn limits(&self, i: usize) -> (f64, f64) {
@@ -190,17 +191,17 @@ impl Chain {
     }
 }
 
-/// The Jacobian and the remaining way: of the place, and if asked of the tilt.
-fn task(now: &Forward, target: V3, upright: bool) -> (DMatrix<f64>, DVector<f64>) {
+/// The Jacobian and the remaining distance: of the place, and if asked of the tilt.
+fn task(now: &ForwardKinematics, target: V3, upright: bool) -> (DMatrix<f64>, DVector<f64>) {
     let rows = if upright { 5 } else { 3 };
     let mut jacobian = DMatrix::zeros(rows, now.joints.len());
-    let mut way = target - now.tool;
-    let far = way.norm();
+    let mut step = target - now.tool;
+    let far = step.norm();
     if far > 0.1 {
-        way *= 0.1 / far;
+        step *= 0.1 / far;
     }
     let mut error = DVector::zeros(rows);
-    error.rows_mut(0, 3).copy_from(&way);
+    error.rows_mut(0, 3).copy_from(&step);
     for (i, (axis, anchor)) in now.joints.iter().enumerate() {
         let v = axis.cross(&(now.tool - anchor));
         jacobian.view_mut((0, i), (3, 1)).copy_from(&v);
@@ -263,9 +264,9 @@ mod tests {
     use proptest::prelude::*;
 
     /// Shoulder yaw, shoulder pitch, elbow pitch; two links of 0.4 m, stretched along x.
-    fn three() -> Chain {
-        let link = |x: f64, axis| Link { anchor: V3::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
-        Chain {
+    fn three() -> KinematicChain {
+        let link = |x: f64, axis| KinematicLink { anchor: V3::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
+        KinematicChain {
             links: vec![link(0.0, V3::z()), link(0.0, V3::y()), link(0.4, V3::y())],
             tool: V3::new(0.8, 0.0, 1.0),
         }
@@ -293,7 +294,7 @@ mod tests {
     #[test]
     fn what_is_out_of_reach_gives_the_nearest() {
         let found = three().plan(&[0.0, 0.3, 0.3], V3::new(2.0, 0.0, 1.0));
-        assert!(!Chain::arrives(&found));
+        assert!(!KinematicChain::arrives(&found));
         assert!((found.error - 1.2).abs() < 0.01, "{}", found.error);
     }
 
@@ -303,7 +304,7 @@ mod tests {
         let chain = three();
         let joints = [0.532_975_126_504_515_5, 0.510_019_768_580_971_8, 2.030_049_297_275_211_6];
         let found = chain.plan(&[0.0, 0.1, 0.5], chain.tool_at(&joints));
-        assert!(Chain::arrives(&found), "{found:?}");
+        assert!(KinematicChain::arrives(&found), "{found:?}");
     }
 
     #[test]
@@ -318,7 +319,7 @@ mod tests {
             let chain = three();
             let target = chain.tool_at(&[a, b, c]);
             let found = chain.plan(&[0.0, 0.1, 0.5], target);
-            prop_assert!(Chain::arrives(&found), "{found:?}");
+            prop_assert!(KinematicChain::arrives(&found), "{found:?}");
             prop_assert!((chain.tool_at(&found.joints) - target).norm() < 2e-4);
             for (q, l) in found.joints.iter().zip(&chain.links) {
                 prop_assert!((l.lo..=l.hi).contains(q));

@@ -27,22 +27,25 @@ mod hand;
 mod kinematics;
 mod math;
 mod mover;
+mod physics;
 mod profile;
 mod sense;
-mod stage;
 mod world;
 
-use hrdsl_ir::world::{ArmId, BodyId, GripperId, Motion, Point, Signal, SignalId, Vec3, World, WorldAction};
+use hrdsl_ir::world::{
+    ArmId, BodyId, GripperId, Motion, Point, Signal, SignalId, Term, Vec3, World, WorldAction,
+};
 use hrdsl_ir::{Expr, Nanos, Value};
 
 use arm::ArmControl;
-pub use command::{Command, CommandId};
+pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
-use hand::Hands;
-use math::{Frame, V3, arr};
-use mover::Way;
-use sense::View;
-use stage::{Stage, bad, index};
+use hand::HandSet;
+pub use hrdsl_harness::CommandId;
+use math::{BodyFrame, V3, arr};
+use mover::KinematicPath;
+use physics::{PhysicsAdapter, bad, index};
+use sense::SensorView;
 pub use world::SimWorld;
 
 /// How long nothing may have moved before the world counts as at rest.
@@ -52,11 +55,11 @@ const REST_AFTER: Nanos = 300_000_000;
 pub struct Sim {
     world: World,
     signals: Vec<Signal>,
-    stage: Stage,
+    physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
-    hands: Hands,
+    hands: HandSet,
     /// By body.
-    ways: Vec<Option<Way>>,
+    paths: Vec<Option<KinematicPath>>,
     now: Nanos,
     /// When the physics was last brought up to date, and when it will be next; none at rest.
     last: Nanos,
@@ -84,15 +87,15 @@ impl Sim {
             }
         }
         sense::check(world, signals)?;
-        let stage = Stage::new(world)?;
-        let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &stage));
+        let physics = PhysicsAdapter::new(world)?;
+        let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &physics));
         let arms = arms.collect::<Result<Vec<_>, _>>()?;
-        let hands = Hands::new(world, &stage)?;
+        let hands = HandSet::new(world, &physics)?;
         Ok(Sim {
-            ways: vec![None; world.bodies.len()],
+            paths: vec![None; world.bodies.len()],
             world: world.clone(),
             signals: signals.to_vec(),
-            stage,
+            physics,
             arms,
             hands,
             now: 0,
@@ -126,33 +129,33 @@ impl Sim {
 
     fn step(&mut self, next: Nanos) {
         for arm in &self.arms {
-            arm.drive(self.last, next, &mut self.stage);
+            arm.drive(self.last, next, &mut self.physics);
         }
-        for (i, slot) in self.ways.iter_mut().enumerate() {
-            if let Some(way) = slot {
-                self.stage.lead(stage::body_id(i), &way.at(next));
-                if way.is_over(next) {
+        for (i, slot) in self.paths.iter_mut().enumerate() {
+            if let Some(path) = slot {
+                self.physics.lead(physics::body_id(i), &path.at(next));
+                if path.is_over(next) {
                     *slot = None;
                 }
             }
         }
-        self.stage.step();
+        self.physics.step();
         self.last = next;
         self.now = self.now.max(next);
         for arm in &mut self.arms {
-            self.finished.extend(arm.check_arrival(next, &self.stage));
+            self.finished.extend(arm.check_arrival(next, &self.physics));
         }
-        self.hands.update(next, &mut self.stage, &mut self.finished);
+        self.hands.update(next, &mut self.physics, &mut self.finished);
         self.rest_or_go_on(next);
     }
 
     fn rest_or_go_on(&mut self, at: Nanos) {
         let busy = self.arms.iter().any(ArmControl::is_busy)
             || self.hands.is_busy()
-            || self.ways.iter().any(Option::is_some);
-        self.quiet = if busy || !self.stage.is_quiet() { 0 } else { self.quiet + self.world.step };
+            || self.paths.iter().any(Option::is_some);
+        self.quiet = if busy || !self.physics.is_quiet() { 0 } else { self.quiet + self.world.step };
         if self.quiet >= REST_AFTER {
-            self.stage.freeze();
+            self.physics.freeze();
             self.next = None;
         } else {
             self.next = Some(at + self.world.step);
@@ -167,8 +170,13 @@ impl Sim {
         }
     }
 
-    fn view(&self) -> View<'_> {
-        View { stage: &self.stage, hands: &self.hands, arms: &self.arms, currents: &self.world.currents }
+    fn view(&self) -> SensorView<'_> {
+        SensorView {
+            physics: &self.physics,
+            hands: &self.hands,
+            arms: &self.arms,
+            currents: &self.world.currents,
+        }
     }
 
     /// The value of a signal at the last physics step.
@@ -183,6 +191,13 @@ impl Sim {
         }
     }
 
+    /// The value of a measurement at the last physics step; of what the world does not have, not a number.
+    #[must_use]
+    pub fn measure(&self, term: &Term) -> Value {
+        let exists = sense::check_term(term, &self.world, String::new).is_ok();
+        if exists { self.view().term(term) } else { Value::Float(f64::NAN) }
+    }
+
     // ── Environment actors ──
 
     /// Begins an action of an environment actor; `var` gives the variables of its stimulus.
@@ -195,16 +210,16 @@ impl Sim {
                 let from = self.kinematic(*body)?;
                 let to = self.place(to, var)?;
                 let over = number(over, var, "the time of a move")?;
-                self.send(*body, from, Frame::new(to, from.turn), over);
+                self.send(*body, from, BodyFrame::new(to, from.turn), over);
             }
             WorldAction::Look { body, at, offset, distance, angle } => {
                 let from = self.kinematic(*body)?;
                 sense::check_body(*at, &self.world, || "a look".into())?;
-                let target = self.stage.pose(self.view().body(*at)).at;
+                let target = self.physics.pose(self.view().body(*at)).at;
                 let offset = number(offset, var, "the offset of a look")?;
                 let distance = number(distance, var, "the distance of a look")?.max(0.0);
                 let angle = number(angle, var, "the angle of a look")?.abs();
-                let facing = self.stage.start(*body).x_axis();
+                let facing = self.physics.start(*body).x_axis();
                 let to = mover::look(&from, facing, target, offset, distance, angle);
                 self.send(*body, from, to, mover::LOOK_TIME);
             }
@@ -224,21 +239,21 @@ impl Sim {
     }
 
     /// Where a kinematic body is at this moment, on its way.
-    fn kinematic(&self, body: BodyId) -> Result<Frame, SimError> {
+    fn kinematic(&self, body: BodyId) -> Result<BodyFrame, SimError> {
         let Some(data) = self.world.bodies.get(index(body)) else {
             return Err(bad("an action".into(), "body", index(body)));
         };
         if data.motion != Motion::Kinematic {
             return Err(SimError::NotKinematic { body: data.name.clone() });
         }
-        Ok(match &self.ways[index(body)] {
-            Some(way) => way.at(self.now),
-            None => self.stage.pose(body),
+        Ok(match &self.paths[index(body)] {
+            Some(path) => path.at(self.now),
+            None => self.physics.pose(body),
         })
     }
 
-    fn send(&mut self, body: BodyId, from: Frame, to: Frame, over: f64) {
-        self.ways[index(body)] = Some(Way::new(from, to, self.now, over));
+    fn send(&mut self, body: BodyId, from: BodyFrame, to: BodyFrame, over: f64) {
+        self.paths[index(body)] = Some(KinematicPath::new(from, to, self.now, over));
     }
 
     fn place(&self, point: &Point, var: Vars<'_>) -> Result<V3, SimError> {
@@ -248,7 +263,7 @@ impl Sim {
         }
         let Some(of) = point.of else { return Ok(offset) };
         sense::check_body(of, &self.world, || "a place".into())?;
-        Ok(self.stage.pose(self.view().body(of)).at + offset)
+        Ok(self.physics.pose(self.view().body(of)).at + offset)
     }
 
     // ── The system actor ──
@@ -257,19 +272,19 @@ impl Sim {
     ///
     /// # Errors
     /// If it cannot be begun: out of reach, beyond the limits, not a number, no such arm or gripper.
-    pub fn command(&mut self, command: Command) -> Result<CommandId, CommandError> {
+    pub fn command(&mut self, command: MotorCommand) -> Result<CommandId, CommandError> {
         let id = CommandId(self.commands);
         let replaced = match command {
-            Command::MoveTo { arm, target, max_speed } => {
+            MotorCommand::ReachPoint { arm, target, max_speed } => {
                 let at = self.arm(arm, max_speed)?;
                 if target.iter().any(|x| !x.is_finite()) {
                     return Err(CommandError::NotFinite);
                 }
-                let local = self.arms[at].relative(&self.stage, target);
+                let local = self.arms[at].relative(&self.physics, target);
                 let posture = self.arms[at].plan(self.now, local)?;
                 self.arms[at].go(self.now, id, posture, Some(target), max_speed)
             }
-            Command::MoveJoints { arm, positions, max_speed } => {
+            MotorCommand::ReachJoints { arm, positions, max_speed } => {
                 let at = self.arm(arm, max_speed)?;
                 if positions.iter().any(|x| !x.is_finite()) {
                     return Err(CommandError::NotFinite);
@@ -277,11 +292,11 @@ impl Sim {
                 self.arms[at].check(&positions, &self.world)?;
                 self.arms[at].go(self.now, id, positions, None, max_speed)
             }
-            Command::Open { gripper } => {
+            MotorCommand::OpenFingers { gripper } => {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
                 self.hands.open(hand, self.now, Some(id))
             }
-            Command::Close { gripper } => {
+            MotorCommand::CloseFingers { gripper } => {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
                 self.hands.close(hand, self.now, Some(id), false)
             }
@@ -339,13 +354,13 @@ impl Sim {
     /// The measured angles of an arm's joints, rad; empty if there is no such arm.
     #[must_use]
     pub fn joint_positions(&self, arm: ArmId) -> Vec<f64> {
-        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.stage))
+        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.physics))
     }
 
     /// Where an arm's tool point is, m.
     #[must_use]
     pub fn tool(&self, arm: ArmId) -> Option<Vec3> {
-        Some(arr(self.arms.get(usize::from(arm.0))?.tool_at(&self.stage)))
+        Some(arr(self.arms.get(usize::from(arm.0))?.tool_at(&self.physics)))
     }
 
     /// What a gripper holds.
@@ -358,7 +373,7 @@ impl Sim {
     #[must_use]
     pub fn pose(&self, body: BodyId) -> Option<(Vec3, [f64; 4])> {
         self.world.bodies.get(index(body))?;
-        let frame = self.stage.pose(body);
+        let frame = self.physics.pose(body);
         let q = frame.turn;
         Some((arr(frame.at), [q.i, q.j, q.k, q.w]))
     }

@@ -11,27 +11,27 @@ pub(crate) type Quat = UnitQuaternion<f64>;
 
 /// A rigid motion, or where a body is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frame {
+pub(crate) struct BodyFrame {
     pub at: V3,
     pub turn: Quat,
 }
 
-impl Frame {
+impl BodyFrame {
     pub fn new(at: V3, turn: Quat) -> Self {
-        Frame { at, turn }
+        BodyFrame { at, turn }
     }
 
     pub fn point(&self, p: V3) -> V3 {
         self.at + self.turn * p
     }
 
-    pub fn inverse(&self) -> Frame {
+    pub fn inverse(&self) -> BodyFrame {
         let turn = self.turn.inverse();
-        Frame { at: -(turn * self.at), turn }
+        BodyFrame { at: -(turn * self.at), turn }
     }
 
-    pub fn then(&self, next: &Frame) -> Frame {
-        Frame { at: self.point(next.at), turn: self.turn * next.turn }
+    pub fn then(&self, next: &BodyFrame) -> BodyFrame {
+        BodyFrame { at: self.point(next.at), turn: self.turn * next.turn }
     }
 
     pub fn x_axis(&self) -> V3 {
@@ -91,16 +91,16 @@ pub(crate) fn from_vector(v: Vector) -> V3 {
     V3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
 }
 
-pub(crate) fn to_pose(f: &Frame) -> Pose {
+pub(crate) fn to_pose(f: &BodyFrame) -> Pose {
     let q = f.turn;
     let turn = Rotation::from_xyzw(q.i as f32, q.j as f32, q.k as f32, q.w as f32);
     Pose::from_parts(to_vector(f.at), turn)
 }
 
-pub(crate) fn from_pose(p: &Pose) -> Frame {
+pub(crate) fn from_pose(p: &Pose) -> BodyFrame {
     let r = p.rotation;
     let q = Quaternion::new(f64::from(r.w), f64::from(r.x), f64::from(r.y), f64::from(r.z));
-    Frame { at: from_vector(p.translation), turn: UnitQuaternion::new_normalize(q) }
+    BodyFrame { at: from_vector(p.translation), turn: UnitQuaternion::new_normalize(q) }
 }
 
 #[cfg(test)]
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_frame_and_its_inverse_cancel() {
-        let f = Frame::new(V3::new(1.0, 2.0, 3.0), from_rpy([0.3, -0.4, 1.2]));
+        let f = BodyFrame::new(V3::new(1.0, 2.0, 3.0), from_rpy([0.3, -0.4, 1.2]));
         let p = V3::new(-0.1, 0.2, 0.7);
         assert!((f.inverse().point(f.point(p)) - p).norm() < 1e-12);
         assert!((f.then(&f.inverse()).at).norm() < 1e-12);

@@ -3,7 +3,7 @@
 use hrdsl_ir::Nanos;
 use hrdsl_ir::value::{nanos, seconds};
 
-use crate::math::{Frame, Quat, V3, about, angle_between, wrap};
+use crate::math::{BodyFrame, Quat, V3, about, angle_between, wrap};
 use crate::profile::smooth;
 
 /// How long a look takes.
@@ -13,19 +13,19 @@ const LOOK_HEIGHT: f64 = 0.1;
 
 /// A motion from one pose to another, on a straight line, smooth at both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Way {
-    from: Frame,
-    to: Frame,
+pub(crate) struct KinematicPath {
+    from: BodyFrame,
+    to: BodyFrame,
     start: Nanos,
     end: Nanos,
 }
 
-impl Way {
-    pub fn new(from: Frame, to: Frame, start: Nanos, over: f64) -> Way {
-        Way { from, to, start, end: start + nanos(over.max(0.0)) }
+impl KinematicPath {
+    pub fn new(from: BodyFrame, to: BodyFrame, start: Nanos, over: f64) -> KinematicPath {
+        KinematicPath { from, to, start, end: start + nanos(over.max(0.0)) }
     }
 
-    pub fn at(&self, now: Nanos) -> Frame {
+    pub fn at(&self, now: Nanos) -> BodyFrame {
         if now >= self.end {
             return self.to;
         }
@@ -36,7 +36,7 @@ impl Way {
         let (w, v) = if w < 0.0 { (-w, -v) } else { (w, v) };
         let angle = 2.0 * libm::atan2(v.norm(), w);
         let turn = if v.norm() < 1e-12 { Quat::identity() } else { about(v.normalize(), angle * part) };
-        Frame::new(self.from.at + (self.to.at - self.from.at) * part, self.from.turn * turn)
+        BodyFrame::new(self.from.at + (self.to.at - self.from.at) * part, self.from.turn * turn)
     }
 
     pub fn is_over(&self, now: Nanos) -> bool {
@@ -50,7 +50,14 @@ impl Way {
 /// that end of the line where it is now, seen from the target, then `offset` to the left as seen from the target. Its
 /// height is its present one, but at least the target's and at most 10 cm above it; the distance between the centres is
 /// exact. It turns its x axis to the target, then about the vertical, to its left, until the angle is the one asked for.
-pub(crate) fn look(now: &Frame, facing: V3, target: V3, offset: f64, distance: f64, angle: f64) -> Frame {
+pub(crate) fn look(
+    now: &BodyFrame,
+    facing: V3,
+    target: V3,
+    offset: f64,
+    distance: f64,
+    angle: f64,
+) -> BodyFrame {
     let here = now.at - target;
     let level = |v: V3| V3::new(v.x, v.y, 0.0);
     let line = [level(facing), level(here), V3::x()].into_iter().find(|v| v.norm() > 1e-6);
@@ -62,7 +69,7 @@ pub(crate) fn look(now: &Frame, facing: V3, target: V3, offset: f64, distance: f
     let height = here.z.clamp(0.0, LOOK_HEIGHT).min(rest.sqrt());
     let away = (rest - height * height).max(0.0).sqrt();
     let at = target + line * away + left * offset + V3::z() * height;
-    Frame::new(at, face(target - at, angle))
+    BodyFrame::new(at, face(target - at, angle))
 }
 
 /// A rotation without roll, whose x axis is at `angle` from `sight`, to its left.
@@ -81,7 +88,7 @@ fn face(sight: V3, angle: f64) -> Quat {
 }
 
 /// What `angle(a, b)` measures.
-pub(crate) fn sight_angle(a: &Frame, b: V3) -> f64 {
+pub(crate) fn sight_angle(a: &BodyFrame, b: V3) -> f64 {
     angle_between(&a.x_axis(), &(b - a.at))
 }
 
@@ -97,32 +104,32 @@ mod tests {
             offset in -0.4f64..0.4, distance in 0.5f64..0.8, angle in 0.0f64..1.5,
             x in 0.7f64..1.5, y in -0.5f64..0.5, z in 0.5f64..1.6,
         ) {
-            let head = Frame::new(V3::new(x, y, z), from_rpy([0.0, 0.0, 2.8]));
+            let head = BodyFrame::new(V3::new(x, y, z), from_rpy([0.0, 0.0, 2.8]));
             let target = V3::new(0.48, 0.17, 0.705);
             let there = look(&head, -V3::x(), target, offset, distance, angle);
-            let way = there.at - target;
-            prop_assert!((way.norm() - distance).abs() < 1e-9);
-            prop_assert!((way.y - offset).abs() < 1e-9, "left of the line is +y here");
-            prop_assert!(way.x > 0.0 && (-1e-9..=0.1 + 1e-9).contains(&way.z));
+            let offset_there = there.at - target;
+            prop_assert!((offset_there.norm() - distance).abs() < 1e-9);
+            prop_assert!((offset_there.y - offset).abs() < 1e-9, "left of the line is +y here");
+            prop_assert!(offset_there.x > 0.0 && (-1e-9..=0.1 + 1e-9).contains(&offset_there.z));
             prop_assert!((sight_angle(&there, target) - angle).abs() < 1e-6);
         }
     }
 
     #[test]
     fn a_way_ends_where_it_should() {
-        let a = Frame::new(V3::zeros(), Quat::identity());
-        let b = Frame::new(V3::new(1.0, 0.0, 2.0), from_rpy([0.0, 0.0, 3.0]));
-        let way = Way::new(a, b, 10, 1.0);
-        assert!((way.at(10).at - a.at).norm() < 1e-12);
-        assert!((way.at(10 + 500_000_000).at - V3::new(0.5, 0.0, 1.0)).norm() < 1e-9);
-        assert_eq!(way.at(10 + 1_000_000_000), b);
-        assert!(way.is_over(1_000_000_010) && !way.is_over(1_000_000_009));
+        let a = BodyFrame::new(V3::zeros(), Quat::identity());
+        let b = BodyFrame::new(V3::new(1.0, 0.0, 2.0), from_rpy([0.0, 0.0, 3.0]));
+        let path = KinematicPath::new(a, b, 10, 1.0);
+        assert!((path.at(10).at - a.at).norm() < 1e-12);
+        assert!((path.at(10 + 500_000_000).at - V3::new(0.5, 0.0, 1.0)).norm() < 1e-9);
+        assert_eq!(path.at(10 + 1_000_000_000), b);
+        assert!(path.is_over(1_000_000_010) && !path.is_over(1_000_000_009));
     }
 
     #[test]
     fn a_way_without_time_is_over_at_once() {
-        let a = Frame::new(V3::zeros(), Quat::identity());
-        let way = Way::new(a, a, 5, -1.0);
-        assert!(way.is_over(5) && way.at(5) == a);
+        let a = BodyFrame::new(V3::zeros(), Quat::identity());
+        let path = KinematicPath::new(a, a, 5, -1.0);
+        assert!(path.is_over(5) && path.at(5) == a);
     }
 }

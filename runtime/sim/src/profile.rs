@@ -9,24 +9,24 @@ const RISE: f64 = 0.5;
 
 /// Of a motion from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Profile {
+pub(crate) struct MotionProfile {
     /// 1/s
     peak: f64,
     /// Seconds.
     length: f64,
 }
 
-impl Profile {
+impl MotionProfile {
     /// `way` is the longest way of any joint (rad, or m); `limit` its greatest speed.
-    pub fn new(way: f64, limit: f64) -> Self {
-        let way = way.abs();
-        if way < 1e-9 {
-            return Profile { peak: 0.0, length: 0.0 };
+    pub fn new(travel: f64, limit: f64) -> Self {
+        let travel = travel.abs();
+        if travel < 1e-9 {
+            return MotionProfile { peak: 0.0, length: 0.0 };
         }
-        if way >= limit * RISE {
-            Profile { peak: limit / way, length: way / limit + RISE }
+        if travel >= limit * RISE {
+            MotionProfile { peak: limit / travel, length: travel / limit + RISE }
         } else {
-            Profile { peak: 1.0 / RISE, length: 2.0 * RISE }
+            MotionProfile { peak: 1.0 / RISE, length: 2.0 * RISE }
         }
     }
 
@@ -91,8 +91,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn keeps_the_limit_and_arrives(way in 1e-6f64..4.0, limit in 0.01f64..2.0) {
-            let p = Profile::new(way, limit);
+        fn keeps_the_limit_and_arrives(travel in 1e-6f64..4.0, limit in 0.01f64..2.0) {
+            let p = MotionProfile::new(travel, limit);
             prop_assert!(p.at(0.0).abs() < 1e-12);
             prop_assert!((p.at(p.length()) - 1.0).abs() < 1e-12);
             let h = 1e-4;
@@ -100,7 +100,7 @@ mod tests {
                 let t = p.length() * f64::from(i) / 400.0;
                 let mean = (p.at(t + h) - p.at(t)) / h;
                 prop_assert!(mean >= -1e-9);
-                prop_assert!(mean * way <= limit * (1.0 + 1e-6));
+                prop_assert!(mean * travel <= limit * (1.0 + 1e-6));
                 prop_assert!((mean - p.speed(t + h / 2.0)).abs() <= 1e-3 / p.length() + 1e-6);
             }
         }
@@ -108,14 +108,14 @@ mod tests {
 
     #[test]
     fn no_way_takes_no_time() {
-        let p = Profile::new(0.0, 0.2);
+        let p = MotionProfile::new(0.0, 0.2);
         assert!(p.length() == 0.0 && p.at(0.0) == 1.0 && p.speed(0.0) == 0.0);
     }
 
     #[test]
     fn braking_goes_from_full_speed_to_none() {
         assert_eq!(braking(0.0), (0.0, 1.0));
-        let (way, speed) = braking(10.0);
-        assert!((way - BRAKE / 2.0).abs() < 1e-12 && speed.abs() < 1e-12);
+        let (travel, speed) = braking(10.0);
+        assert!((travel - BRAKE / 2.0).abs() < 1e-12 && speed.abs() < 1e-12);
     }
 }

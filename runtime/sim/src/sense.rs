@@ -3,21 +3,23 @@
 use hrdsl_ir::world::{Axis, BodyId, BodyRef, Current, Signal, Term, World};
 use hrdsl_ir::{Type, Value};
 
-use crate::arm::ArmControl;
-use crate::error::SimError;
-use crate::hand::Hands;
-use crate::mover::sight_angle;
-use crate::stage::{Stage, bad, index};
+use crate::{
+    arm::ArmControl,
+    error::SimError,
+    hand::HandSet,
+    mover::sight_angle,
+    physics::{PhysicsAdapter, bad, index},
+};
 
 /// What sensors can see of the world.
-pub(crate) struct View<'a> {
-    pub stage: &'a Stage,
-    pub hands: &'a Hands,
+pub(crate) struct SensorView<'a> {
+    pub physics: &'a PhysicsAdapter,
+    pub hands: &'a HandSet,
     pub arms: &'a [ArmControl],
     pub currents: &'a [Current],
 }
 
-impl View<'_> {
+impl SensorView<'_> {
     /// The body that a name stands for now.
     pub fn body(&self, body: BodyRef) -> BodyId {
         match body {
@@ -45,20 +47,20 @@ impl View<'_> {
         })
     }
 
-    fn term(&self, term: &Term) -> Value {
+    pub fn term(&self, term: &Term) -> Value {
         match *term {
-            Term::Distance(a, b) => Value::Float(self.stage.distance(self.body(a), self.body(b))),
+            Term::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
             Term::Range(a, b) => {
-                let (a, b) = (self.stage.pose(self.body(a)), self.stage.pose(self.body(b)));
+                let (a, b) = (self.physics.pose(self.body(a)), self.physics.pose(self.body(b)));
                 Value::Float((b.at - a.at).norm())
             }
             Term::Angle(a, b) => {
-                let (a, b) = (self.stage.pose(self.body(a)), self.stage.pose(self.body(b)));
+                let (a, b) = (self.physics.pose(self.body(a)), self.physics.pose(self.body(b)));
                 Value::Float(sight_angle(&a, b.at))
             }
-            Term::Visible(a, b) => Value::Bool(self.stage.visible(self.body(a), self.body(b))),
+            Term::Visible(a, b) => Value::Bool(self.physics.visible(self.body(a), self.body(b))),
             Term::Coordinate(b, axis) => {
-                let at = self.stage.pose(self.body(b)).at;
+                let at = self.physics.pose(self.body(b)).at;
                 Value::Float(match axis {
                     Axis::X => at.x,
                     Axis::Y => at.y,
@@ -67,8 +69,8 @@ impl View<'_> {
             }
             Term::Holds(g, b) => Value::Bool(self.hands.held_by(usize::from(g.0)) == Some(self.body(b))),
             Term::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
-            Term::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.stage)),
-            Term::Speed(b) => Value::Float(self.stage.speed(self.body(b))),
+            Term::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
+            Term::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
         }
     }
 }
@@ -94,7 +96,8 @@ pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimError> {
     Ok(())
 }
 
-fn check_term(term: &Term, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
+/// Checks that what a measurement is of exists.
+pub(crate) fn check_term(term: &Term, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
     let gripper = |i: u16| exists(usize::from(i), world.grippers.len(), "gripper", &what);
     match *term {
         Term::Distance(a, b) | Term::Range(a, b) | Term::Angle(a, b) | Term::Visible(a, b) => {

@@ -1,27 +1,28 @@
-//! The simulated world as the harness's world: what orders to devices mean, and when they have succeeded.
+//! The simulated world as the harness's world: commands to devices become those of arms and hands, and what they were expected to
+//! come to is measured at their end.
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{Begun, DeviceOrder, OrderError, OrderId, SystemArgument, World};
+use hrdsl_harness::{CheckedCommand, CommandId, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
-    world::{GripperId, RuleOn, SignalId, WorldAction},
+    device::{DeviceBody, PrimitiveCall},
+    world::{SignalId, Term, WorldAction},
 };
 
-use crate::{Command, Sim, SimError};
+use crate::{Sim, command::MotorCommand, error::SimError};
 
 /// A [`Sim`] behind the seam.
 pub struct SimWorld {
     sim: Sim,
-    /// Of orders under way: what the gripper's sensor must say for them to have succeeded.
-    confirms: BTreeMap<OrderId, Confirm>,
+    /// Of commands under way: what must be measured at their end.
+    expected: BTreeMap<CommandId, Expected>,
 }
 
-/// What a gripper's sensor must say.
-#[derive(Clone, Copy)]
-struct Confirm {
-    gripper: GripperId,
-    holds: bool,
+struct Expected {
+    term: Term,
+    value: Value,
+    otherwise: String,
 }
 
 impl SimWorld {
@@ -32,57 +33,30 @@ impl SimWorld {
     pub fn new(program: &Program) -> Result<Option<Self>, SimError> {
         let Some(world) = &program.world else { return Ok(None) };
         let sim = Sim::new(world, &program.signals)?;
-        Ok(Some(Self { sim, confirms: BTreeMap::new() }))
-    }
-
-    /// What a device is told to do.
-    fn command(&self, order: &DeviceOrder) -> Result<Command, OrderError> {
-        let DeviceOrder { device, verb, args } = order;
-        let numbers = |name: &str| match args.get(name) {
-            Some(SystemArgument::Numbers(v)) => Ok(v.clone()),
-            Some(SystemArgument::Scalar(_) | SystemArgument::Text(_)) | None => {
-                Err(refused(format!("`{verb}` needs `{name}`, a list of numbers"), None))
-            }
-        };
-        let max_speed = match args.get("speed") {
-            Some(SystemArgument::Scalar(v)) => v.as_f64(),
-            Some(SystemArgument::Numbers(_) | SystemArgument::Text(_)) | None => None,
-        };
-        match (self.sim.arm_named(device), self.sim.gripper_named(device), verb.as_str()) {
-            (Some(arm), _, "move_to") => match numbers("to")?.as_slice() {
-                [x, y, z] => Ok(Command::MoveTo { arm, target: [*x, *y, *z], max_speed }),
-                _ => Err(refused("`move_to` needs `to` with x, y and z in metres".into(), None)),
-            },
-            (Some(arm), _, "move_joints") => {
-                Ok(Command::MoveJoints { arm, positions: numbers("to")?, max_speed })
-            }
-            (None, Some(gripper), "close") => Ok(Command::Close { gripper }),
-            (None, Some(gripper), "open") => Ok(Command::Open { gripper }),
-            (None, None, _) => Err(refused(format!("the world has no arm or gripper `{device}`"), None)),
-            (Some(_), _, _) => {
-                Err(refused(format!("`{device}` cannot `{verb}`"), Some("an arm can move_to, move_joints")))
-            }
-            (None, Some(_), _) => {
-                Err(refused(format!("`{device}` cannot `{verb}`"), Some("a gripper can open, close")))
-            }
-        }
-    }
-
-    /// Whether the gripper holds something, or nothing, as it should.
-    fn confirmed(&self, confirm: Confirm) -> Result<(), String> {
-        match (confirm.holds, self.sim.holding(confirm.gripper).is_some()) {
-            (true, false) => Err("the gripper closed on nothing".to_owned()),
-            (false, true) => Err("the gripper still holds something".to_owned()),
-            (true, true) | (false, false) => Ok(()),
-        }
+        Ok(Some(Self { sim, expected: BTreeMap::new() }))
     }
 }
 
-fn refused(error: String, help: Option<&str>) -> OrderError {
-    OrderError::Refused { error, help: help.map(str::to_owned) }
+/// What an arm or a hand is to do; `None`: it is for the other to do.
+fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
+    Some(match (body, call) {
+        (DeviceBody::Arm(arm), PrimitiveCall::ReachPoint { to, speed }) => {
+            MotorCommand::ReachPoint { arm, target: *to, max_speed: *speed }
+        }
+        (DeviceBody::Arm(arm), PrimitiveCall::ReachJoints { to, speed }) => {
+            MotorCommand::ReachJoints { arm, positions: to.clone(), max_speed: *speed }
+        }
+        (DeviceBody::Gripper(gripper), PrimitiveCall::CloseFingers) => MotorCommand::CloseFingers { gripper },
+        (DeviceBody::Gripper(gripper), PrimitiveCall::OpenFingers) => MotorCommand::OpenFingers { gripper },
+        // INVARIANT: the checker gives each kind of device the primitives of its own sort.
+        (DeviceBody::Arm(_), PrimitiveCall::CloseFingers | PrimitiveCall::OpenFingers)
+        | (DeviceBody::Gripper(_), PrimitiveCall::ReachPoint { .. } | PrimitiveCall::ReachJoints { .. }) => {
+            return None;
+        }
+    })
 }
 
-impl World for SimWorld {
+impl WorldBackend for SimWorld {
     fn next_wake(&self) -> Option<Nanos> {
         self.sim.next_wake()
     }
@@ -99,26 +73,26 @@ impl World for SimWorld {
         self.sim.act(action, &|i| vars.get(usize::from(i)).copied()).map_err(|e| e.to_string())
     }
 
-    fn order(&mut self, order: &DeviceOrder) -> Result<Begun, OrderError> {
-        let command = self.command(order)?;
-        let (sign, confirm) = match &command {
-            Command::Close { gripper } => (Some(RuleOn::Closes(*gripper)), Some((*gripper, true))),
-            Command::Open { gripper } => (Some(RuleOn::Opens(*gripper)), Some((*gripper, false))),
-            Command::MoveTo { .. } | Command::MoveJoints { .. } => (None, None),
-        };
-        let id = self.sim.command(command).map_err(|e| OrderError::Failed(e.to_string()))?;
-        let id = OrderId(id.0);
-        self.confirms.extend(confirm.map(|(gripper, holds)| (id, Confirm { gripper, holds })));
-        Ok(Begun { id, sign })
+    fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String> {
+        let body = command.device.body;
+        let meant = meant(body, &command.call).ok_or("this device cannot do it")?;
+        let id = self.sim.command(meant).map_err(|e| e.to_string())?;
+        if let Some(expect) = &command.command.expect
+            && let Some(term) = expect.measure.of(body)
+        {
+            let (value, otherwise) = (Value::Bool(expect.is), expect.otherwise.clone());
+            self.expected.insert(id, Expected { term, value, otherwise });
+        }
+        Ok(id)
     }
 
-    fn take_ended(&mut self) -> Vec<(OrderId, Result<(), String>)> {
+    fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {
         let ended = self.sim.finished();
         let ended = ended.into_iter().map(|(id, how)| {
-            let id = OrderId(id.0);
-            let confirm = self.confirms.remove(&id);
+            let expected = self.expected.remove(&id);
+            let missed = expected.filter(|e| self.sim.measure(&e.term) != e.value);
             let how = how.map_err(|e| e.to_string());
-            (id, how.and_then(|()| confirm.map_or(Ok(()), |c| self.confirmed(c))))
+            (id, how.and_then(|()| missed.map_or(Ok(()), |e| Err(e.otherwise))))
         });
         ended.collect()
     }

@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use hrdsl_ir::world::*;
-use hrdsl_sim::{Command, CommandError, Sim};
+use hrdsl_sim::{CommandError, MotorCommand, Sim};
 use proptest::prelude::*;
 
 fn speeds() -> Vec<Signal> {
@@ -82,7 +82,7 @@ fn joints_go_where_they_are_told_together() {
     goal[0] = 0.5;
     goal[3] = 0.25;
     goal[5] = -0.4;
-    let command = Command::MoveJoints { arm: ARM, positions: goal.clone(), max_speed: Some(0.1) };
+    let command = MotorCommand::ReachJoints { arm: ARM, positions: goal.clone(), max_speed: Some(0.1) };
     let id = sim.command(command).unwrap();
     let mut fastest: f64 = 0.0;
     let (time, result) = wait(&mut sim, id, |s| fastest = fastest.max(float(s, 0)));
@@ -98,7 +98,7 @@ fn joints_go_where_they_are_told_together() {
 fn wrong_commands_are_refused() {
     let world = table();
     let mut sim = Sim::new(&world, &[]).unwrap();
-    let joints = |positions: Vec<f64>| Command::MoveJoints { arm: ARM, positions, max_speed: None };
+    let joints = |positions: Vec<f64>| MotorCommand::ReachJoints { arm: ARM, positions, max_speed: None };
     assert_eq!(
         sim.command(joints(vec![0.0; 3])),
         Err(CommandError::WrongJointCount { expected: 9, given: 3 })
@@ -111,11 +111,14 @@ fn wrong_commands_are_refused() {
     );
     assert_eq!(sim.command(joints(vec![f64::NAN; 9])), Err(CommandError::NotFinite));
     assert_eq!(sim.command(move_to([f64::INFINITY, 0.0, 0.0])), Err(CommandError::NotFinite));
-    let slow = Command::MoveTo { arm: ARM, target: REST, max_speed: Some(0.0) };
+    let slow = MotorCommand::ReachPoint { arm: ARM, target: REST, max_speed: Some(0.0) };
     assert_eq!(sim.command(slow), Err(CommandError::BadSpeed));
-    let nobody = Command::MoveTo { arm: ArmId(7), target: REST, max_speed: None };
+    let nobody = MotorCommand::ReachPoint { arm: ArmId(7), target: REST, max_speed: None };
     assert_eq!(sim.command(nobody), Err(CommandError::NoSuchArm));
-    assert_eq!(sim.command(Command::Open { gripper: GripperId(9) }), Err(CommandError::NoSuchGripper));
+    assert_eq!(
+        sim.command(MotorCommand::OpenFingers { gripper: GripperId(9) }),
+        Err(CommandError::NoSuchGripper)
+    );
 }
 
 #[test]

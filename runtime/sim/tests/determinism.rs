@@ -5,7 +5,7 @@ use common::*;
 use hrdsl_ir::Expr;
 use hrdsl_ir::Nanos;
 use hrdsl_ir::world::*;
-use hrdsl_sim::{Command, Sim};
+use hrdsl_sim::{MotorCommand, Sim};
 use proptest::prelude::*;
 
 /// Everything that can be seen of a world, to the bit.
@@ -39,14 +39,14 @@ fn script(pieces: &[Nanos]) -> Vec<Vec<u64>> {
     until(&mut sim, 7_123_456_789);
     sim.command(move_to(LEGS[0])).unwrap();
     until(&mut sim, 12_000_000_000);
-    sim.command(Command::Close { gripper: GRIP }).unwrap();
+    sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     until(&mut sim, 13_003_000_000);
     sim.command(move_to(OFFER)).unwrap();
     sim.act(&reach, &none).unwrap();
     until(&mut sim, 15_001_234_567);
     sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
     until(&mut sim, 25_000_000_000);
-    sim.command(Command::Open { gripper: GRIP }).unwrap();
+    sim.command(MotorCommand::OpenFingers { gripper: GRIP }).unwrap();
     until(&mut sim, 40_000_000_000);
     seen
 }
@@ -90,7 +90,7 @@ fn rest_waits_for_what_is_under_way() {
     let world = table();
     let mut sim = Sim::new(&world, &[]).unwrap();
     settle(&mut sim);
-    let id = sim.command(Command::Close { gripper: GRIP }).unwrap();
+    let id = sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     let (time, result) = wait(&mut sim, id, |_| {});
     assert!(result.is_ok() && (0.5..=0.51).contains(&time), "{time}");
     settle(&mut sim);

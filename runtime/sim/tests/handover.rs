@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Type};
-use hrdsl_sim::{Command, CommandError, Sim, SimError};
+use hrdsl_sim::{CommandError, MotorCommand, Sim, SimError};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));
 
@@ -47,7 +47,7 @@ fn four_legs_go_over_to_the_person() {
     for n in 1..=4 {
         let [x, y, z] = LEGS[n - 1];
         run(&mut sim, move_to([x, y, z]));
-        run(&mut sim, Command::Close { gripper: GRIP });
+        run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
         assert_eq!(sim.holding(GRIP), Some(leg(&world, n)), "the nearest");
         run(&mut sim, move_to([x, y, z + 0.15]));
         run(&mut sim, move_to(OFFER));
@@ -56,7 +56,7 @@ fn four_legs_go_over_to_the_person() {
         settle(&mut sim);
         assert!(boolean(&sim, 0) && boolean(&sim, 1), "both hold leg {n}");
         let before = place(&sim, leg(&world, n));
-        run(&mut sim, Command::Open { gripper: GRIP });
+        run(&mut sim, MotorCommand::OpenFingers { gripper: GRIP });
         settle(&mut sim);
         assert_eq!((sim.holding(GRIP), sim.holding(GRASP)), (None, Some(leg(&world, n))));
         assert!(distance(before, place(&sim, leg(&world, n))) < 0.01, "it stays in the person's hand");
@@ -77,7 +77,7 @@ fn a_leg_is_thrown_away() {
     let mut sim = Sim::new(&world, &[]).unwrap();
     offer(&mut sim);
     run(&mut sim, move_to(DISCARD));
-    run(&mut sim, Command::Open { gripper: GRIP });
+    run(&mut sim, MotorCommand::OpenFingers { gripper: GRIP });
     settle(&mut sim);
     assert_eq!(sim.holding(GRIP), None);
     let [x, y, z] = place(&sim, leg(&world, 1));
@@ -123,7 +123,7 @@ fn a_grasp_waits_for_what_comes() {
 fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
     let world = table();
     let mut sim = Sim::new(&world, &[truth("any", Term::HoldsAny(GRIP))]).unwrap();
-    let time = run(&mut sim, Command::Close { gripper: GRIP });
+    let time = run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
     assert!((0.5..0.55).contains(&time), "{time}");
     assert!(!boolean(&sim, 0));
     run(&mut sim, move_to(LEGS[0]));
@@ -139,7 +139,7 @@ fn the_current_leg_is_the_held_or_the_next_or_the_last() {
     assert!((y(&sim) - LEGS[0][1]).abs() < 1e-3);
     offer(&mut sim);
     assert!((y(&sim) - OFFER[1]).abs() < 0.01, "the held one");
-    run(&mut sim, Command::Open { gripper: GRIP });
+    run(&mut sim, MotorCommand::OpenFingers { gripper: GRIP });
     assert!((y(&sim) - LEGS[1][1]).abs() < 1e-3, "the next");
 }
 
@@ -147,9 +147,9 @@ fn the_current_leg_is_the_held_or_the_next_or_the_last() {
 fn opening_while_closing_replaces_it() {
     let world = table();
     let mut sim = Sim::new(&world, &[]).unwrap();
-    let close = sim.command(Command::Close { gripper: GRIP }).unwrap();
+    let close = sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     sim.advance(SECOND / 4);
-    let open = sim.command(Command::Open { gripper: GRIP }).unwrap();
+    let open = sim.command(MotorCommand::OpenFingers { gripper: GRIP }).unwrap();
     sim.advance(SECOND);
     assert_eq!(sim.finished(), vec![(close, Err(CommandError::Replaced)), (open, Ok(()))]);
 }

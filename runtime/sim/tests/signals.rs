@@ -5,7 +5,7 @@ use common::*;
 use hrdsl_ir::expr::{BinaryOp, Function};
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Enumeration, Expr, Span, Symbol, Type, Value};
-use hrdsl_sim::{Command, Sim};
+use hrdsl_sim::{MotorCommand, Sim};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));
 
@@ -202,7 +202,7 @@ fn the_hand_near_the_closing_gripper_is_seen() {
         .unwrap();
     sim.advance(sim.now() + 2 * SECOND);
     assert!(float(&sim, 0) < 0.05, "{}", float(&sim, 0));
-    run(&mut sim, Command::Close { gripper: GRIP });
+    run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::{fmt, io};
 
 use thiserror::Error;
 
-use crate::{Exit, Output, Overrun};
+use crate::{exit::Exit, limits::Overrun, output::Output};
 
 /// Why there is no further request, or no process at all. Those about a running program carry its last output.
 #[derive(Debug, Error)]

@@ -6,8 +6,10 @@ use std::{
 };
 
 use crate::{
-    ProgramLimits, PythonEnv, StopFlag, SutError,
-    cell::{CellOrder, Cells},
+    cell::{cells::Cells, message::CellOrder},
+    environment::{PythonEnv, word::is_python},
+    error::SutError,
+    limits::{ProgramLimits, StopFlag},
 };
 
 /// All that determines a run of the program under test.
@@ -180,29 +182,4 @@ pub(crate) fn absent(what: &'static str, looked_for: String) -> SutError {
 fn join(folders: impl Iterator<Item = OsString>) -> OsString {
     // A folder whose name has the separator in it cannot be searched; the others still can.
     std::env::join_paths(folders.filter(|f| std::env::join_paths([f]).is_ok())).unwrap_or_default()
-}
-
-pub(crate) fn is_python(word: &str) -> bool {
-    let name = word.rsplit('/').next().unwrap_or(word);
-    name.strip_prefix("python")
-        .is_some_and(|rest| rest.is_empty() || rest == "3" || rest.strip_prefix("3.").is_some_and(is_number))
-}
-
-fn is_number(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::is_python;
-
-    #[test]
-    fn which_words_are_python() {
-        for word in ["python", "python3", "python3.8", "python3.14", "/usr/bin/python3", "venv/bin/python"] {
-            assert!(is_python(word), "{word}");
-        }
-        for word in ["pythonista", "python2", "python3.", "python3.x", "ipython", "robot", ""] {
-            assert!(!is_python(word), "{word}");
-        }
-    }
 }

@@ -1,11 +1,16 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    DeviceOrder, System, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest, Ticket,
+    CommandRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
+    SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
-use crate::{Answer, Arg, Process, Reply, Request, SutError};
+use crate::{
+    error::SutError,
+    process::Process,
+    protocol::{Answer, Arg, Reply, Request},
+};
 
 /// A running [`Process`] behind the seam.
 pub struct LockStep<'r> {
@@ -21,18 +26,18 @@ impl<'r> LockStep<'r> {
     }
 }
 
-impl System for LockStep<'_> {
+impl SystemActor for LockStep<'_> {
     fn is_ready(&self) -> bool {
         !self.waits
     }
 
-    fn next(&mut self, _: Nanos) -> Result<Option<(Ticket, SystemRequest)>, SystemFault> {
+    fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
         let request = self.process.next()?;
         self.waits = true;
-        Ok(Some((Ticket::default(), meant(request))))
+        Ok(Some((RequestTicket::default(), meant(request))))
     }
 
-    fn answer(&mut self, _: Ticket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
+    fn answer(&mut self, _: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
         self.waits = false;
         Ok(self.process.reply(&Reply { time: now, answer: said(answer) })?)
     }
@@ -51,8 +56,8 @@ fn meant(request: Request) -> SystemRequest {
         }
         Request::Drop { events } => SystemRequest::Drop { events },
         Request::Read { signal } => SystemRequest::Read { signal },
-        Request::Act { on, action, args, wait: _ } => {
-            SystemRequest::Order(DeviceOrder { device: on, verb: action, args: arguments(args) })
+        Request::Act { on, command, args, wait: _ } => {
+            SystemRequest::Command(CommandRequest { device: on, command, args: arguments(args) })
         }
         Request::Done => SystemRequest::Done,
     }

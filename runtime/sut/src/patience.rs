@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::{Overrun, cell::CellUsage};
+use crate::{cell::message::CellUsage, limits::Overrun};
 
 /// Between looks at what the program uses.
 pub(crate) const LOOK: Duration = Duration::from_millis(100);

@@ -4,7 +4,6 @@
 //! no threads.
 
 use std::{
-    fmt,
     fs::File,
     io,
     os::fd::{AsFd, BorrowedFd, OwnedFd},
@@ -18,15 +17,20 @@ use rustix::{
     io::Errno,
     pipe::{PipeFlags, pipe_with},
 };
-use serde::{Deserialize, Serialize};
 
 use crate::{
-    Answer, FileCoverage, Launch, Output, Overrun, ProgramLimits, Reply, Request, StopFlag, SutError,
-    cell::{CellHandle, CellRequest, KeptFiles},
-    coverage,
-    output::Capture,
+    cell::{
+        handle::CellHandle,
+        message::{CellRequest, KeptFiles},
+    },
+    coverage::{self, FileCoverage},
+    error::SutError,
+    exit::Exit,
+    launch::Launch,
+    limits::{Overrun, ProgramLimits, StopFlag},
+    output::{Capture, Output},
     patience::{LOOK, Patience},
-    protocol::{self, Line},
+    protocol::{self, Answer, Line, Reply, Request},
 };
 
 /// A request longer than this is rubbish.
@@ -71,26 +75,6 @@ pub struct Process {
 struct Stream {
     fd: Option<OwnedFd>,
     capture: Capture,
-}
-
-/// How a program ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Exit {
-    Code(i32),
-    Signal(i32),
-    /// It did not end by itself in time.
-    Killed,
-}
-
-impl fmt::Display for Exit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Exit::Code(code) => write!(f, "exit code {code}"),
-            Exit::Signal(signal) => write!(f, "signal {signal}"),
-            Exit::Killed => write!(f, "killed"),
-        }
-    }
 }
 
 /// What is left of a program that has ended.

@@ -40,12 +40,12 @@ pub enum Request {
     Act {
         /// The device: `robot.arm`.
         on: String,
-        /// The action: `move_to`, `move_joints`, `close`, `open`.
+        /// One of its commands: `move_to`.
         #[serde(rename = "do")]
-        action: String,
+        command: String,
         #[serde(default)]
         args: BTreeMap<String, Arg>,
-        /// Whether the reply comes when the action has ended; version 1 always waits.
+        /// Whether the reply comes when the command has ended; version 1 always waits.
         #[serde(default = "yes")]
         wait: bool,
     },
@@ -57,7 +57,7 @@ fn yes() -> bool {
     true
 }
 
-/// An argument of an event or an action, as the program wrote it: what it means, its declaration tells.
+/// An argument of an event or a command, as the program wrote it: what it means, its declaration tells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Arg {
@@ -224,12 +224,12 @@ mod tests {
                 ])
             }
         );
-        let Request::Act { on, action, args, wait } = request(
+        let Request::Act { on, command, args, wait } = request(
             r#"{"request":"act","on":"robot.arm","do":"move_to","args":{"to":[0,1,2.5],"speed":0.2}}"#,
         ) else {
             panic!()
         };
-        assert_eq!((on.as_str(), action.as_str(), wait), ("robot.arm", "move_to", true));
+        assert_eq!((on.as_str(), command.as_str(), wait), ("robot.arm", "move_to", true));
         assert_eq!(args["to"], Arg::Numbers(vec![0.0, 1.0, 2.5]));
         assert_eq!(args["speed"], Arg::Scalar(Value::Float(0.2)));
     }

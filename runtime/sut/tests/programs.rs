@@ -52,7 +52,7 @@ fn a_good_program_is_answered() {
     assert_eq!(requests[3], Request::Emit { event: "decided".into(), args });
     assert_eq!(requests[4], Request::WaitFor { events: vec!["a".into(), "b".into()], timeout: Some(2.0) });
     assert_eq!(requests[5], Request::WaitFor { events: vec!["a".into()], timeout: None });
-    assert!(matches!(&requests[12], Request::Act { action, wait: true, .. } if action == "move_joints"));
+    assert!(matches!(&requests[12], Request::Act { command, wait: true, .. } if command == "move_joints"));
     assert_eq!(requests.last(), Some(&Request::Done));
     let finished = process.finish(GRACE);
     assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);

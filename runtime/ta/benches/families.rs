@@ -8,7 +8,10 @@ mod common;
 
 use common::families;
 use hrdsl_ir::{Program, ta::LocationId};
-use hrdsl_ta::{Goal, GoalKind, Model, Observe, Options, Order, StateFormula, explore};
+use hrdsl_ta::{
+    CompiledNetwork, GoalKind, ObservationOptions, ReachabilityGoal, SearchOptions, SearchOrder,
+    StateFormula, explore,
+};
 
 /// Name, size, model; TChecker's states stored, seconds, megabytes (0: not known).
 type Row = (&'static str, i64, fn(i64) -> Program, usize, f64, f64);
@@ -34,8 +37,8 @@ const ROWS: [Row; 17] = [
 ];
 
 /// Edges, locations, and conditions on variables of the line of work.
-fn line_goals(p: &Program) -> Vec<Goal> {
-    let goal = |what| Goal { what, settled: false };
+fn line_goals(p: &Program) -> Vec<ReachabilityGoal> {
+    let goal = |what| ReachabilityGoal { what, settled: false };
     let mut goals = Vec::new();
     for (automaton, a) in p.automata.iter().enumerate() {
         let places = (0..a.locations.len() as u16).map(LocationId);
@@ -63,14 +66,14 @@ fn main() {
     let args: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
     let has = |flag: &str| args.iter().any(|a| a == flag);
     let after = |flag: &str| args.iter().position(|a| a == flag).and_then(|i| args.get(i + 1));
-    let mut options = if has("--reference") { Options::reference() } else { Options::default() };
-    options.budget = hrdsl_ta::Budget { states: 200_000_000, bytes: 4 << 30 };
+    let mut options = if has("--reference") { SearchOptions::reference() } else { SearchOptions::default() };
+    options.budget = hrdsl_ta::SearchBudget { states: 200_000_000, bytes: 4 << 30 };
     options.threads = after("--threads").and_then(|n| n.parse().ok()).unwrap_or(1);
     options.keep_committed &= !has("--skip-committed");
     match after("--order").map(String::as_str) {
-        Some("breadth") => options.order = Order::Breadth,
-        Some("depth") => options.order = Order::Depth,
-        Some("topological") => options.order = Order::Topological,
+        Some("breadth") => options.order = SearchOrder::Breadth,
+        Some("depth") => options.order = SearchOrder::Depth,
+        Some("topological") => options.order = SearchOrder::Topological,
         Some(_) | None => {}
     }
     let wanted = after("--size").and_then(|n| n.parse::<i64>().ok());
@@ -86,8 +89,8 @@ fn main() {
         let p = make(size);
         let goals = if name == "manufacture" { line_goals(&p) } else { Vec::new() };
         let start = seconds();
-        let result = Model::new(&p, &p.networks[0], &Observe::default())
-            .map_err(hrdsl_ta::Error::from)
+        let result = CompiledNetwork::new(&p, &p.networks[0], &ObservationOptions::default())
+            .map_err(hrdsl_ta::SearchError::from)
             .and_then(|model| explore(&model, &goals, &options, &|_| true));
         let used = seconds() - start;
         match result {

@@ -8,7 +8,7 @@ mod common;
 
 use common::families;
 use hrdsl_ir::Program;
-use hrdsl_ta::{Model, Observe, Options, Report, explore, local};
+use hrdsl_ta::{CompiledNetwork, ObservationOptions, SearchOptions, SearchReport, explore, local};
 
 /// Name, size, model; TChecker's states stored and seconds (0: not known); whether global time is tried, too.
 type Row = (&'static str, i64, fn(i64) -> Program, usize, f64, bool);
@@ -37,7 +37,7 @@ fn seconds() -> f64 {
     field(11) / 100.0
 }
 
-fn timed<E: std::fmt::Display>(run: impl FnOnce() -> Result<Report, E>) -> String {
+fn timed<E: std::fmt::Display>(run: impl FnOnce() -> Result<SearchReport, E>) -> String {
     let start = seconds();
     match run() {
         Ok(r) => format!(
@@ -58,17 +58,17 @@ fn main() {
             continue;
         }
         let p = build(size);
-        let model = match Model::new(&p, &p.networks[0], &Observe::default()) {
+        let model = match CompiledNetwork::new(&p, &p.networks[0], &ObservationOptions::default()) {
             Ok(model) => model,
             Err(e) => {
                 println!("{name} {size}: {e}");
                 continue;
             }
         };
-        let local = timed(|| local::explore(&model, &[], &local::Options::default(), &|_| true));
+        let local = timed(|| local::explore(&model, &[], &local::LocalSearchOptions::default(), &|_| true));
         println!("{name:>16} {size:>3} local  {local} (TChecker: {stored} in {time} s)");
         if global {
-            let global = timed(|| explore(&model, &[], &Options::default(), &|_| true));
+            let global = timed(|| explore(&model, &[], &SearchOptions::default(), &|_| true));
             println!("{name:>16} {size:>3} global {global}");
         }
     }

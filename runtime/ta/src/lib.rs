@@ -1,22 +1,28 @@
 //! hrdsl-ta: a model checker for networks of timed automata, and a player of single ones.
 //!
 //! # Steps
-//! 1. [`Model::new`] compiles a [`Network`](hrdsl_ir::ta::Network) with what [`Observe`] asks for: expressions to trees over
+//! 1. [`CompiledNetwork::new`] compiles a [`Network`](hrdsl_ir::ta::Network) with what [`ObservationOptions`] asks for: expressions to trees over
 //!    whole numbers, one discrete vector, one set of clocks, constants in their greatest common unit.
-//! 2. [`explore`] searches its zone graph for many [`Goal`]s at once, as [`Options`] say; [`check`] does both steps, breadth
+//! 2. [`explore`] searches its zone graph for many [`ReachabilityGoal`]s at once, as [`SearchOptions`] say; [`check`] does both steps, breadth
 //!    first.
-//! 3. Each goal ends as an [`Outcome`]: reached with a [`Witness`], proved unreachable, or open.
+//! 3. Each goal ends as a [`GoalOutcome`]: reached with a [`WitnessRun`], proved unreachable, or inconclusive.
 //! 4. A witness gets concrete times (the earliest, the latest or sampled ones) and is replayed by an interpreter of its own
-//!    before it is believed. A [`Story`] tells it to people.
+//!    before it is believed. A [`WitnessTrace`] tells it to people.
 //!
 //! [`answers`] does all that for queries, and decides those that reachability does not: `A<>`, `E[]`, `-->`, `deadlock`, `sup`
-//! and `inf`. A [`Player`] runs one automaton in virtual time with the same interpreter.
+//! and `inf`. A [`VirtualTimePlayer`] runs one automaton in virtual time with the same interpreter.
 //!
-//! # Parts of the search
-//! - `compile` makes the `network`; `code` evaluates; `semantics` enumerates what may happen; `zone` makes it symbolic, with
-//!   matrices ([`dbm`]) of the clocks that matter, as narrow as the constants allow; `extrapolation` keeps them finite.
-//! - `expand` makes the successors of one state, `search` goes in rounds over the waiting ones (`order`), `store` keeps what
-//!   is new, `slice` says which variables matter, `goals` looks at what is asked.
+//! # Folders
+//! Each uses only those above it.
+//! - `zone`: matrices ([`dbm`]) and [`federation`]s of them, and the extrapolation that keeps them finite.
+//! - `network`: `compile` makes the `model` and `bounds` what its clocks are compared with; `code` evaluates; `semantics`
+//!   enumerates what may happen; `graph` makes it symbolic; [`query`] has the questions.
+//! - `witness`: the interpreter (`concrete`), and the runs that it replays and plays.
+//! - `search`: `rounds` goes over the waiting states (`waiting`), `expand` makes the successors of one with zones of the clocks
+//!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
+//!   matter, `goals` looks at what is asked.
+//! - [`local`]: the same search with a time for each automaton.
+//! - `decide`: the answers, by these searches and by walks of the plain zone graph.
 //!
 //! # Semantics
 //! UPPAAL's, and joint channels after TChecker's synchronisation vectors. Guards are evaluated before any update. Who sends
@@ -30,54 +36,32 @@
 //! An event is one occurrence: the body of a stimulus is not executed, so a model that speaks of a stimulus's events
 //! sends them itself.
 
-mod abstraction;
-mod answer;
-mod cells;
-mod check;
-mod code;
-mod compile;
-mod concrete;
-pub mod dbm;
-mod error;
-mod expand;
-#[cfg(test)]
-mod explicit;
-mod extrapolation;
-mod extremum;
-mod fastest;
-pub mod federation;
-mod goals;
-mod graph;
-mod liveness;
+mod decide;
 pub mod local;
 mod network;
-mod order;
-mod plain;
-mod player;
-pub mod query;
-mod replay;
-mod schedule;
 mod search;
-mod semantics;
-mod sequence;
-mod slice;
-mod store;
-mod story;
 mod witness;
 mod zone;
 
-pub use answer::{Answer, Manner, SHORTEST, Verdict, answer, answers};
-pub use code::Medium;
-pub use error::{EdgeName, Error, ModelError};
-pub use extrapolation::Abstraction;
-pub use extremum::{Extremum, Quantity, RAISES, Reach};
-pub use fastest::{fastest, shortest};
-pub use federation::Federation;
-pub use network::{Model, Observe, slot_names};
-pub use player::Player;
-pub use query::{Budget, Counter, Goal, GoalKind, Limit, StateFormula, clock_names};
-pub use schedule::{DAWDLE, Timing};
-pub use search::{Exhausted, Options, Order, Outcome, Progress, Report, Subsumption, check, explore};
-pub use semantics::{Binders, Move};
-pub use story::{Over, Part, Scene, Story};
-pub use witness::{Ending, Witness, WitnessStep, retimed};
+pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, SHORTEST, answer, answers};
+pub use decide::explore::{check, explore};
+pub use decide::extremum::{Extremum, ExtremumLimit, ExtremumValue, RAISES};
+pub use decide::fastest::{fastest, shortest};
+pub use network::code::SyncMedium;
+pub use network::error::{EdgeName, ModelError};
+pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};
+pub use network::query::{
+    self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,
+};
+pub use network::semantics::{AutomatonMove, Binders};
+pub use search::options::{SearchOptions, SearchOrder, Subsumption};
+pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport};
+pub use witness::build::retimed;
+pub use witness::error::SearchError;
+pub use witness::player::VirtualTimePlayer;
+pub use witness::run::{RunEnding, WitnessRun, WitnessRunStep};
+pub use witness::schedule::{DAWDLE, ScheduleOptions};
+pub use witness::trace::{TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition};
+pub use zone::extrapolation::Abstraction;
+pub use zone::federation::Federation;
+pub use zone::{dbm, federation};

@@ -10,16 +10,19 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_ta::{
-    Budget, Counter, Error, Exhausted, Goal, GoalKind, Limit, ModelError, Outcome, Report, StateFormula,
-    Witness, check, slot_names,
+    EventCounter, EventLimit, GoalKind, GoalOutcome, ModelError, ReachabilityGoal, SearchBudget,
+    SearchCutoff, SearchError, SearchReport, StateFormula, WitnessRun, check, slot_names,
 };
 
-fn condition(f: StateFormula) -> Goal {
-    Goal { what: GoalKind::Condition(f), settled: false }
+fn condition(f: StateFormula) -> ReachabilityGoal {
+    ReachabilityGoal { what: GoalKind::Condition(f), settled: false }
 }
 
-fn at(automaton: usize, location: u16) -> Goal {
-    Goal { what: GoalKind::Location { automaton, location: LocationId(location) }, settled: false }
+fn at(automaton: usize, location: u16) -> ReachabilityGoal {
+    ReachabilityGoal {
+        what: GoalKind::Location { automaton, location: LocationId(location) },
+        settled: false,
+    }
 }
 
 fn pattern(event: EventId, arg: Option<bool>) -> EventPattern {
@@ -27,14 +30,19 @@ fn pattern(event: EventId, arg: Option<bool>) -> EventPattern {
     EventPattern { event, args }
 }
 
-fn search(p: &Program, goals: &[Goal], counters: &[Counter], limits: &[Limit]) -> Result<Report, Error> {
-    check(p, &p.networks[0], goals, counters, limits, Budget::default())
+fn search(
+    p: &Program,
+    goals: &[ReachabilityGoal],
+    counters: &[EventCounter],
+    limits: &[EventLimit],
+) -> Result<SearchReport, SearchError> {
+    check(p, &p.networks[0], goals, counters, limits, SearchBudget::default())
 }
 
-fn reached(outcome: &Outcome) -> &Witness {
+fn reached(outcome: &GoalOutcome) -> &WitnessRun {
     match outcome {
-        Outcome::Reached(w) => w,
-        Outcome::Unreachable | Outcome::Open(_) => panic!("{outcome:?}"),
+        GoalOutcome::Reached(w) => w,
+        GoalOutcome::Unreachable | GoalOutcome::Inconclusive(_) => panic!("{outcome:?}"),
     }
 }
 
@@ -63,8 +71,8 @@ fn decider() -> (Program, EventId) {
 fn counters_saturate_and_make_conditions() {
     let (p, e) = decider();
     let counters = [
-        Counter { patterns: vec![pattern(e, Some(true))], cap: 3 },
-        Counter { patterns: vec![pattern(e, Some(false))], cap: 2 },
+        EventCounter { patterns: vec![pattern(e, Some(true))], cap: 3 },
+        EventCounter { patterns: vec![pattern(e, Some(false))], cap: 2 },
     ];
     let counted = |counter, lo, hi| StateFormula::CounterIn { counter, lo, hi };
     let goals = [
@@ -80,18 +88,18 @@ fn counters_saturate_and_make_conditions() {
     // Four decisions, two seconds each; the last leaves the tally in its committed location.
     let times: Vec<i64> = w.trace().steps.iter().map(|s| s.time / SECOND).collect();
     assert_eq!(times, [2, 4, 6, 8]);
-    assert_eq!(report.goals[1], Outcome::Unreachable);
+    assert_eq!(report.goals[1], GoalOutcome::Unreachable);
     assert!(report.complete);
 }
 
 #[test]
 fn a_counter_that_stops_too_early_is_refused() {
     let (p, e) = decider();
-    let counters = [Counter { patterns: vec![pattern(e, None)], cap: 2 }];
+    let counters = [EventCounter { patterns: vec![pattern(e, None)], cap: 2 }];
     for (lo, hi) in [(3, None), (0, Some(2))] {
         let goal = condition(StateFormula::CounterIn { counter: 0, lo, hi });
         let found = search(&p, &[goal], &counters, &[]);
-        assert!(matches!(found, Err(Error::Model { error: ModelError::Question(_), .. })));
+        assert!(matches!(found, Err(SearchError::Model { error: ModelError::Question(_), .. })));
     }
 }
 
@@ -99,32 +107,36 @@ fn a_counter_that_stops_too_early_is_refused() {
 fn limits_restrict_what_happens() {
     let (p, e) = decider();
     let yes = || pattern(e, Some(true));
-    let counters = [Counter { patterns: vec![yes()], cap: 3 }];
+    let counters = [EventCounter { patterns: vec![yes()], cap: 3 }];
     let goal = |lo| condition(StateFormula::CounterIn { counter: 0, lo, hi: None });
-    let limits = [Limit { patterns: vec![yes()], at_most: 2 }];
+    let limits = [EventLimit { patterns: vec![yes()], at_most: 2 }];
     let report = search(&p, &[goal(2), goal(3)], &counters, &limits).unwrap();
     reached(&report.goals[0]);
-    assert_eq!(report.goals[1], Outcome::Unreachable);
+    assert_eq!(report.goals[1], GoalOutcome::Unreachable);
 }
 
 #[test]
 fn settled_goals_wait_until_no_location_is_committed() {
     let (p, _) = decider();
     let one = StateFormula::Data(bin(BinaryOp::Eq, v(0), n(1)));
-    let goals = [condition(one.clone()), Goal { what: GoalKind::Condition(one), settled: true }, at(1, 1)];
-    let settled_brief = Goal { settled: true, ..at(1, 1) };
+    let goals = [
+        condition(one.clone()),
+        ReachabilityGoal { what: GoalKind::Condition(one), settled: true },
+        at(1, 1),
+    ];
+    let settled_brief = ReachabilityGoal { settled: true, ..at(1, 1) };
     let goals = [goals.as_slice(), &[settled_brief]].concat();
     let report = search(&p, &goals, &[], &[]).unwrap();
     assert_eq!(reached(&report.goals[0]).steps.len(), 1);
     assert_eq!(reached(&report.goals[1]).steps.len(), 2);
     assert_eq!(reached(&report.goals[2]).steps.len(), 1);
-    assert_eq!(report.goals[3], Outcome::Unreachable);
+    assert_eq!(report.goals[3], GoalOutcome::Unreachable);
 }
 
 #[test]
 fn a_witness_reads_well() {
     let (p, _) = decider();
-    let goal = Goal { what: GoalKind::Edge { automaton: 1, edge: 1 }, settled: false };
+    let goal = ReachabilityGoal { what: GoalKind::Edge { automaton: 1, edge: 1 }, settled: false };
     let report = search(&p, &[goal], &[], &[]).unwrap();
     assert_eq!(
         reached(&report.goals[0]).text(&p, &p.networks[0]),
@@ -142,7 +154,7 @@ fn leaving_a_range_is_a_fault_with_the_way_to_it() {
     let up = edge(l, l).clock(0, ClockOp::Eq, 3).reset(0);
     up.set(count, bin(BinaryOp::Add, v(count), n(1))).to(&mut a);
     add(&mut p, a);
-    let Err(Error::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
+    let Err(SearchError::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
     assert_eq!(error.to_string(), "automaton `A`, edge l -> l: `count` becomes 3, outside 0..2");
     assert_eq!(witness.unwrap().steps.iter().map(|s| s.time).collect::<Vec<_>>(), [3 * SECOND, 6 * SECOND]);
 }
@@ -164,11 +176,11 @@ fn what_the_budget_leaves_is_open() {
     let yes = |k| condition(StateFormula::Data(bin(BinaryOp::Ge, v(0), n(k))));
     let goals = [yes(1), yes(3)];
     for (budget, why) in [
-        (Budget { states: 3, ..Budget::default() }, Exhausted::States),
-        (Budget { bytes: 150, ..Budget::default() }, Exhausted::Memory),
+        (SearchBudget { states: 3, ..SearchBudget::default() }, SearchCutoff::States),
+        (SearchBudget { bytes: 150, ..SearchBudget::default() }, SearchCutoff::Memory),
     ] {
         let report = check(&p, &p.networks[0], &goals, &[], &[], budget).unwrap();
-        assert_eq!(report.goals[1], Outcome::Open(why));
+        assert_eq!(report.goals[1], GoalOutcome::Inconclusive(why));
         assert!(!report.complete);
     }
 }
@@ -203,10 +215,10 @@ fn malformed_programs_are_errors() {
     p.automata[0].edges[0].to = LocationId(7);
     assert!(matches!(
         search(&p, &[], &[], &[]),
-        Err(Error::Model { error: ModelError::Malformed { .. }, .. })
+        Err(SearchError::Model { error: ModelError::Malformed { .. }, .. })
     ));
     let (p, _) = decider();
-    assert!(matches!(search(&p, &[at(5, 0)], &[], &[]), Err(Error::Model { .. })));
+    assert!(matches!(search(&p, &[at(5, 0)], &[], &[]), Err(SearchError::Model { .. })));
 }
 
 #[test]
@@ -230,7 +242,7 @@ fn receivers_update_after_the_sender_in_order() {
     let is = |k| condition(StateFormula::Data(common::eq(v(s), n(k))));
     let report = search(&p, &[is(19), is(99)], &[], &[]).unwrap();
     reached(&report.goals[0]);
-    assert_eq!(report.goals[1], Outcome::Unreachable);
+    assert_eq!(report.goals[1], GoalOutcome::Unreachable);
 }
 
 fn pace() -> Enumeration {
@@ -299,7 +311,7 @@ fn symbols_are_chosen_sent_received_and_reached() {
     assert_eq!(w.steps[1].variables, [(0, normal, fast), (1, normal, fast)]);
     let text = w.text(&p, &p.networks[0]);
     assert!(text.contains("Robot.feed: normal -> fast"), "{text}");
-    assert_eq!(report.goals[1], Outcome::Unreachable);
+    assert_eq!(report.goals[1], GoalOutcome::Unreachable);
     let last = reached(&report.goals[2]).steps.last().cloned().unwrap();
     assert_eq!(last.event, Some((halt, vec![symbol("fast")])));
     assert!(report.complete);
@@ -312,7 +324,7 @@ fn faults_with_symbols_are_said() {
         let (mut p, ..) = walkers();
         change(&mut p);
         match search(&p, &[at(1, 1)], &[], &[]) {
-            Err(Error::Model { error, .. }) => error.to_string(),
+            Err(SearchError::Model { error, .. }) => error.to_string(),
             other => panic!("{other:?}"),
         }
     };
@@ -337,7 +349,7 @@ fn edge_update(slot: u16, value: Expr) -> Vec<hrdsl_ir::ta::Update> {
 #[test]
 fn a_player_hears_and_says_symbols() {
     let (p, ask, halt) = walkers();
-    let mut player = hrdsl_ta::Player::new(&p, AutomatonId(1));
+    let mut player = hrdsl_ta::VirtualTimePlayer::new(&p, AutomatonId(1));
     let mut out = Vec::new();
     for (second, pace, feed) in [(1, "slow", "slow"), (2, "fast", "normal"), (3, "normal", "normal")] {
         player.receive(ask, &[symbol(pace)], second * SECOND).unwrap();
@@ -350,7 +362,7 @@ fn a_player_hears_and_says_symbols() {
     // What others do to shared variables, a player does not see.
     assert_eq!((player.variable(0), player.variable(2)), (Some(symbol("slow")), None));
     // The person asks by itself; the first select that the guard allows is not the pace of the start.
-    let mut person = hrdsl_ta::Player::new(&p, AutomatonId(0));
+    let mut person = hrdsl_ta::VirtualTimePlayer::new(&p, AutomatonId(0));
     let mut asked = Vec::new();
     person.run(0, &mut asked).unwrap();
     person.run(SECOND, &mut asked).unwrap();

@@ -11,10 +11,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use common::{add, automaton, clock, edge, eq, event, location, n, program, shared, v};
 use hrdsl_ir::{
     Program, Span,
+    ta::NetworkId,
     ta::{Ask, ClockConstraint, ClockOp, Edge, Formula, LocationId, LocationKind, Query, Sync, Update},
     value::SECOND,
 };
-use hrdsl_ta::{Manner, Verdict, answer};
+use hrdsl_ta::{QueryOptions, QueryVerdict, answer};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -334,13 +335,13 @@ fn check(p: &Program, ask: Ask, seed: u64) {
         name: "q".into(),
         title: "q".into(),
         text: String::new(),
-        network: 0,
+        network: NetworkId(0),
         ask: ask.clone(),
         origin: Span::default(),
     };
-    let got =
-        answer(p, &p.networks[0], &query, &Manner::default()).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-    let want = if o.verdict(&ask) { Verdict::Holds } else { Verdict::Fails };
+    let got = answer(p, &p.networks[0], &query, &QueryOptions::default())
+        .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+    let want = if o.verdict(&ask) { QueryVerdict::Holds } else { QueryVerdict::Fails };
     assert_eq!(got.verdict, want, "seed {seed}: {ask:?}: {}", got.why);
 }
 

@@ -9,18 +9,19 @@ use hrdsl_ir::{
     ta::{AutomatonId, ChannelKind, ClockOp, Formula, LocationId, Party},
 };
 use hrdsl_ta::{
-    Error, Goal, GoalKind, Model, ModelError, Observe, Outcome, Report, StateFormula, explore,
-    local::{self, Failure, NotApplicable, Options},
+    CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, ReachabilityGoal, SearchError,
+    SearchReport, StateFormula, explore,
+    local::{self, LocalSearchError, LocalSearchOptions, NotApplicableError},
 };
 use local_nets::{Draft, Member};
 use proptest::prelude::*;
 
-fn model(p: &Program) -> Model<'_> {
-    Model::new(p, &p.networks[0], &Observe::default()).unwrap()
+fn model(p: &Program) -> CompiledNetwork<'_> {
+    CompiledNetwork::new(p, &p.networks[0], &ObservationOptions::default()).unwrap()
 }
 
-fn run(p: &Program) -> Report {
-    let report = local::explore(&model(p), &[], &Options::default(), &|_| true).unwrap();
+fn run(p: &Program) -> SearchReport {
+    let report = local::explore(&model(p), &[], &LocalSearchOptions::default(), &|_| true).unwrap();
     assert!(report.complete);
     report
 }
@@ -37,10 +38,10 @@ fn philosophers_need_one_zone_for_each_discrete_state() {
 fn media_stand_for_shared_variables() {
     // All of Fischer's transitions use the one variable: nothing commutes.
     assert_eq!(run(&families::fischer(6)).states_stored, 2_378);
-    let options = Options { media: false, ..Options::default() };
+    let options = LocalSearchOptions { media: false, ..LocalSearchOptions::default() };
     let p = families::fischer(3);
     let refused = local::explore(&model(&p), &[], &options, &|_| true);
-    assert_eq!(refused, Err(Failure::NotApplicable(NotApplicable::Shared("id".into()))));
+    assert_eq!(refused, Err(LocalSearchError::NotApplicable(NotApplicableError::Shared("id".into()))));
 }
 
 #[test]
@@ -56,9 +57,9 @@ fn families_have_no_more_states_than_with_global_time() {
 }
 
 /// Every location, every edge, every pair of locations of two automata.
-fn goals(p: &Program) -> Vec<Goal> {
+fn goals(p: &Program) -> Vec<ReachabilityGoal> {
     let mut goals = Vec::new();
-    let mut goal = |what| goals.push(Goal { what, settled: false });
+    let mut goal = |what| goals.push(ReachabilityGoal { what, settled: false });
     let locations = |a: usize| (0..p.automata[a].locations.len() as u16).map(LocationId);
     for (automaton, a) in p.automata.iter().enumerate() {
         (0..a.edges.len()).for_each(|edge| goal(GoalKind::Edge { automaton, edge }));
@@ -78,22 +79,23 @@ fn goals(p: &Program) -> Vec<Goal> {
 fn agree(p: &Program) {
     let goals = goals(p);
     let model = model(p);
-    let plain = hrdsl_ta::Options { reduce: true, ..hrdsl_ta::Options::reference() };
+    let plain = hrdsl_ta::SearchOptions { reduce: true, ..hrdsl_ta::SearchOptions::reference() };
     let global = explore(&model, &goals, &plain, &|_| true);
-    let local = local::explore(&model, &goals, &Options::default(), &|_| true);
+    let local = local::explore(&model, &goals, &LocalSearchOptions::default(), &|_| true);
     let (local, global) = match (local, global) {
         (Ok(local), Ok(global)) => (local, global),
-        (Err(Failure::Search(Error::Model { .. })), Err(Error::Model { .. })) => return,
+        (Err(LocalSearchError::Search(SearchError::Model { .. })), Err(SearchError::Model { .. })) => return,
         (local, global) => panic!("{local:?} with local time, {global:?} with global time"),
     };
     for ((goal, a), b) in goals.iter().zip(&local.goals).zip(&global.goals) {
         let same = matches!(
             (a, b),
-            (Outcome::Reached(_), Outcome::Reached(_)) | (Outcome::Unreachable, Outcome::Unreachable)
+            (GoalOutcome::Reached(_), GoalOutcome::Reached(_))
+                | (GoalOutcome::Unreachable, GoalOutcome::Unreachable)
         );
         assert!(same, "{goal:?}: {a:?} with local time, {b:?} with global time");
     }
-    let all = |r: &Report| r.complete.then_some(r.discrete_states);
+    let all = |r: &SearchReport| r.complete.then_some(r.discrete_states);
     if let (Some(a), Some(b)) = (all(&local), all(&global)) {
         assert_eq!(a, b);
     }
@@ -113,10 +115,10 @@ fn families_have_the_same_answers() {
 /// A goal that only a run whose time goes back would meet.
 fn is_out_of_order(p: &Program, a: (usize, u16), b: (usize, u16)) {
     let at = |(automaton, l): (usize, u16)| StateFormula::At { automaton, location: LocationId(l) };
-    let goal = |what| Goal { what: GoalKind::Condition(what), settled: false };
+    let goal = |what| ReachabilityGoal { what: GoalKind::Condition(what), settled: false };
     let goals = [goal(StateFormula::And(vec![at(a), at(b)])), goal(at(a))];
-    let report = local::explore(&model(p), &goals, &Options::default(), &|_| true).unwrap();
-    assert_eq!(report.goals[0], Outcome::Unreachable);
+    let report = local::explore(&model(p), &goals, &LocalSearchOptions::default(), &|_| true).unwrap();
+    assert_eq!(report.goals[0], GoalOutcome::Unreachable);
     agree(p);
 }
 
@@ -185,10 +187,11 @@ fn who_stays_away_from_a_joint_channel_does_so_at_its_time() {
 /// One automaton writes what another's invariant says, another has an urgent channel, a third a difference of clocks.
 #[test]
 fn what_local_time_does_not_serve_is_refused() {
-    let refusal = |p: &Program| match local::explore(&model(p), &[], &Options::default(), &|_| true) {
-        Err(Failure::NotApplicable(why)) => why.to_string(),
-        other => panic!("{other:?}"),
-    };
+    let refusal =
+        |p: &Program| match local::explore(&model(p), &[], &LocalSearchOptions::default(), &|_| true) {
+            Err(LocalSearchError::NotApplicable(why)) => why.to_string(),
+            other => panic!("{other:?}"),
+        };
     let mut p = program();
     let s = shared(&mut p, "s", 0, 1, 0);
     let mut one = automaton("One", &["x"]);
@@ -208,10 +211,12 @@ fn what_local_time_does_not_serve_is_refused() {
     p.automata[0].edges[0] = edge(a, a).offer(hurry, &[]).0;
     assert_eq!(refusal(&p), "channel `hurry` is urgent");
     p.channels[0].urgent = false;
-    let high =
-        Goal { what: GoalKind::Formula(Formula::Clock(common::clock(0, ClockOp::Ge, 1))), settled: false };
-    let refused = local::explore(&model(&p), &[high], &Options::default(), &|_| true);
-    assert_eq!(refused, Err(Failure::NotApplicable(NotApplicable::ClockGoal)));
+    let high = ReachabilityGoal {
+        what: GoalKind::Formula(Formula::Clock(common::clock(0, ClockOp::Ge, 1))),
+        settled: false,
+    };
+    let refused = local::explore(&model(&p), &[high], &LocalSearchOptions::default(), &|_| true);
+    assert_eq!(refused, Err(LocalSearchError::NotApplicable(NotApplicableError::ClockGoal)));
     let mut apart = common::clock(0, ClockOp::Le, 3);
     apart.minus = Some(hrdsl_ir::ta::ClockId(1));
     p.automata[1].edges[0].clock_guard.push(apart);
@@ -237,9 +242,12 @@ fn faults_are_met_where_all_can_be() {
             &[common::clock(0, ClockOp::Le, patience)],
         );
         add(&mut p, other);
-        match local::explore(&model(&p), &[], &Options::default(), &|_| true) {
+        match local::explore(&model(&p), &[], &LocalSearchOptions::default(), &|_| true) {
             Ok(report) => assert!(report.complete && !faulty),
-            Err(Failure::Search(Error::Model { error: ModelError::Range { value: 2, .. }, witness })) => {
+            Err(LocalSearchError::Search(SearchError::Model {
+                error: ModelError::Range { value: 2, .. },
+                witness,
+            })) => {
                 assert!(faulty);
                 assert_eq!(witness.unwrap().steps.len(), 1);
             }

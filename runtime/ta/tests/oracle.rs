@@ -14,7 +14,7 @@ use hrdsl_ir::{
     ta::{Automaton, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg, Sync, Update},
     value::SECOND,
 };
-use hrdsl_ta::{Budget, Error, Goal, GoalKind, ModelError, Outcome, check};
+use hrdsl_ta::{GoalKind, GoalOutcome, ModelError, ReachabilityGoal, SearchBudget, SearchError, check};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -375,11 +375,11 @@ fn compare(p: &Program, most: i64) -> Result<(), TestCaseError> {
         let locations =
             (0..a.locations.len()).map(|l| GoalKind::Location { automaton, location: LocationId(l as u16) });
         let edges = (0..a.edges.len()).map(|edge| GoalKind::Edge { automaton, edge });
-        goals.extend(locations.chain(edges).map(|what| Goal { what, settled: false }));
+        goals.extend(locations.chain(edges).map(|what| ReachabilityGoal { what, settled: false }));
     }
-    let found = check(p, &p.networks[0], &goals, &[], &[], Budget::default());
+    let found = check(p, &p.networks[0], &goals, &[], &[], SearchBudget::default());
     let Some(oracle) = Oracle::run(p, most) else {
-        let initial = Err(Error::Model { error: ModelError::Initial, witness: None });
+        let initial = Err(SearchError::Model { error: ModelError::Initial, witness: None });
         prop_assert_eq!(found, initial);
         return Ok(());
     };
@@ -395,11 +395,11 @@ fn compare(p: &Program, most: i64) -> Result<(), TestCaseError> {
             }
         };
         match outcome {
-            Outcome::Reached(w) => {
+            GoalOutcome::Reached(w) => {
                 prop_assert!(expected, "{:?} is not reachable: {}", goal, w.text(p, &p.networks[0]));
             }
-            Outcome::Unreachable => prop_assert!(!expected, "{:?} is reachable", goal),
-            Outcome::Open(_) => prop_assert!(false, "the budget is used up"),
+            GoalOutcome::Unreachable => prop_assert!(!expected, "{:?} is reachable", goal),
+            GoalOutcome::Inconclusive(_) => prop_assert!(false, "the budget is used up"),
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use hrdsl_ir::{
     ta::{AutomatonId, ClockOp, LocationId, LocationKind, ReceiveArg},
     value::SECOND,
 };
-use hrdsl_ta::{ModelError, Player};
+use hrdsl_ta::{ModelError, VirtualTimePlayer};
 
 struct Robot {
     p: Program,
@@ -38,7 +38,7 @@ fn robot() -> Robot {
 }
 
 /// Runs the player as a harness would: whenever it wants to wake, up to a time.
-fn play(player: &mut Player, until: Nanos) -> Vec<(Nanos, EventId, Vec<Value>)> {
+fn play(player: &mut VirtualTimePlayer, until: Nanos) -> Vec<(Nanos, EventId, Vec<Value>)> {
     let mut log = Vec::new();
     while let Some(t) = player.next_wake().filter(|&t| t <= until) {
         let mut out = Vec::new();
@@ -51,7 +51,7 @@ fn play(player: &mut Player, until: Nanos) -> Vec<(Nanos, EventId, Vec<Value>)> 
 #[test]
 fn plays_as_early_as_the_model_lets_it() {
     let r = robot();
-    let mut player = Player::new(&r.p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&r.p, AutomatonId(0));
     assert_eq!(player.next_wake(), None);
     player.receive(r.request, &[Value::Int(2)], 3 * SECOND).unwrap();
     assert_eq!((player.location(), player.variable(0)), (Some(LocationId(1)), Some(Value::Int(2))));
@@ -69,7 +69,7 @@ fn plays_as_early_as_the_model_lets_it() {
 #[test]
 fn a_missed_deadline_is_a_timelock() {
     let r = robot();
-    let mut player = Player::new(&r.p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&r.p, AutomatonId(0));
     player.receive(r.request, &[Value::Int(1)], 0).unwrap();
     let late = player.run(6 * SECOND, &mut Vec::new());
     assert_eq!(late, Err(ModelError::Timelock { automaton: "Robot".into(), location: "busy".into() }));
@@ -78,7 +78,7 @@ fn a_missed_deadline_is_a_timelock() {
 #[test]
 fn a_range_is_kept() {
     let r = robot();
-    let mut player = Player::new(&r.p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&r.p, AutomatonId(0));
     let over = player.receive(r.request, &[Value::Int(4)], 0);
     assert!(matches!(over, Err(ModelError::Range { value: 4, .. })));
 }
@@ -90,7 +90,7 @@ fn edges_without_end_are_noticed() {
     let l = normal(&mut a, "l");
     edge(l, l).to(&mut a);
     add(&mut p, a);
-    let mut player = Player::new(&p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
     assert_eq!(player.next_wake(), Some(0));
     assert!(matches!(player.run(0, &mut Vec::new()), Err(ModelError::Zeno { .. })));
 }
@@ -105,7 +105,7 @@ fn an_upper_bound_alone_fires_at_once_and_the_first_edge_wins() {
     edge(l[2], l[3]).clock(0, ClockOp::Ge, 5).to(&mut a);
     edge(l[2], l[1]).clock(0, ClockOp::Ge, 5).to(&mut a);
     add(&mut p, a);
-    let mut player = Player::new(&p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
     assert_eq!(player.next_wake(), Some(0));
     player.run(0, &mut Vec::new()).unwrap();
     assert_eq!((player.location(), player.next_wake()), (Some(l[2]), Some(5 * SECOND)));
@@ -122,9 +122,9 @@ fn an_invariant_or_urgency_hides_later_edges() {
     edge(b, c).clock(0, ClockOp::Ge, 3).to(&mut a);
     edge(c, b).clock(0, ClockOp::Ge, 9).to(&mut a);
     add(&mut p, a);
-    assert_eq!(Player::new(&p, AutomatonId(0)).next_wake(), None);
+    assert_eq!(VirtualTimePlayer::new(&p, AutomatonId(0)).next_wake(), None);
     p.automata[0].initial = c;
-    assert_eq!(Player::new(&p, AutomatonId(0)).next_wake(), None);
+    assert_eq!(VirtualTimePlayer::new(&p, AutomatonId(0)).next_wake(), None);
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn the_target_s_invariant_is_waited_for() {
     let b = location(&mut a, "b", LocationKind::Normal, &[clock(1, ClockOp::Le, 1)]);
     edge(start, b).clock(0, ClockOp::Ge, 2).reset(0).to(&mut a);
     add(&mut p, a);
-    let mut player = Player::new(&p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
     assert_eq!(player.next_wake(), None);
     player.run(2 * SECOND, &mut Vec::new()).unwrap();
     assert_eq!(player.location(), Some(start));
@@ -151,14 +151,15 @@ fn selects_take_the_first_that_the_guard_allows_or_are_drawn() {
     let high = bin(BinaryOp::Ge, v(0), n(3));
     edge(l, m).select(var("k", 0, 9, 0)).when(high).send_args(pick, &[v(0)]).to(&mut a);
     add(&mut p, a);
-    let picked = |mut player: Player| {
+    let picked = |mut player: VirtualTimePlayer| {
         let mut out = Vec::new();
         player.run(0, &mut out).unwrap();
         out[0].1[0].as_int().unwrap()
     };
-    assert_eq!(picked(Player::new(&p, AutomatonId(0))), 3);
-    let drawn: Vec<i64> = (0..40).map(|seed| picked(Player::seeded(&p, AutomatonId(0), seed))).collect();
-    assert_eq!(drawn[7], picked(Player::seeded(&p, AutomatonId(0), 7)));
+    assert_eq!(picked(VirtualTimePlayer::new(&p, AutomatonId(0))), 3);
+    let drawn: Vec<i64> =
+        (0..40).map(|seed| picked(VirtualTimePlayer::seeded(&p, AutomatonId(0), seed))).collect();
+    assert_eq!(drawn[7], picked(VirtualTimePlayer::seeded(&p, AutomatonId(0), 7)));
     assert!(drawn.iter().all(|k| (3..=9).contains(k)));
     assert!(drawn.iter().collect::<std::collections::BTreeSet<_>>().len() > 3);
 }
@@ -166,7 +167,7 @@ fn selects_take_the_first_that_the_guard_allows_or_are_drawn() {
 #[test]
 fn an_automaton_that_is_not_there_is_an_error() {
     let p = program();
-    let mut player = Player::new(&p, AutomatonId(3));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(3));
     assert_eq!(player.next_wake(), None);
     assert!(matches!(player.run(0, &mut Vec::new()), Err(ModelError::Malformed { .. })));
 }
@@ -218,7 +219,7 @@ fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
     offer.to(&mut a);
     edge(l[1], l[2]).clock(1, ClockOp::Ge, 7).send(done).to(&mut a);
     add(&mut p, a);
-    let mut player = Player::new(&p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
     assert_eq!(player.next_wake(), Some(2 * SECOND));
     // x is 3 s at 2 s, so it is 7 s at 6 s.
     assert_eq!(play(&mut player, 100 * SECOND), [(6 * SECOND, done, vec![])]);
@@ -234,7 +235,7 @@ fn an_invariant_over_variables_forbids_an_edge() {
     edge(start, end).set(0, n(1)).to(&mut a);
     edge(start, end).set(0, n(2)).to(&mut a);
     add(&mut p, a);
-    let mut player = Player::new(&p, AutomatonId(0));
+    let mut player = VirtualTimePlayer::new(&p, AutomatonId(0));
     player.run(0, &mut Vec::new()).unwrap();
     assert_eq!((player.location(), player.variable(0)), (Some(end), Some(Value::Int(2))));
 }

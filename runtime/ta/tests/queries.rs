@@ -7,28 +7,29 @@ use hrdsl_ir::{
     Program, Span,
     expr::BinaryOp,
     suite::{Delays, WitnessKind},
+    ta::NetworkId,
     ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, LocationKind, Measure, Query, Time},
     value::SECOND,
 };
-use hrdsl_ta::{Answer, Ending, Manner, Quantity, Reach, Verdict, answer};
+use hrdsl_ta::{ExtremumLimit, ExtremumValue, QueryAnswer, QueryOptions, QueryVerdict, RunEnding, answer};
 
 fn query(ask: Ask) -> Query {
     Query {
         name: "q".into(),
         title: "q".into(),
         text: String::new(),
-        network: 0,
+        network: NetworkId(0),
         ask,
         origin: Span::default(),
     }
 }
 
-fn ask_with(p: &Program, ask: Ask, options: &Manner) -> Answer {
+fn ask_with(p: &Program, ask: Ask, options: &QueryOptions) -> QueryAnswer {
     answer(p, &p.networks[0], &query(ask), options).unwrap()
 }
 
-fn ask(p: &Program, ask: Ask) -> Answer {
-    ask_with(p, ask, &Manner::default())
+fn ask(p: &Program, ask: Ask) -> QueryAnswer {
+    ask_with(p, ask, &QueryOptions::default())
 }
 
 fn at(automaton: u16, l: LocationId) -> Formula {
@@ -43,7 +44,7 @@ fn x(c: u16, op: ClockOp, s: i64) -> Formula {
     Formula::Clock(clock(c, op, s))
 }
 
-fn ending(a: &Answer) -> Option<Ending> {
+fn ending(a: &QueryAnswer) -> Option<RunEnding> {
     a.run.as_ref().map(|r| r.ending)
 }
 
@@ -69,14 +70,14 @@ fn two(bounded: bool) -> Two {
 fn possibly_and_invariantly() {
     let t = two(true);
     let yes = ask(&t.p, Ask::Possibly(at(0, t.b)));
-    assert_eq!(yes.verdict, Verdict::Holds);
+    assert_eq!(yes.verdict, QueryVerdict::Holds);
     assert_eq!(yes.run.unwrap().end, 2 * SECOND);
     assert_eq!(yes.why, "a run reaches it after 1 transition and 2 s");
     let no = ask(&t.p, Ask::Invariantly(at(0, t.a)));
-    assert_eq!((no.verdict, no.run.is_some()), (Verdict::Fails, true));
+    assert_eq!((no.verdict, no.run.is_some()), (QueryVerdict::Fails, true));
     let never = Formula::And(vec![at(0, t.a), at(0, t.b)]);
-    assert_eq!(ask(&t.p, Ask::Possibly(never.clone())).verdict, Verdict::Fails);
-    assert_eq!(ask(&t.p, Ask::Invariantly(not(never))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Possibly(never.clone())).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&t.p, Ask::Invariantly(not(never))).verdict, QueryVerdict::Holds);
 }
 
 #[test]
@@ -84,13 +85,13 @@ fn clocks_in_reachability() {
     let t = two(true);
     let in_a = |f| Formula::And(vec![at(0, t.a), f]);
     let late = ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Ge, 5))));
-    assert_eq!(late.verdict, Verdict::Holds);
+    assert_eq!(late.verdict, QueryVerdict::Holds);
     let run = late.run.unwrap();
     assert_eq!((run.steps.len(), run.end), (0, 5 * SECOND));
-    assert_eq!(ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Gt, 5)))).verdict, Verdict::Fails);
-    assert_eq!(ask(&t.p, Ask::Invariantly(not(in_a(x(0, ClockOp::Gt, 5))))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Gt, 5)))).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&t.p, Ask::Invariantly(not(in_a(x(0, ClockOp::Gt, 5))))).verdict, QueryVerdict::Holds);
     // Greater than any constant of the model, and finer.
-    assert_eq!(ask(&t.p, Ask::Possibly(x(0, ClockOp::Gt, 1000))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Possibly(x(0, ClockOp::Gt, 1000))).verdict, QueryVerdict::Holds);
     let half = ClockConstraint {
         clock: ClockId(0),
         minus: None,
@@ -104,10 +105,10 @@ fn clocks_in_reachability() {
 #[test]
 fn eventually_needs_an_invariant() {
     let t = two(true);
-    assert_eq!(ask(&t.p, Ask::Eventually(at(0, t.b))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Eventually(at(0, t.b))).verdict, QueryVerdict::Holds);
     let t = two(false);
     let no = ask(&t.p, Ask::Eventually(at(0, t.b)));
-    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert_eq!(no.why, "time can pass for ever in `M.a`, so no run has to go on from there");
 }
 
@@ -122,14 +123,14 @@ fn a_missed_guard_is_a_time_lock() {
     edge(b, b).clock(0, ClockOp::Ge, 0).to(&mut m);
     add(&mut p, m);
     let no = ask(&p, Ask::Eventually(at(0, b)));
-    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Stuck)));
+    assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Stuck)));
     assert!(no.run.unwrap().end > 2 * SECOND);
     let yes = ask(&p, Ask::Possibly(Formula::Deadlock));
     let run = yes.run.unwrap();
     assert_eq!((run.steps.len(), run.end), (0, 2 * SECOND + 1));
     let free = Formula::Or(vec![not(Formula::Deadlock), Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)])]);
-    assert_eq!(ask(&p, Ask::Invariantly(free)).verdict, Verdict::Holds);
-    assert_eq!(ask(&p, Ask::Invariantly(not(Formula::Deadlock))).verdict, Verdict::Fails);
+    assert_eq!(ask(&p, Ask::Invariantly(free)).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, Ask::Invariantly(not(Formula::Deadlock))).verdict, QueryVerdict::Fails);
 }
 
 #[test]
@@ -146,7 +147,7 @@ fn a_deadlock_may_come_from_the_target_s_invariant() {
     assert_eq!(run.end, SECOND + 1);
     assert_eq!(
         ask(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, x(1, ClockOp::Le, 1)]))).verdict,
-        Verdict::Fails
+        QueryVerdict::Fails
     );
 }
 
@@ -160,10 +161,10 @@ fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
     edge(a, b).clock(0, ClockOp::Ge, 3).to(&mut m);
     add(&mut p, m);
     let no = ask(&p, Ask::Eventually(at(0, b)));
-    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Again(0))));
+    assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Again(0))));
     assert_eq!(no.why, "a run goes round for ever through `M.a`, by 1 transition");
     let yes = ask(&p, Ask::PotentiallyAlways(at(0, a)));
-    assert_eq!((yes.verdict, ending(&yes)), (Verdict::Holds, Some(Ending::Again(0))));
+    assert_eq!((yes.verdict, ending(&yes)), (QueryVerdict::Holds, Some(RunEnding::Again(0))));
     // The same in no time.
     p.automata[0].locations[0].kind = LocationKind::Committed;
     p.automata[0].edges[0].clock_guard.clear();
@@ -178,23 +179,23 @@ fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
 fn clocks_in_liveness() {
     let t = two(true);
     // Time passes through each cell, up to the invariant.
-    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Eq, 2))).verdict, Verdict::Holds);
-    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Gt, 2))).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Eq, 2))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Gt, 2))).verdict, QueryVerdict::Holds);
     // Which it need not do in a: it may leave at 2.
     let three_in_a = Formula::And(vec![at(0, t.a), x(0, ClockOp::Ge, 3)]);
-    assert_eq!(ask(&t.p, Ask::Eventually(three_in_a.clone())).verdict, Verdict::Fails);
+    assert_eq!(ask(&t.p, Ask::Eventually(three_in_a.clone())).verdict, QueryVerdict::Fails);
     let or_b = Formula::Or(vec![three_in_a, at(0, t.b)]);
-    assert_eq!(ask(&t.p, Ask::Eventually(or_b)).verdict, Verdict::Holds);
+    assert_eq!(ask(&t.p, Ask::Eventually(or_b)).verdict, QueryVerdict::Holds);
     // No run stays before 2, but one stays before 6 if it ends at 5.
-    assert_eq!(ask(&t.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 2))).verdict, Verdict::Fails);
+    assert_eq!(ask(&t.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 2))).verdict, QueryVerdict::Fails);
     let mut stops = two(true);
     stops.p.automata[0].edges.clear();
     let stays = ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 6)));
-    assert_eq!((stays.verdict, ending(&stays)), (Verdict::Holds, Some(Ending::Stuck)));
-    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, Verdict::Fails);
+    assert_eq!((stays.verdict, ending(&stays)), (QueryVerdict::Holds, Some(RunEnding::Stuck)));
+    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, QueryVerdict::Fails);
     stops.p.automata[0].locations[0].invariant = vec![clock(0, ClockOp::Lt, 5)];
-    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, Verdict::Holds);
-    assert_eq!(ask(&stops.p, Ask::Eventually(x(0, ClockOp::Ge, 5))).verdict, Verdict::Fails);
+    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&stops.p, Ask::Eventually(x(0, ClockOp::Ge, 5))).verdict, QueryVerdict::Fails);
 }
 
 #[test]
@@ -209,16 +210,16 @@ fn leads_to() {
     edge(busy, idle).clock(0, ClockOp::Ge, 1).to(&mut m);
     add(&mut p, m);
     let ask_it = |p: &Program| ask(p, Ask::LeadsTo(at(0, busy), at(0, idle)));
-    assert_eq!(ask_it(&p).verdict, Verdict::Holds);
-    assert_eq!(ask(&p, Ask::Eventually(at(0, busy))).verdict, Verdict::Fails);
+    assert_eq!(ask_it(&p).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, Ask::Eventually(at(0, busy))).verdict, QueryVerdict::Fails);
     let mut worse = p.clone();
     edge(busy, hole).clock(0, ClockOp::Ge, 3).to(&mut worse.automata[0]);
     let no = ask_it(&worse);
-    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert_eq!(no.run.unwrap().end, 3 * SECOND);
     // Only from where the first holds with its clocks.
     let late = Formula::And(vec![at(0, busy), x(0, ClockOp::Gt, 3)]);
-    assert_eq!(ask(&worse, Ask::LeadsTo(late, at(0, idle))).verdict, Verdict::Holds);
+    assert_eq!(ask(&worse, Ask::LeadsTo(late, at(0, idle))).verdict, QueryVerdict::Holds);
 }
 
 #[test]
@@ -237,18 +238,18 @@ fn committed_loops_stay() {
     edge(c, d).to(&mut other);
     add(&mut p, other);
     let yes = ask(&p, Ask::PotentiallyAlways(at(1, c)));
-    assert_eq!((yes.verdict, ending(&yes)), (Verdict::Holds, Some(Ending::Again(0))));
-    assert_eq!(ask(&p, Ask::PotentiallyAlways(Formula::Data(eq(v(q), n(0))))).verdict, Verdict::Fails);
+    assert_eq!((yes.verdict, ending(&yes)), (QueryVerdict::Holds, Some(RunEnding::Again(0))));
+    assert_eq!(ask(&p, Ask::PotentiallyAlways(Formula::Data(eq(v(q), n(0))))).verdict, QueryVerdict::Fails);
     // The other never gets a turn.
-    assert_eq!(ask(&p, Ask::Possibly(at(1, d))).verdict, Verdict::Fails);
+    assert_eq!(ask(&p, Ask::Possibly(at(1, d))).verdict, QueryVerdict::Fails);
 }
 
-fn limits(a: &Answer) -> Vec<Reach> {
+fn limits(a: &QueryAnswer) -> Vec<ExtremumLimit> {
     a.extrema.iter().map(|e| e.limit).collect()
 }
 
-fn secs(s: i64, attained: bool) -> Reach {
-    Reach::At { value: Quantity::Nanos(s * SECOND), attained }
+fn secs(s: i64, attained: bool) -> ExtremumLimit {
+    ExtremumLimit::At { value: ExtremumValue::Nanos(s * SECOND), attained }
 }
 
 #[test]
@@ -257,7 +258,7 @@ fn least_and_greatest() {
     let clocks = |when: Formula| Ask::Sup { of: vec![Measure::Clock(ClockId(0))], when };
     let low = |when: Formula| Ask::Inf { of: vec![Measure::Clock(ClockId(0))], when };
     assert_eq!(limits(&ask(&t.p, clocks(at(0, t.a)))), [secs(5, true)]);
-    assert_eq!(limits(&ask(&t.p, clocks(at(0, t.b)))), [Reach::Unbounded]);
+    assert_eq!(limits(&ask(&t.p, clocks(at(0, t.b)))), [ExtremumLimit::Unbounded]);
     assert_eq!(limits(&ask(&t.p, low(at(0, t.b)))), [secs(2, true)]);
     assert_eq!(limits(&ask(&t.p, low(at(0, t.a)))), [secs(0, true)]);
     let beyond = Formula::And(vec![at(0, t.b), x(0, ClockOp::Gt, 700)]);
@@ -268,7 +269,7 @@ fn least_and_greatest() {
     assert_eq!(sup.why, "< 900 s");
     assert!(sup.extrema[0].run.as_ref().unwrap().end > 899 * SECOND);
     let nowhere = Formula::And(vec![at(0, t.a), at(0, t.b)]);
-    assert_eq!(limits(&ask(&t.p, clocks(nowhere))), [Reach::Nowhere]);
+    assert_eq!(limits(&ask(&t.p, clocks(nowhere))), [ExtremumLimit::Nowhere]);
 }
 
 #[test]
@@ -285,7 +286,7 @@ fn a_clock_beyond_its_constants_is_followed() {
     let of = || vec![Measure::Clock(ClockId(1)), Measure::Data(v(k))];
     let done = || Formula::Data(eq(v(k), n(4)));
     let sup = ask(&p, Ask::Sup { of: of(), when: done() });
-    let four = Reach::At { value: Quantity::Number(4), attained: true };
+    let four = ExtremumLimit::At { value: ExtremumValue::Number(4), attained: true };
     assert_eq!(limits(&sup), [secs(15, true), four]);
     let inf = ask(&p, Ask::Inf { of: of(), when: done() });
     assert_eq!(limits(&inf), [secs(8, false), four]);
@@ -305,7 +306,7 @@ fn the_fastest_way_may_have_more_transitions() {
     edge(l[2], l[3]).clock(0, ClockOp::Ge, 3).to(&mut m);
     add(&mut p, m);
     let go = |witness, delays, seed| {
-        let options = Manner { witness, delays, seed, ..Manner::default() };
+        let options = QueryOptions { witness, delays, seed, ..QueryOptions::default() };
         let run = ask_with(&p, Ask::Possibly(at(0, l[3])), &options).run.unwrap();
         (run.steps.len(), run.end, run.steps.iter().map(|s| s.time).collect::<Vec<_>>())
     };
@@ -320,7 +321,7 @@ fn the_fastest_way_may_have_more_transitions() {
     assert!(drawn.iter().any(|t| t != &drawn[0]));
     assert_eq!(drawn[3], go(WitnessKind::Fastest, Delays::Sampled, 3).2);
     // A goal with a clock: time passes after the last transition.
-    let options = Manner { witness: WitnessKind::Fastest, ..Manner::default() };
+    let options = QueryOptions { witness: WitnessKind::Fastest, ..QueryOptions::default() };
     let f = Formula::And(vec![at(0, l[2]), x(0, ClockOp::Gt, 2)]);
     let run = ask_with(&p, Ask::Possibly(f), &options).run.unwrap();
     assert_eq!((run.steps.len(), run.end), (2, 2 * SECOND + 1));
@@ -337,15 +338,22 @@ fn fastest_is_finite_where_a_goal_cannot_be_reached() {
     edge(a, a).clock(1, ClockOp::Ge, 2).reset(1).to(&mut m);
     edge(a, b).clock(0, ClockOp::Gt, 3).to(&mut m);
     add(&mut p, m);
-    let goal =
-        hrdsl_ta::Goal { what: hrdsl_ta::GoalKind::Location { automaton: 0, location: b }, settled: false };
+    let goal = hrdsl_ta::ReachabilityGoal {
+        what: hrdsl_ta::GoalKind::Location { automaton: 0, location: b },
+        settled: false,
+    };
     let model = model(&p);
-    let run = hrdsl_ta::fastest(&model, &goal, hrdsl_ta::Budget::default(), hrdsl_ta::Timing::default());
+    let run = hrdsl_ta::fastest(
+        &model,
+        &goal,
+        hrdsl_ta::SearchBudget::default(),
+        hrdsl_ta::ScheduleOptions::default(),
+    );
     assert_eq!(run.unwrap(), None);
 }
 
-fn model(p: &Program) -> hrdsl_ta::Model<'_> {
-    hrdsl_ta::Model::new(p, &p.networks[0], &hrdsl_ta::Observe::default()).unwrap()
+fn model(p: &Program) -> hrdsl_ta::CompiledNetwork<'_> {
+    hrdsl_ta::CompiledNetwork::new(p, &p.networks[0], &hrdsl_ta::ObservationOptions::default()).unwrap()
 }
 
 #[test]
@@ -365,12 +373,12 @@ fn a_run_is_told_and_drawn() {
     add(&mut p, m);
     let f = Formula::And(vec![at(0, b), at(1, c)]);
     let run = ask(&p, Ask::Possibly(f)).run.unwrap();
-    let story = hrdsl_ta::Story::of(&p, &p.networks[0], &run);
+    let trace = hrdsl_ta::WitnessTrace::from_run(&p, &p.networks[0], &run);
     let told = "\
 2 s  Sender  go  a -> b, R: c -> d   [q: 0 -> 2; Sender.x = 0]
 2 s  R           d -> c
 ";
-    assert_eq!(story.text(), told);
+    assert_eq!(trace.text(), told);
     let mermaid = "\
 sequenceDiagram
   participant a0 as Sender
@@ -381,13 +389,13 @@ sequenceDiagram
   Note over a1: c → d
   Note over a1: d → c
 ";
-    assert_eq!(story.mermaid(), mermaid);
-    let dot = story.dot();
+    assert_eq!(trace.mermaid(), mermaid);
+    let dot = trace.dot();
     assert!(
         dot.starts_with("digraph sequence {")
             && dot.contains("s0_0 -> s0_1 [label = \"go\", style = dashed];")
     );
-    let json = serde_json::to_value(&story).unwrap();
+    let json = serde_json::to_value(&trace).unwrap();
     assert_eq!(json["scenes"][0]["parts"][1]["to"], "d");
     assert_eq!(json["ending"], "reached");
 }
@@ -430,23 +438,26 @@ fn channels_urge_and_are_told() {
     // Time never passes in a: the hand-shake is possible.
     let in_a = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 3)]);
     let fresh = Formula::And(vec![at(0, b), x(0, ClockOp::Gt, 2)]);
-    assert_eq!(ask(&p, Ask::Possibly(Formula::And(vec![at(0, a), not(at(1, a))]))).verdict, Verdict::Fails);
-    assert_eq!(ask(&p, Ask::Eventually(at(0, b))).verdict, Verdict::Holds);
-    assert_eq!(ask(&p, Ask::LeadsTo(at(0, a), at(1, b))).verdict, Verdict::Holds);
+    assert_eq!(
+        ask(&p, Ask::Possibly(Formula::And(vec![at(0, a), not(at(1, a))]))).verdict,
+        QueryVerdict::Fails
+    );
+    assert_eq!(ask(&p, Ask::Eventually(at(0, b))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, Ask::LeadsTo(at(0, a), at(1, b))).verdict, QueryVerdict::Holds);
     // The clock keeps what it had when it came back, but no time is added.
-    assert_eq!(ask(&p, Ask::Possibly(in_a)).verdict, Verdict::Holds);
+    assert_eq!(ask(&p, Ask::Possibly(in_a)).verdict, QueryVerdict::Holds);
     let run = ask(&p, Ask::Possibly(fresh)).run.unwrap();
     assert_eq!((run.steps.len(), run.end), (1, 2 * SECOND + 1));
     let again = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)]);
     let run = ask(&p, Ask::Possibly(again)).run.unwrap();
-    let story = hrdsl_ta::Story::of(&p, &p.networks[0], &run);
+    let trace = hrdsl_ta::WitnessTrace::from_run(&p, &p.networks[0], &run);
     let told = "          0 s  A  go(1)  a -> b, B: a -> b   [A.x = 0; B.x = 0]
 2.000000001 s  A  all    b -> a, B: b -> a
 ";
-    assert_eq!(story.text(), told);
-    assert!(story.mermaid().contains("  a0->>a1: go(1)\n"));
+    assert_eq!(trace.text(), told);
+    assert!(trace.mermaid().contains("  a0->>a1: go(1)\n"));
     // Waiting in b for ever is possible: nothing forces the joint channel.
     let no = ask(&p, Ask::LeadsTo(at(0, b), at(0, a)));
-    assert_eq!((no.verdict, ending(&no)), (Verdict::Fails, Some(Ending::Waits)));
+    assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert!(no.why.starts_with("after the first, time can pass for ever in `A.b` and `B.b`"), "{}", no.why);
 }

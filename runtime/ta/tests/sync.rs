@@ -14,24 +14,24 @@ use hrdsl_ir::{
     },
     value::SECOND,
 };
-use hrdsl_ta::{Error, Model, Observe, Options, Report, explore};
+use hrdsl_ta::{CompiledNetwork, ObservationOptions, SearchError, SearchOptions, SearchReport, explore};
 
-fn search(p: &Program, options: &Options) -> Result<Report, Error> {
-    let model = Model::new(p, &p.networks[0], &Observe::default())?;
+fn search(p: &Program, options: &SearchOptions) -> Result<SearchReport, SearchError> {
+    let model = CompiledNetwork::new(p, &p.networks[0], &ObservationOptions::default())?;
     explore(&model, &[], options, &|_| true)
 }
 
 /// How many discrete states can be reached, by all ways of searching.
 fn discrete(p: &Program) -> usize {
-    let reference = search(p, &Options::reference()).unwrap();
-    let kept = search(p, &Options { reduce: false, ..Options::default() }).unwrap();
+    let reference = search(p, &SearchOptions::reference()).unwrap();
+    let kept = search(p, &SearchOptions { reduce: false, ..SearchOptions::default() }).unwrap();
     assert_eq!(reference.discrete_states, kept.discrete_states);
     reference.discrete_states
 }
 
 fn fault(p: &Program) -> String {
-    match search(p, &Options::default()) {
-        Err(Error::Model { error, .. }) => error.to_string(),
+    match search(p, &SearchOptions::default()) {
+        Err(SearchError::Model { error, .. }) => error.to_string(),
         other => panic!("{other:?}"),
     }
 }
@@ -225,7 +225,7 @@ fn what_nothing_reads_is_left_out() {
     edge(l, l).select(var("k", 0, 7, 0)).set(seen, v(1)).to(&mut a);
     add(&mut p, a);
     assert_eq!(discrete(&p), 8);
-    assert_eq!(search(&p, &Options::default()).unwrap().discrete_states, 1);
+    assert_eq!(search(&p, &SearchOptions::default()).unwrap().discrete_states, 1);
     // But not what may leave its range: that is an answer.
     p.shared[0].hi = 6;
     let found = fault(&p);

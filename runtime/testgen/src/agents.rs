@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_bdi::{
-    choose::{BeliefSet, Explorer, factors},
-    coverage::Team,
-    measure::Measured,
+    choose::{BeliefExplorer, BeliefSet, factors},
+    coverage::AgentTeam,
+    measure::AgentCounts,
 };
-use hrdsl_harness::Ended;
+use hrdsl_harness::RunTermination;
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
@@ -16,11 +16,12 @@ use hrdsl_ir::{
 use hrdsl_results::ModelCoverage;
 use rayon::prelude::*;
 
-use crate::model_run::{Detail, How, ModelRun, model_run};
 use crate::{
-    AbstractTest, Found, Harvest, Origin, concrete, extract,
-    goals::{Goals, Reached, agents},
+    concrete, extract,
+    goals::{AgentGoals, Reached, agents},
+    harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin},
     model,
+    model_run::{LogDetail, ModelRun, ModelRunOptions, model_run},
 };
 
 /// Different warnings of runs that are told, at most.
@@ -30,15 +31,15 @@ const WARNINGS: usize = 20;
 ///
 /// # Errors
 /// A choice that has no alternatives, or a model that cannot be run.
-pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<Harvest, String> {
+pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
     let Method::Agents { players, stop_after, goals, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
     let mut explorer = explorer(program, suite, count, seed)?;
-    let awaits = extract::Awaits::of(program, players);
-    let goals = Goals::of(program, players, goals);
-    let model = Model { program, suite, players, awaits, goals: &goals, seed };
-    let mut sum = Sum::new(program, players, *stop_after);
+    let awaits = extract::AwaitGroups::of(program, players);
+    let goals = AgentGoals::of(program, players, goals);
+    let model = AgentRunInput { program, suite, players, awaits, goals: &goals, seed };
+    let mut sum = AgentRunTally::new(program, players, *stop_after);
     while !sum.is_over() {
         let batch = explorer.next_batch();
         if batch.is_empty() {
@@ -60,21 +61,25 @@ fn explorer<'p>(
     suite: &'p Suite,
     count: u32,
     seed: u64,
-) -> Result<Explorer<'p>, String> {
+) -> Result<BeliefExplorer<'p>, String> {
     let Method::Agents { players, choose, explore, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
     let fault = |e| format!("suite `{}`: {e}", suite.name);
     let factors = factors(program, choose).map_err(fault)?;
     let ids: Vec<AgentId> = agents(program, players).into_iter().map(|(id, _)| id).collect();
-    Explorer::of(program, &ids, choose, &factors, (*explore, count, seed)).map_err(fault)
+    BeliefExplorer::of(program, &ids, choose, &factors, (*explore, count, seed)).map_err(fault)
 }
 
 /// Runs the agents with each set, all at once, and adds up what that brought, in the order of the sets.
-fn run_batch(model: &Model<'_>, sum: &mut Sum, batch: Vec<BeliefSet>) -> Result<Vec<u32>, String> {
+fn run_batch(
+    model: &AgentRunInput<'_>,
+    sum: &mut AgentRunTally,
+    batch: Vec<BeliefSet>,
+) -> Result<Vec<u32>, String> {
     // Sets are numbered from 1.
     let numbered: Vec<(u64, BeliefSet)> = (sum.sets + 1..).zip(batch).collect();
-    let runs: Vec<Result<Outcome, String>> =
+    let runs: Vec<Result<AgentRunOutcome, String>> =
         numbered.par_iter().map(|(number, set)| model.run(*number, set)).collect();
     let mut rewards = Vec::new();
     for run in runs {
@@ -102,10 +107,10 @@ pub fn belief_set(
         return Err(not_by_agents(suite));
     };
     let mut explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
-    let awaits = extract::Awaits::of(program, players);
-    let goals = Goals::of(program, players, goals);
-    let model = Model { program, suite, players, awaits, goals: &goals, seed };
-    let mut sum = Sum::new(program, players, *stop_after);
+    let awaits = extract::AwaitGroups::of(program, players);
+    let goals = AgentGoals::of(program, players, goals);
+    let model = AgentRunInput { program, suite, players, awaits, goals: &goals, seed };
+    let mut sum = AgentRunTally::new(program, players, *stop_after);
     let mut made = 0;
     loop {
         let mut batch = explorer.next_batch();
@@ -140,36 +145,36 @@ pub fn how_many_sets(
 }
 
 /// What is the same for all runs.
-struct Model<'a> {
+struct AgentRunInput<'a> {
     program: &'a Program,
     suite: &'a Suite,
     players: &'a [PlayerRef],
-    awaits: extract::Awaits,
-    goals: &'a Goals,
+    awaits: extract::AwaitGroups,
+    goals: &'a AgentGoals,
     seed: u64,
 }
 
 /// What a run brought.
-struct Outcome {
+struct AgentRunOutcome {
     test: AbstractTest,
-    measured: Vec<(AgentId, Measured)>,
+    measured: Vec<(AgentId, AgentCounts)>,
     /// Of the coverage points.
     numbers: Vec<i64>,
     warnings: Vec<String>,
     keeps_assumptions: bool,
 }
 
-impl Model<'_> {
+impl AgentRunInput<'_> {
     /// Runs the agents with a set of beliefs; `number` is its place among all sets.
-    fn run(&self, number: u64, set: &BeliefSet) -> Result<Outcome, String> {
+    fn run(&self, number: u64, set: &BeliefSet) -> Result<AgentRunOutcome, String> {
         let seed = concrete::seed_of(self.seed, number);
         let ModelRun { trace, ended, measured, warnings, .. } = model_run(
             self.program,
             self.players,
             &set.facts,
-            &How::new(seed, self.suite.horizon, Detail::Failures),
+            &ModelRunOptions::new(seed, self.suite.horizon, LogDetail::Failures),
         );
-        if let Ended::Fault(fault) = ended {
+        if let RunTermination::Fault(fault) = ended {
             return Err(format!("suite `{}`, with {}: {fault}", self.suite.name, set.text.join(", ")));
         }
         let covered = extract::covered(self.program, &trace);
@@ -178,15 +183,15 @@ impl Model<'_> {
             because: vec![set.text.join(", ")],
             predicts: covered.cross_names(&self.program.coverage),
             reaches: self.goals.reached(&measured, &covered),
-            origin: Some(Origin { number, beliefs: set.clone() }),
+            origin: Some(TestOrigin { number, beliefs: set.clone() }),
         };
         let keeps_assumptions = extract::keeps_assumptions(self.program, &trace);
-        Ok(Outcome { test, measured, numbers: covered.numbers, warnings, keeps_assumptions })
+        Ok(AgentRunOutcome { test, measured, numbers: covered.numbers, warnings, keeps_assumptions })
     }
 }
 
 /// What all runs brought, in the order of their sets.
-struct Sum {
+struct AgentRunTally {
     stop_after: Option<u32>,
     /// Sets that count.
     sets: u64,
@@ -197,15 +202,15 @@ struct Sum {
     /// What only runs reached that break an assumption.
     broken: Reached,
     left_out: usize,
-    measured: Vec<(AgentId, Measured)>,
+    measured: Vec<(AgentId, AgentCounts)>,
     seen: BTreeSet<Vec<i64>>,
     /// With the number of runs that gave them.
     warnings: BTreeMap<String, u64>,
 }
 
-impl Sum {
+impl AgentRunTally {
     fn new(program: &Program, players: &[PlayerRef], stop_after: Option<u32>) -> Self {
-        let measured = agents(program, players).into_iter().map(|(id, a)| (id, Measured::new(a)));
+        let measured = agents(program, players).into_iter().map(|(id, a)| (id, AgentCounts::new(a)));
         Self {
             stop_after,
             sets: 0,
@@ -226,7 +231,7 @@ impl Sum {
     }
 
     /// Adds a run; gives the number of goals that it was the first to reach.
-    fn add(&mut self, run: Outcome) -> u32 {
+    fn add(&mut self, run: AgentRunOutcome) -> u32 {
         self.sets += 1;
         self.idle += 1;
         for warning in run.warnings.into_iter().collect::<BTreeSet<_>>() {
@@ -252,16 +257,16 @@ impl Sum {
         u32::try_from(new).unwrap_or(u32::MAX)
     }
 
-    fn harvest(self, model: &Model<'_>, explorer: &Explorer<'_>) -> Harvest {
+    fn harvest(self, model: &AgentRunInput<'_>, explorer: &BeliefExplorer<'_>) -> AbstractTests {
         let notes = self.notes(explorer);
-        let team = Team { program: model.program, measured: &self.measured };
+        let team = AgentTeam { program: model.program, measured: &self.measured };
         let goals = &model.goals.names;
         let why = |goal: usize| match (self.reached.contains(&goal), self.broken.contains(&goal)) {
             (true, _) => String::new(),
             (false, true) => "only runs that break an assumption reach it".to_owned(),
             (false, false) => model.goals.why(goal, &team, &self.seen),
         };
-        let found = Found {
+        let found = AgentFindings {
             reasons: (0..goals.len()).map(why).collect(),
             goals: goals.clone(),
             coverage: ModelCoverage {
@@ -271,10 +276,10 @@ impl Sum {
                 agents: model::coverage(model.program, model.players, &team),
             },
         };
-        Harvest { tests: self.tests, notes, found: Some(found), ..Harvest::default() }
+        AbstractTests { tests: self.tests, notes, found: Some(found), ..AbstractTests::default() }
     }
 
-    fn notes(&self, explorer: &Explorer<'_>) -> Vec<String> {
+    fn notes(&self, explorer: &BeliefExplorer<'_>) -> Vec<String> {
         let mut notes = Vec::new();
         if self.left_out > 0 {
             notes.push(format!(
@@ -304,14 +309,20 @@ impl Sum {
 mod tests {
     use super::*;
 
-    fn outcome(goals: &[usize], keeps_assumptions: bool) -> Outcome {
+    fn outcome(goals: &[usize], keeps_assumptions: bool) -> AgentRunOutcome {
         let test = AbstractTest { reaches: goals.iter().copied().collect(), ..AbstractTest::default() };
         let warnings = vec!["odd".to_owned(), "odd".to_owned()];
-        Outcome { test, measured: Vec::new(), numbers: vec![goals.len() as i64], warnings, keeps_assumptions }
+        AgentRunOutcome {
+            test,
+            measured: Vec::new(),
+            numbers: vec![goals.len() as i64],
+            warnings,
+            keeps_assumptions,
+        }
     }
 
-    fn sum(stop_after: Option<u32>) -> Sum {
-        Sum::new(&Program::default(), &[], stop_after)
+    fn sum(stop_after: Option<u32>) -> AgentRunTally {
+        AgentRunTally::new(&Program::default(), &[], stop_after)
     }
 
     #[test]

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use hrdsl_ir::{Program, coverage::BinName, ta::LocationId};
-use hrdsl_ta::Witness;
+use hrdsl_ta::WitnessRun;
 
 use hrdsl_prove as prove;
 
 /// What happened in a run, as goals ask for it.
-pub struct Seen {
+pub struct ReachedItems {
     /// Automaton and location.
     locations: BTreeSet<(usize, LocationId)>,
     /// Automaton and edge.
@@ -22,7 +22,7 @@ pub struct Seen {
 
 /// A goal of which a run shows by itself whether it reaches it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum WitnessedGoal {
     Location(usize, LocationId),
     Edge(usize, usize),
     Pair(usize, usize, usize),
@@ -33,10 +33,10 @@ pub enum Shown {
     Nothing,
 }
 
-impl Seen {
+impl ReachedItems {
     /// `initial`: where the automata start, in the network's order.
     #[must_use]
-    pub fn of(program: &Program, initial: &[LocationId], witness: &Witness, bins: Vec<BinName>) -> Self {
+    pub fn of(program: &Program, initial: &[LocationId], witness: &WitnessRun, bins: Vec<BinName>) -> Self {
         let mut seen = Self {
             locations: initial.iter().copied().enumerate().collect(),
             edges: BTreeSet::new(),
@@ -64,15 +64,15 @@ impl Seen {
     }
 
     #[must_use]
-    pub fn has(&self, goal: &Shown) -> bool {
+    pub fn has(&self, goal: &WitnessedGoal) -> bool {
         match goal {
-            Shown::Location(a, l) => self.locations.contains(&(*a, *l)),
-            Shown::Edge(a, e) => self.edges.contains(&(*a, *e)),
-            Shown::Pair(a, first, second) => self.pairs.contains(&(*a, *first, *second)),
-            Shown::Bin(name) => self.bins.contains(name),
-            Shown::Violation(monitor) => self.violated.get(*monitor) == Some(&true),
-            Shown::Trigger(monitor) => self.triggered.get(*monitor) == Some(&true),
-            Shown::Nothing => false,
+            WitnessedGoal::Location(a, l) => self.locations.contains(&(*a, *l)),
+            WitnessedGoal::Edge(a, e) => self.edges.contains(&(*a, *e)),
+            WitnessedGoal::Pair(a, first, second) => self.pairs.contains(&(*a, *first, *second)),
+            WitnessedGoal::Bin(name) => self.bins.contains(name),
+            WitnessedGoal::Violation(monitor) => self.violated.get(*monitor) == Some(&true),
+            WitnessedGoal::Trigger(monitor) => self.triggered.get(*monitor) == Some(&true),
+            WitnessedGoal::Nothing => false,
         }
     }
 }

@@ -3,7 +3,7 @@
 use hrdsl_ir::{ArgPattern, Value, test::TestStep};
 use indexmap::IndexMap;
 
-use crate::AbstractTest;
+use crate::harvest::AbstractTest;
 
 /// How many origins of one abstract test are written out.
 const ORIGINS: usize = 3;

@@ -3,34 +3,23 @@
 use hrdsl_ir::{
     Program,
     coverage::{BinName, Condition, Cross},
+    monitor::RequirementId,
     suite::SearchGoal,
     ta::{Ask, Automaton, AutomatonId, LocationId, Network},
 };
 use hrdsl_results::GoalName;
-use hrdsl_ta::{Counter, Goal, GoalKind, StateFormula};
+use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
 
-use crate::{covers::Shown, flow};
+use crate::{
+    covers::WitnessedGoal,
+    flow,
+    named::{NamedGoal, declared, edge_name, is_generated},
+};
 use hrdsl_prove as prove;
 
-/// A goal with its name for people. It is reached if one of the ways to it is.
-pub struct Named {
-    pub name: GoalName,
-    pub ways: Vec<Goal>,
-    /// Each with the way of the same place.
-    pub shown: Vec<Shown>,
-    /// Index of the requirement whose observer it needs.
-    pub monitor: Option<usize>,
-}
-
-impl Named {
-    pub(super) fn one(name: impl Into<GoalName>, what: GoalKind, settled: bool, shown: Shown) -> Self {
-        Self { name: name.into(), ways: vec![Goal { what, settled }], shown: vec![shown], monitor: None }
-    }
-}
-
 /// The goals of a suite, each once.
-pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<Named> {
-    let mut all: Vec<Named> = Vec::new();
+pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<NamedGoal> {
+    let mut all: Vec<NamedGoal> = Vec::new();
     for goal in asked.iter().flat_map(|g| of(program, network, g)) {
         if all.iter().all(|known| known.name != goal.name) {
             all.push(goal);
@@ -40,116 +29,90 @@ pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<
 }
 
 /// One counter for each coverage point, up to where its bins no longer tell numbers apart.
-pub fn counters(program: &Program) -> Vec<Counter> {
+pub fn counters(program: &Program) -> Vec<EventCounter> {
     let cap = |point: &hrdsl_ir::coverage::Point| {
         point.bins.iter().map(|b| b.hi.map_or(b.lo, |hi| hi + 1).max(b.lo)).max().unwrap_or(0)
     };
     let counter =
-        |point: &hrdsl_ir::coverage::Point| Counter { patterns: point.count.clone(), cap: cap(point) };
+        |point: &hrdsl_ir::coverage::Point| EventCounter { patterns: point.count.clone(), cap: cap(point) };
     program.coverage.points.iter().map(counter).collect()
 }
 
-fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<Named> {
+fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal> {
     match goal {
-        SearchGoal::Bins { cross } => {
-            program.coverage.crosses.get(*cross as usize).map_or_else(Vec::new, |c| bins(program, c))
+        SearchGoal::Bins(cross) => {
+            program.coverage.crosses.get(usize::from(cross.0)).map_or_else(Vec::new, |c| bins(program, c))
         }
         SearchGoal::Locations => each_automaton(program, network, locations),
         SearchGoal::Edges => each_automaton(program, network, edges),
         SearchGoal::Pairs => each_automaton(program, network, flow::pairs),
         SearchGoal::Uses => flow::uses(program, network),
-        SearchGoal::Violation { monitor } => requirement(program, *monitor, "violation", Shown::Violation),
-        SearchGoal::Trigger { monitor } => requirement(program, *monitor, "trigger", Shown::Trigger),
-        SearchGoal::Query { query } => {
-            let Some(query) = program.queries.get(usize::from(*query)) else { return Vec::new() };
+        SearchGoal::Violation(id) => requirement(program, *id, "violation", WitnessedGoal::Violation),
+        SearchGoal::Trigger(id) => requirement(program, *id, "trigger", WitnessedGoal::Trigger),
+        SearchGoal::Query(id) => {
+            let Some(query) = program.queries.get(usize::from(id.0)) else { return Vec::new() };
             let Ask::Possibly(formula) = &query.ask else { return Vec::new() };
             let goal = prove::of_formula(formula);
-            vec![Named::one(format!("query {}", query.name), goal.what, false, Shown::Nothing)]
+            vec![NamedGoal::one(format!("query {}", query.name), goal.what, false, WitnessedGoal::Nothing)]
         }
     }
 }
 
-fn requirement(program: &Program, monitor: u16, what: &str, shown: fn(usize) -> Shown) -> Vec<Named> {
-    let at = usize::from(monitor);
+fn requirement(
+    program: &Program,
+    id: RequirementId,
+    what: &str,
+    shown: fn(usize) -> WitnessedGoal,
+) -> Vec<NamedGoal> {
+    let at = usize::from(id.0);
     let Some(requirement) = program.monitors.get(at) else { return Vec::new() };
     let name = GoalName::from(format!("{what} of {}", requirement.name));
-    vec![Named { name, ways: Vec::new(), shown: vec![shown(at)], monitor: Some(at) }]
+    vec![NamedGoal { name, alternatives: Vec::new(), shown: vec![shown(at)], monitor: Some(at) }]
 }
 
 fn each_automaton(
     program: &Program,
     network: &Network,
-    f: impl Fn(usize, &Automaton) -> Vec<Named>,
-) -> Vec<Named> {
+    f: impl Fn(usize, &Automaton) -> Vec<NamedGoal>,
+) -> Vec<NamedGoal> {
     let of = |(index, id): (usize, &AutomatonId)| f(index, &program.automata[id.0 as usize]);
     network.automata.iter().enumerate().flat_map(of).collect()
 }
 
-fn locations(index: usize, automaton: &Automaton) -> Vec<Named> {
+fn locations(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
     let ids = (0u16..).map(LocationId).zip(&automaton.locations);
     let named = ids.filter(|(_, l)| !is_generated(&l.name)).map(|(location, l)| {
         let what = GoalKind::Location { automaton: index, location };
         let name = format!("location {}.{}", automaton.name, l.name);
-        Named::one(name, what, false, Shown::Location(index, location))
+        NamedGoal::one(name, what, false, WitnessedGoal::Location(index, location))
     });
     named.collect()
 }
 
-fn edges(index: usize, automaton: &Automaton) -> Vec<Named> {
+fn edges(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
     let named = declared(automaton).into_iter().map(|(number, edge)| {
         let what = GoalKind::Edge { automaton: index, edge };
         let name = format!("edge {}: {}", automaton.name, edge_name(automaton, number, edge));
-        Named::one(name, what, false, Shown::Edge(index, edge))
+        NamedGoal::one(name, what, false, WitnessedGoal::Edge(index, edge))
     });
     named.collect()
-}
-
-/// Edges that were written, with their numbers in the source from 1.
-pub(super) fn declared(automaton: &Automaton) -> Vec<(usize, usize)> {
-    let name = |id: LocationId| automaton.locations[usize::from(id.0)].name.as_str();
-    let written = automaton.edges.iter().enumerate().filter(|(_, e)| !is_generated(name(e.from)));
-    (1..).zip(written.map(|(edge, _)| edge)).collect()
-}
-
-/// `sense -> decide (edge 3)`
-pub(super) fn edge_name(automaton: &Automaton, number: usize, edge: usize) -> String {
-    let name = |id: LocationId| automaton.locations[usize::from(id.0)].name.as_str();
-    let e = &automaton.edges[edge];
-    format!("{} -> {} (edge {number})", name(e.from), name(final_target(automaton, e.to)))
-}
-
-/// Locations that the compiler put into an edge have a `~` in their name; so have variables.
-pub(super) fn is_generated(name: &str) -> bool {
-    name.contains('~')
-}
-
-/// Where an edge leads to in the source: through generated locations.
-fn final_target(automaton: &Automaton, mut to: LocationId) -> LocationId {
-    for _ in 0..automaton.locations.len() {
-        if !is_generated(&automaton.locations[to.0 as usize].name) {
-            break;
-        }
-        let Some(next) = automaton.edges.iter().find(|e| e.from == to) else { break };
-        to = next.to;
-    }
-    to
 }
 
 // ── bins ──
 
 /// A bin holds where its condition does and none of the cross's `ignore`s.
-fn bins(program: &Program, cross: &Cross) -> Vec<Named> {
+fn bins(program: &Program, cross: &Cross) -> Vec<NamedGoal> {
     let ignored = cross.ignore.iter().map(|c| StateFormula::Not(Box::new(formula(program, c))));
     let ignored: Vec<StateFormula> = ignored.collect();
     let named = cross.bins.iter().map(|bin| {
         let mut all = vec![formula(program, &bin.when)];
         all.extend(ignored.iter().cloned());
         let name = BinName::new(&cross.name, &bin.name);
-        Named::one(
+        NamedGoal::one(
             GoalName::of_bin(&name),
             GoalKind::Condition(StateFormula::And(all)),
             true,
-            Shown::Bin(name),
+            WitnessedGoal::Bin(name),
         )
     });
     named.collect()

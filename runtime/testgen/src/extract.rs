@@ -5,7 +5,7 @@
 
 use std::convert::Infallible;
 
-use hrdsl_coverage::{Collector, Coverage};
+use hrdsl_coverage::{CoverageCollector, TestCoverage};
 use hrdsl_ir::{
     ActorId, EventId, EventPattern, Nanos, Program, Role, Value,
     bdi::{Agent, StepKind, TriggerOn, each_step},
@@ -16,21 +16,21 @@ use hrdsl_ir::{
     test::TestStep,
     value::nanos,
 };
-use hrdsl_trace::{Trace, What};
+use hrdsl_trace::{Trace, TraceStepKind};
 
 /// The groups of events that an actor's model waits for at once.
-pub struct Awaits {
-    groups: Vec<Group>,
+pub struct AwaitGroups {
+    groups: Vec<AwaitGroup>,
 }
 
-struct Group {
+struct AwaitGroup {
     actor: ActorId,
     events: Vec<EventPattern>,
     /// How long the model waits, if it says so with a constant.
     within: Option<Nanos>,
 }
 
-impl Awaits {
+impl AwaitGroups {
     /// What the models that play environment actors wait for.
     #[must_use]
     pub fn of(program: &Program, players: &[PlayerRef]) -> Self {
@@ -46,7 +46,7 @@ impl Awaits {
                     for location in 0..automaton.locations.len() {
                         let edges = automaton.edges.iter().filter(|e| e.from.0 as usize == location);
                         let events: Vec<EventPattern> = edges.filter_map(|e| received(&e.sync)).collect();
-                        groups.push(Group { actor, events, within: None });
+                        groups.push(AwaitGroup { actor, events, within: None });
                     }
                 }
             }
@@ -59,22 +59,22 @@ impl Awaits {
     }
 
     /// The first group of this actor that waits for such an event.
-    fn group(&self, actor: ActorId, what: &What) -> Option<&Group> {
-        let What::Event { event, args } = what else { return None };
-        let waits = |g: &&Group| g.actor == actor && g.events.iter().any(|p| p.matches(*event, args));
+    fn group(&self, actor: ActorId, what: &TraceStepKind) -> Option<&AwaitGroup> {
+        let TraceStepKind::Event { event, args } = what else { return None };
+        let waits = |g: &&AwaitGroup| g.actor == actor && g.events.iter().any(|p| p.matches(*event, args));
         self.groups.iter().find(waits)
     }
 }
 
 /// What an agent waits for: each `await`, then the events of plans for what it perceives.
-fn of_agent(program: &Program, agent: &Agent) -> Vec<Group> {
+fn of_agent(program: &Program, agent: &Agent) -> Vec<AwaitGroup> {
     let actor = agent.actor;
     let mut groups = Vec::new();
     for plan in &agent.plans {
         each_step(&plan.body, &mut |step| {
             if let StepKind::Await { events, within } = &step.kind {
                 let within = within.as_ref().and_then(constant);
-                groups.push(Group { actor, events: events.clone(), within });
+                groups.push(AwaitGroup { actor, events: events.clone(), within });
             }
         });
     }
@@ -88,7 +88,11 @@ fn of_agent(program: &Program, agent: &Agent) -> Vec<Group> {
         | TriggerOn::TestFailed(_) => None,
     };
     let perceived = agent.plans.iter().filter_map(|p| percept(p.trigger.on));
-    groups.extend(perceived.map(|event| Group { actor, events: vec![any(program, event)], within: None }));
+    groups.extend(perceived.map(|event| AwaitGroup {
+        actor,
+        events: vec![any(program, event)],
+        within: None,
+    }));
     groups
 }
 
@@ -118,13 +122,13 @@ fn received(sync: &Sync) -> Option<EventPattern> {
 
 /// The test that stimulates what the trace shows. `patience` bounds each await for which the model gives no time.
 #[must_use]
-pub fn steps(program: &Program, awaits: &Awaits, trace: &Trace, patience: Nanos) -> Vec<TestStep> {
+pub fn steps(program: &Program, awaits: &AwaitGroups, trace: &Trace, patience: Nanos) -> Vec<TestStep> {
     let mut out = Vec::new();
     // When the script is free again, as far as the model's time goes, and the first trace step it has not looked at.
     let mut free: Nanos = 0;
     let mut looked = 0;
     for (index, step) in trace.steps.iter().enumerate() {
-        let What::Event { event, args } = &step.what else { continue };
+        let TraceStepKind::Event { event, args } = &step.what else { continue };
         let declared = program.event(*event);
         if !declared.is_stimulus() || program.actor(declared.from).role != Role::Environment {
             continue;
@@ -175,8 +179,8 @@ pub fn taken<'p>(program: &'p Program, event: EventId, args: &[Value]) -> Vec<&'
 
 /// The numbers of a trace, and the bins that it falls into.
 #[must_use]
-pub fn covered(program: &Program, trace: &Trace) -> Coverage {
-    let mut collector = Collector::new(program);
+pub fn covered(program: &Program, trace: &Trace) -> TestCoverage {
+    let mut collector = CoverageCollector::new(program);
     trace.replay(&mut collector);
     collector.finish()
 }
@@ -185,8 +189,8 @@ pub fn covered(program: &Program, trace: &Trace) -> Coverage {
 #[must_use]
 pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
     let events = trace.steps.iter().filter_map(|s| match &s.what {
-        What::Event { event, args } => Some((s.time, *event, args.clone())),
-        What::Sample { .. } => None,
+        TraceStepKind::Event { event, args } => Some((s.time, *event, args.clone())),
+        TraceStepKind::Sample { .. } => None,
     });
     let events: Vec<_> = events.collect();
     hrdsl_coverage::assume::Assumptions::allows(program, &events)
@@ -218,7 +222,13 @@ mod tests {
         Plan {
             label: "p".into(),
             atomic: false,
-            trigger: Trigger { on, args: vec![], annotations: vec![] },
+            trigger: Trigger {
+                name: Span::default(),
+                origin: Span::default(),
+                on,
+                args: vec![],
+                annotations: vec![],
+            },
             context: Context::True,
             body: steps_of(body),
             vars: vec![],
@@ -241,6 +251,7 @@ mod tests {
         let inner = vec![steps_of(vec![awaits(1, Some(Expr::Var(0)))]), steps_of(vec![awaits(0, None)])];
         let body = vec![awaits(0, Some(sum)), StepKind::Fork { branches: inner, all: true }];
         let belief = |percept| Belief {
+            negates: None,
             name: "b".into(),
             params: vec![],
             annotations: vec![],
@@ -269,7 +280,7 @@ mod tests {
             agents: vec![agent],
             ..Program::default()
         };
-        let groups = Awaits::of(&program, &[PlayerRef::Agent(AgentId(0))]).groups;
+        let groups = AwaitGroups::of(&program, &[PlayerRef::Agent(AgentId(0))]).groups;
         let found: Vec<(u16, Option<Nanos>)> =
             groups.iter().map(|g| (g.events[0].event.0, g.within)).collect();
         // What the person makes itself is not awaited by a test; a time that depends on a variable is not known.

@@ -5,16 +5,16 @@ use hrdsl_ir::{
     expr::Place,
     ta::{Automaton, Edge, FunctionId, Network, Statement, Sync, Update},
 };
-use hrdsl_ta::{Goal, GoalKind};
+use hrdsl_ta::{GoalKind, ReachabilityGoal};
 
 use crate::{
-    covers::Shown,
-    expand::{Named, declared, edge_name, is_generated},
+    covers::WitnessedGoal,
+    named::{NamedGoal, declared, edge_name, is_generated},
 };
 
 /// Two edges of which the second leaves where the first leads to. If generated edges lie between, the last of these stands
 /// for the first.
-pub fn pairs(index: usize, automaton: &Automaton) -> Vec<Named> {
+pub fn pairs(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
     let all = declared(automaton);
     let mut named = Vec::new();
     for (i, first) in &all {
@@ -26,11 +26,11 @@ pub fn pairs(index: usize, automaton: &Automaton) -> Vec<Named> {
             if firsts.is_empty() {
                 continue;
             }
-            let way = |first: &usize| Goal {
+            let goal = |first: &usize| ReachabilityGoal {
                 what: GoalKind::Pair { automaton: index, first: *first, second: *second },
                 settled: false,
             };
-            named.push(Named {
+            named.push(NamedGoal {
                 name: format!(
                     "pair {}: {}, {}",
                     automaton.name,
@@ -38,8 +38,8 @@ pub fn pairs(index: usize, automaton: &Automaton) -> Vec<Named> {
                     edge_name(automaton, *j, *second)
                 )
                 .into(),
-                ways: firsts.iter().map(way).collect(),
-                shown: firsts.iter().map(|f| Shown::Pair(index, *f, *second)).collect(),
+                alternatives: firsts.iter().map(goal).collect(),
+                shown: firsts.iter().map(|f| WitnessedGoal::Pair(index, *f, *second)).collect(),
                 monitor: None,
             });
         }
@@ -68,7 +68,7 @@ fn last_edges(automaton: &Automaton, edge: usize) -> Vec<usize> {
 }
 
 /// An edge with what it defines and reads, as slots of the network.
-struct Traffic {
+struct EdgeDataFlow {
     automaton: usize,
     edge: usize,
     name: String,
@@ -77,12 +77,12 @@ struct Traffic {
 }
 
 /// Each definition of a variable with each edge that may read it: the initial value is a definition, too.
-pub fn uses(program: &Program, network: &Network) -> Vec<Named> {
+pub fn uses(program: &Program, network: &Network) -> Vec<NamedGoal> {
     let names = hrdsl_ta::slot_names(program, network);
     let traffic = traffic(program, network);
     let mut named = Vec::new();
     for (slot, name) in names.iter().enumerate().filter(|(_, n)| !is_generated(n)) {
-        let users: Vec<&Traffic> = traffic.iter().filter(|t| t.reads.contains(&slot)).collect();
+        let users: Vec<&EdgeDataFlow> = traffic.iter().filter(|t| t.reads.contains(&slot)).collect();
         let setters = traffic.iter().filter(|t| t.defines.contains(&slot)).map(Some);
         for setter in std::iter::once(None).chain(setters) {
             let from = setter.map_or("its first value".to_owned(), |t| format!("set by {}", t.name));
@@ -93,14 +93,14 @@ pub fn uses(program: &Program, network: &Network) -> Vec<Named> {
                     user: (user.automaton, user.edge),
                 };
                 let name = format!("use of {name}: {from}, read by {}", user.name);
-                named.push(Named::one(name, what, false, Shown::Nothing));
+                named.push(NamedGoal::one(name, what, false, WitnessedGoal::Nothing));
             }
         }
     }
     named
 }
 
-fn traffic(program: &Program, network: &Network) -> Vec<Traffic> {
+fn traffic(program: &Program, network: &Network) -> Vec<EdgeDataFlow> {
     let shared = program.shared.len();
     let mut base = shared;
     let mut all = Vec::new();
@@ -115,7 +115,8 @@ fn traffic(program: &Program, network: &Network) -> Vec<Traffic> {
         };
         for (number, edge) in declared(automaton) {
             let (mut defines, mut reads) = (Vec::new(), Vec::new());
-            let mut flow = Flow { program, defines: &mut defines, reads: &mut reads, open: Vec::new() };
+            let mut flow =
+                DataFlowCollector { program, defines: &mut defines, reads: &mut reads, open: Vec::new() };
             flow.edge(&automaton.edges[edge]);
             let network_slots = |slots: Vec<usize>| {
                 let mut slots: Vec<usize> = slots.into_iter().filter_map(&to_network).collect();
@@ -123,7 +124,7 @@ fn traffic(program: &Program, network: &Network) -> Vec<Traffic> {
                 slots.dedup();
                 slots
             };
-            all.push(Traffic {
+            all.push(EdgeDataFlow {
                 automaton: index,
                 edge,
                 name: format!("{}: {}", automaton.name, edge_name(automaton, number, edge)),
@@ -137,7 +138,7 @@ fn traffic(program: &Program, network: &Network) -> Vec<Traffic> {
 }
 
 /// Collects what an edge may define and read, through the functions that it calls.
-struct Flow<'a> {
+struct DataFlowCollector<'a> {
     program: &'a Program,
     defines: &'a mut Vec<usize>,
     reads: &'a mut Vec<usize>,
@@ -145,7 +146,7 @@ struct Flow<'a> {
     open: Vec<FunctionId>,
 }
 
-impl Flow<'_> {
+impl DataFlowCollector<'_> {
     fn edge(&mut self, edge: &Edge) {
         edge.guard.iter().for_each(|e| self.read(e));
         for c in &edge.clock_guard {
@@ -197,8 +198,12 @@ impl Flow<'_> {
         let owned = function.owner.and_then(|a| self.program.automata.get(usize::from(a.0)));
         let visible = self.program.shared.len() + owned.map_or(0, |a| a.vars.len());
         let (mut defines, mut reads) = (Vec::new(), Vec::new());
-        let mut inner =
-            Flow { program: self.program, defines: &mut defines, reads: &mut reads, open: self.open.clone() };
+        let mut inner = DataFlowCollector {
+            program: self.program,
+            defines: &mut defines,
+            reads: &mut reads,
+            open: self.open.clone(),
+        };
         inner.statements(&function.body);
         self.defines.extend(defines.into_iter().filter(|s| *s < visible));
         self.reads.extend(reads.into_iter().filter(|s| *s < visible));

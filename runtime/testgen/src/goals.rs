@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use hrdsl_bdi::{
-    coverage::{Item, Team, items, name},
-    measure::Measured,
+    coverage::{AgentCoverItem, AgentTeam, items, name},
+    measure::AgentCounts,
 };
-use hrdsl_coverage::Coverage;
+use hrdsl_coverage::TestCoverage;
 use hrdsl_ir::{
     Program,
     bdi::{Agent, AgentId},
-    coverage::BinName,
+    coverage::{BinName, CrossId},
     suite::{ModelGoal, PlayerRef},
 };
 use hrdsl_results::GoalName;
@@ -19,15 +19,15 @@ use crate::bins;
 
 /// Something that a suite is to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Goal {
-    Item(AgentId, Item),
+pub enum AgentGoal {
+    Item(AgentId, AgentCoverItem),
     /// A bin of a cross, by their places.
     Bin(u16, u16),
 }
 
 /// The goals of a suite, each once, in the order in which the suite asks for them.
-pub struct Goals {
-    pub all: Vec<Goal>,
+pub struct AgentGoals {
+    pub all: Vec<AgentGoal>,
     pub names: Vec<GoalName>,
 }
 
@@ -43,13 +43,13 @@ pub fn agents<'p>(program: &'p Program, players: &[PlayerRef]) -> Vec<(AgentId, 
     players.iter().filter_map(agent).collect()
 }
 
-impl Goals {
+impl AgentGoals {
     /// Without any: each plan, and each bin of each cross.
     #[must_use]
     pub fn of(program: &Program, players: &[PlayerRef], asked: &[ModelGoal]) -> Self {
         let crosses = (0u16..).zip(&program.coverage.crosses);
         let usual = std::iter::once(ModelGoal::Plans)
-            .chain(crosses.map(|(cross, _)| ModelGoal::Bins { cross }))
+            .chain(crosses.map(|(cross, _)| ModelGoal::Bins(CrossId(cross))))
             .collect::<Vec<_>>();
         let asked = if asked.is_empty() { &usual } else { asked };
         let mut goals = Self { all: Vec::new(), names: Vec::new() };
@@ -67,12 +67,12 @@ impl Goals {
 
     /// The goals that a run reached.
     #[must_use]
-    pub fn reached(&self, measured: &[(AgentId, Measured)], coverage: &Coverage) -> Reached {
-        let is_reached = |goal: &Goal| match goal {
-            Goal::Item(agent, item) => {
+    pub fn reached(&self, measured: &[(AgentId, AgentCounts)], coverage: &TestCoverage) -> Reached {
+        let is_reached = |goal: &AgentGoal| match goal {
+            AgentGoal::Item(agent, item) => {
                 measured.iter().any(|(a, counts)| a == agent && item.is_reached(counts))
             }
-            Goal::Bin(cross, bin) => {
+            AgentGoal::Bin(cross, bin) => {
                 coverage.crosses.get(usize::from(*cross)).is_some_and(|bins| bins.contains(bin))
             }
         };
@@ -81,22 +81,24 @@ impl Goals {
 
     /// Why no run reached a goal. `seen` are the numbers that runs had for the coverage points.
     #[must_use]
-    pub fn why(&self, goal: usize, team: &Team<'_>, seen: &BTreeSet<Vec<i64>>) -> String {
+    pub fn why(&self, goal: usize, team: &AgentTeam<'_>, seen: &BTreeSet<Vec<i64>>) -> String {
         match self.all.get(goal) {
-            Some(Goal::Item(agent, item)) => team.why(*agent, *item),
-            Some(Goal::Bin(cross, bin)) => bins::why(&team.program.coverage, *cross, *bin, seen),
+            Some(AgentGoal::Item(agent, item)) => team.why(*agent, *item),
+            Some(AgentGoal::Bin(cross, bin)) => bins::why(&team.program.coverage, *cross, *bin, seen),
             None => "there is no such goal".to_owned(),
         }
     }
 }
 
-fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goal, GoalName)> {
+fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(AgentGoal, GoalName)> {
     match goal {
-        ModelGoal::Bins { cross } => {
-            let Some(declared) = program.coverage.crosses.get(usize::from(cross)) else { return Vec::new() };
+        ModelGoal::Bins(cross) => {
+            let Some(declared) = program.coverage.crosses.get(usize::from(cross.0)) else {
+                return Vec::new();
+            };
             let bins = (0u16..).zip(&declared.bins);
             let named = bins.map(|(i, bin)| {
-                (Goal::Bin(cross, i), GoalName::of_bin(&BinName::new(&declared.name, &bin.name)))
+                (AgentGoal::Bin(cross.0, i), GoalName::of_bin(&BinName::new(&declared.name, &bin.name)))
             });
             named.collect()
         }
@@ -108,7 +110,7 @@ fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Goa
             let of = |(id, agent): (AgentId, &Agent)| {
                 let named = items(agent, goal)
                     .into_iter()
-                    .map(|i| (Goal::Item(id, i), name(program, agent, i).into()));
+                    .map(|i| (AgentGoal::Item(id, i), name(program, agent, i).into()));
                 named.collect::<Vec<_>>()
             };
             agents(program, players).into_iter().flat_map(of).collect()

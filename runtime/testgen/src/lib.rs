@@ -18,88 +18,52 @@ mod expand;
 mod extract;
 mod flow;
 mod goals;
+mod harvest;
 mod minimise;
 mod model;
 pub mod model_run;
+mod named;
 mod random;
 mod search;
 mod write;
 
 use hrdsl_ir::{
     Program,
-    coverage::BinName,
     suite::{Delays, Method, Suite, WitnessKind},
-    test::{Provenance, Test, TestMethod, TestStep},
+    test::{Provenance, Test, TestMethod},
 };
-use hrdsl_prove::Settings;
-use hrdsl_results::{Explanation, GoalName, GoalReport, GoalStatus, ModelCoverage, Uncovered};
+use hrdsl_prove::ProofOptions;
+use hrdsl_results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation, UncoveredGoal};
 
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
+pub use harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin};
 pub use hrdsl_bdi::choose::BeliefSet;
 pub use write::{step_text, write};
 
-/// An abstract test: steps without samples.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AbstractTest {
-    pub steps: Vec<TestStep>,
-    pub because: Vec<String>,
-    pub predicts: Vec<BinName>,
-    /// Which of the suite's goals the run reached.
-    pub reaches: goals::Reached,
-    /// Of a suite by agents: the first run that it came from.
-    pub origin: Option<Origin>,
-}
-
-/// The run that a test by agents came from.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Origin {
-    /// The number of its belief set, from 1.
-    pub number: u64,
-    pub beliefs: BeliefSet,
-}
-
 /// A generated suite.
 #[derive(Clone, Debug)]
-pub struct Generated {
+pub struct GeneratedSuite {
     pub suite: String,
     pub method: TestMethod,
     /// How many different abstract tests there are.
     pub abstract_tests: usize,
     pub tests: Vec<Test>,
     /// Of a suite by agents: where each test came from.
-    pub origins: Vec<Origin>,
+    pub origins: Vec<TestOrigin>,
     /// Of a suite by search: every goal's fate.
     pub goals: Vec<GoalReport>,
     /// Of a suite by agents: what was reached of their programs.
     pub coverage: Option<ModelCoverage>,
     /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
-    pub explanation: Option<Explanation>,
+    pub explanation: Option<SuiteExplanation>,
     /// What a user should know: runs left out, budgets that ran out.
     pub notes: Vec<String>,
 }
 
-/// Abstract tests with what there is to say about them.
-#[derive(Default)]
-pub struct Harvest {
-    pub tests: Vec<AbstractTest>,
-    pub goals: Vec<GoalReport>,
-    pub notes: Vec<String>,
-    /// Of a suite by agents.
-    pub found: Option<Found>,
-}
-
-/// What the runs of agents found out.
-pub struct Found {
-    pub goals: Vec<GoalName>,
-    /// Why no test reaches a goal; empty for those that are reached.
-    pub reasons: Vec<String>,
-    pub coverage: ModelCoverage,
-}
-
 /// How tests are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct GenerateOptions {
     /// How many concrete tests, instead of what the suite says.
     pub count: Option<u32>,
     /// Everything random comes from it.
@@ -110,7 +74,7 @@ pub struct Options {
     pub witness: Option<WitnessKind>,
     pub delays: Option<Delays>,
     /// Of a suite by search: how it searches; its witnesses and seed do not count.
-    pub search: Settings,
+    pub search: ProofOptions,
 }
 
 /// Makes the tests of a suite: `count` concrete tests, or as many as the suite says.
@@ -122,8 +86,8 @@ pub fn generate(
     suite: &Suite,
     count: Option<u32>,
     seed: u64,
-) -> Result<Generated, String> {
-    generate_with(program, suite, Options { count, seed, ..Options::default() })
+) -> Result<GeneratedSuite, String> {
+    generate_with(program, suite, GenerateOptions { count, seed, ..GenerateOptions::default() })
 }
 
 /// The most tests of one suite: all of them are held in memory, and written to one file.
@@ -133,8 +97,12 @@ pub const MAX_TESTS: u32 = 20_000;
 ///
 /// # Errors
 /// A model that cannot be run, with the place.
-pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Result<Generated, String> {
-    let Options { count, seed, minimise, .. } = options;
+pub fn generate_with(
+    program: &Program,
+    suite: &Suite,
+    options: GenerateOptions,
+) -> Result<GeneratedSuite, String> {
+    let GenerateOptions { count, seed, minimise, .. } = options;
     let most = count.unwrap_or(suite.tests);
     if most > MAX_TESTS {
         return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
@@ -144,7 +112,7 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
             (TestMethod::Agents, agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
         Method::Search { network, goals, witness, delays } => {
-            let settings = Settings {
+            let settings = ProofOptions {
                 witness: options.witness.unwrap_or(*witness),
                 delays: options.delays.unwrap_or(*delays),
                 seed,
@@ -155,7 +123,7 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
         }
         Method::Random { .. } => (TestMethod::Random, random::harvest(program, suite, most, seed)?, false),
     };
-    let Harvest { tests, mut goals, mut notes, found } = harvest;
+    let AbstractTests { tests, mut goals, mut notes, found } = harvest;
     let mut different = distinct::distinct(tests);
     let mut number = most;
     if minimise {
@@ -172,7 +140,7 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
     let origins = different.iter().cycle().take(tests.len()).filter_map(|t| t.origin.clone()).collect();
     name_tests(suite, made, &mut goals);
     let explanation = found.as_ref().map(|found| explain(found, made, suite));
-    Ok(Generated {
+    Ok(GeneratedSuite {
         suite: suite.name.clone(),
         method,
         abstract_tests: different.len(),
@@ -185,18 +153,18 @@ pub fn generate_with(program: &Program, suite: &Suite, options: Options) -> Resu
     })
 }
 
-fn explain(found: &Found, made: &[AbstractTest], suite: &Suite) -> Explanation {
+fn explain(found: &AgentFindings, made: &[AbstractTest], suite: &Suite) -> SuiteExplanation {
     let name = |index: usize| test_name(suite, index as u64 + 1);
     let is_reached = |goal: usize| made.iter().any(|t| t.reaches.contains(&goal));
     let open = (0..found.goals.len()).filter(|goal| !is_reached(*goal));
-    let uncovered = open.map(|goal| Uncovered {
+    let uncovered = open.map(|goal| UncoveredGoal {
         goal: found.goals[goal].clone(),
         reason: match found.reasons[goal].as_str() {
             "" => format!("only tests beyond the first {} reach it", made.len()),
             reason => reason.to_owned(),
         },
     });
-    Explanation { tests: model::explained(made, &found.goals, name), uncovered: uncovered.collect() }
+    SuiteExplanation { tests: model::explained(made, &found.goals, name), uncovered: uncovered.collect() }
 }
 
 /// Says of each goal of a search which test is the first to reach it.
@@ -244,7 +212,8 @@ fn make_concrete(
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::Span;
+    use hrdsl_ir::{Span, ta::NetworkId, test::TestStep};
+    use hrdsl_results::GoalName;
 
     use super::*;
 
@@ -262,7 +231,7 @@ mod tests {
         let suite = Suite {
             name: "s".into(),
             method: Method::Search {
-                network: 0,
+                network: NetworkId(0),
                 goals: vec![],
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::Delays::default(),
@@ -272,7 +241,7 @@ mod tests {
             patience: 0,
             origin: Span::default(),
         };
-        let found = Found {
+        let found = AgentFindings {
             goals: ["g0", "g1", "g2"].map(GoalName::from).to_vec(),
             reasons: ["", "", "it cannot be"].map(String::from).to_vec(),
             coverage: ModelCoverage::default(),
@@ -280,7 +249,7 @@ mod tests {
         let said = explain(&found, &[test(1, "a", &[0])], &suite);
         assert_eq!(said.tests[0].test, "s.t001");
         assert_eq!((&said.tests[0].first, &said.tests[0].only), (&vec!["g0".into()], &vec!["g0".into()]));
-        let uncovered = |goal: &str, reason: &str| Uncovered { goal: goal.into(), reason: reason.into() };
+        let uncovered = |goal: &str, reason: &str| UncoveredGoal { goal: goal.into(), reason: reason.into() };
         assert_eq!(
             said.uncovered,
             [uncovered("g1", "only tests beyond the first 1 reach it"), uncovered("g2", "it cannot be")]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::{AbstractTest, goals::Reached};
+use crate::{goals::Reached, harvest::AbstractTest};
 
 /// Which tests to keep, in their order, so that together they reach what all of them do: first that which reaches most
 /// that is not reached yet (the first of several), again and again; then, in the order in which they were taken, those go

@@ -1,24 +1,24 @@
 //! What a suite by agents reached of its model, and why not the rest.
 
-use hrdsl_bdi::coverage::{Team, name, universe};
+use hrdsl_bdi::coverage::{AgentTeam, name, universe};
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
     suite::{ItemKind, PlayerRef},
 };
-use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, Unreached};
+use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, UnreachedItem};
 
 use crate::{
-    AbstractTest,
     goals::{Reached, agents},
+    harvest::AbstractTest,
 };
 
 /// What the agents' counts say, summed over all runs that count.
-pub fn coverage(program: &Program, players: &[PlayerRef], team: &Team<'_>) -> Vec<AgentCoverage> {
+pub fn coverage(program: &Program, players: &[PlayerRef], team: &AgentTeam<'_>) -> Vec<AgentCoverage> {
     agents(program, players).into_iter().map(|(id, _)| of_agent(program, id, team)).collect()
 }
 
-fn of_agent(program: &Program, id: AgentId, team: &Team<'_>) -> AgentCoverage {
+fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCoverage {
     let agent = &program.agents[usize::from(id.0)];
     let measured = team.measured.iter().find(|(a, _)| *a == id).map(|(_, m)| m);
     let items: Vec<_> = universe(agent)
@@ -33,7 +33,7 @@ fn of_agent(program: &Program, id: AgentId, team: &Team<'_>) -> AgentCoverage {
             all: of_kind().count(),
         }
     };
-    let unreached = items.iter().filter(|(_, reached)| !reached).map(|(item, _)| Unreached {
+    let unreached = items.iter().filter(|(_, reached)| !reached).map(|(item, _)| UnreachedItem {
         kind: item.kind(),
         item: name(program, agent, *item).into(),
         reason: team.why(id, *item),

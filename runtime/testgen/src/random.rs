@@ -10,13 +10,16 @@ use hrdsl_ir::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::{AbstractTest, Harvest, extract};
+use crate::{
+    extract,
+    harvest::{AbstractTest, AbstractTests},
+};
 
 /// Draws `count` sequences.
 ///
 /// # Errors
 /// A suite without stimuli, or a stimulus whose arguments cannot be enumerated.
-pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<Harvest, String> {
+pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
     let Method::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } = &suite.method else {
         return Err(format!("suite `{}` is not by random", suite.name));
     };
@@ -30,10 +33,11 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         return Err(format!("suite `{}` has no stimuli to draw from", suite.name));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut harvest = Harvest::default();
+    let mut harvest = AbstractTests::default();
     for _ in 0..count {
         let length = rng.random_range(*length_lo..=*length_hi.max(length_lo));
-        let mut draw = Draw { program, assumptions: Assumptions::new(program), steps: Vec::new(), time: 0 };
+        let mut draw =
+            RandomSequence { program, assumptions: Assumptions::new(program), steps: Vec::new(), time: 0 };
         for _ in 0..length {
             let pause = if pause_lo < pause_hi { rng.random_range(*pause_lo..=*pause_hi) } else { *pause_lo };
             // Tenths of a second: a person's pauses, readable in the test's text.
@@ -51,14 +55,14 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
 }
 
 /// A sequence under construction. Its times are lower bounds: that is what an assumption's window must be judged by.
-struct Draw<'p> {
+struct RandomSequence<'p> {
     program: &'p Program,
     assumptions: Assumptions,
     steps: Vec<TestStep>,
     time: Nanos,
 }
 
-impl Draw<'_> {
+impl RandomSequence<'_> {
     fn pause(&mut self, time: Nanos) {
         if time > 0 {
             self.time += time;

@@ -6,18 +6,22 @@
 use hrdsl_ir::{
     Program,
     suite::{PlayerRef, SearchGoal, Suite},
-    ta::Network,
+    ta::{Network, NetworkId},
 };
 use hrdsl_results::{GoalReport, GoalStatus};
-use hrdsl_ta::{Error, Goal, GoalKind};
+use hrdsl_ta::{GoalKind, ReachabilityGoal, SearchError};
 
 use crate::{
-    AbstractTest, Harvest,
-    covers::{Seen, Shown},
-    expand::{Named, counters, goals},
+    covers::{ReachedItems, WitnessedGoal},
+    expand::{counters, goals},
     extract,
+    harvest::{AbstractTest, AbstractTests},
+    named::NamedGoal,
 };
-use hrdsl_prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, held::Held, of_formula};
+use hrdsl_prove::{
+    GoalDecision, GoalFate, ObservedNetwork, ObservedRun, ProofOptions, SearchWatch, decide,
+    held::TimedHolds, of_formula,
+};
 
 /// Decides all goals and takes the environment's part of each witness.
 ///
@@ -26,28 +30,28 @@ use hrdsl_prove::{Decided, Fate, Observed, Run, Settings, Watch, decide, held::H
 pub fn harvest(
     program: &Program,
     suite: &Suite,
-    network: u16,
+    network: NetworkId,
     asked: &[SearchGoal],
-    settings: &Settings,
-) -> Result<Harvest, String> {
+    settings: &ProofOptions,
+) -> Result<AbstractTests, String> {
     let network = program
         .networks
-        .get(network as usize)
+        .get(usize::from(network.0))
         .ok_or_else(|| format!("suite `{}` names no network", suite.name))?;
     let named = goals(program, network, asked);
-    let mut harvest = Harvest::default();
-    let all: Vec<&Named> = named.iter().collect();
+    let mut harvest = AbstractTests::default();
+    let all: Vec<&NamedGoal> = named.iter().collect();
     let (fates, states) = fates(program, network, &all, settings, &mut harvest.notes)
         .map_err(|e| format!("network `{}`: {e}", network.name))?;
     let held_back = held_back(program, network, &named, &fates, settings, states);
     let players: Vec<PlayerRef> = network.automata.iter().map(|a| PlayerRef::Automaton(*a)).collect();
-    let awaits = extract::Awaits::of(program, &players);
+    let awaits = extract::AwaitGroups::of(program, &players);
     for ((named, fate), held_back) in named.iter().zip(&fates).zip(held_back) {
         let (status, mut reason) = said(fate, states);
         if let Some(why) = held_back {
             reason = format!("{reason}; {why}");
         }
-        if let Fate::Reached(run) = fate {
+        if let GoalFate::Reached(run) = fate {
             harvest.tests.push(test(program, suite, &awaits, named, run));
         }
         harvest.goals.push(GoalReport { goal: named.name.clone(), status, reason, test: None });
@@ -59,9 +63,9 @@ pub fn harvest(
 fn test(
     program: &Program,
     suite: &Suite,
-    awaits: &extract::Awaits,
-    named: &Named,
-    run: &Run,
+    awaits: &extract::AwaitGroups,
+    named: &NamedGoal,
+    run: &ObservedRun,
 ) -> AbstractTest {
     let trace = run.witness.trace();
     AbstractTest {
@@ -76,18 +80,18 @@ fn test(
 fn note_reached(
     program: &Program,
     network: &Network,
-    named: &[Named],
-    fates: &[Fate],
+    named: &[NamedGoal],
+    fates: &[GoalFate],
     tests: &mut [AbstractTest],
 ) {
     let initial: Vec<_> =
         network.automata.iter().map(|id| program.automata[usize::from(id.0)].initial).collect();
     let reached = fates.iter().enumerate().filter_map(|(goal, fate)| match fate {
-        Fate::Reached(run) => Some((goal, run)),
-        Fate::Unreachable | Fate::Open(_) => None,
+        GoalFate::Reached(run) => Some((goal, run)),
+        GoalFate::Unreachable | GoalFate::Inconclusive(_) => None,
     });
     for ((own, run), test) in reached.zip(tests) {
-        let seen = Seen::of(program, &initial, &run.witness, test.predicts.clone());
+        let seen = ReachedItems::of(program, &initial, &run.witness, test.predicts.clone());
         let shows = |goal: usize| goal == own || named[goal].shown.iter().any(|s| seen.has(s));
         test.reaches = (0..named.len()).filter(|goal| shows(*goal)).collect();
     }
@@ -97,57 +101,57 @@ fn note_reached(
 fn held_back(
     program: &Program,
     network: &Network,
-    named: &[Named],
-    decided: &[Fate],
-    settings: &Settings,
+    named: &[NamedGoal],
+    decided: &[GoalFate],
+    settings: &ProofOptions,
     states: usize,
 ) -> Vec<Option<String>> {
     let mut reasons = vec![None; named.len()];
     let open: Vec<usize> =
-        (0..named.len()).filter(|goal| matches!(decided[*goal], Fate::Unreachable)).collect();
+        (0..named.len()).filter(|goal| matches!(decided[*goal], GoalFate::Unreachable)).collect();
     if open.is_empty() {
         return reasons;
     }
-    let Some(held) = Held::of(program, network) else { return reasons };
-    let questions: Vec<&Named> = open.iter().map(|goal| &named[*goal]).collect();
-    let settings = Held::settings(settings, states);
+    let Some(held) = TimedHolds::of(program, network) else { return reasons };
+    let questions: Vec<&NamedGoal> = open.iter().map(|goal| &named[*goal]).collect();
+    let settings = TimedHolds::settings(settings, states);
     // A fault of this network is none of the model's.
     let Ok((fates, _)) = fates(&held.program, network, &questions, &settings, &mut Vec::new()) else {
         return reasons;
     };
     for (goal, fate) in open.into_iter().zip(fates) {
-        if let Fate::Reached(run) = fate {
+        if let GoalFate::Reached(run) = fate {
             reasons[goal] = held.because(&run.witness);
         }
     }
     reasons
 }
 
-fn said(fate: &Fate, states: usize) -> (GoalStatus, String) {
+fn said(fate: &GoalFate, states: usize) -> (GoalStatus, String) {
     match fate {
-        Fate::Reached(run) => (GoalStatus::Reached, format!("in {} steps", run.witness.steps.len())),
-        Fate::Unreachable => (
+        GoalFate::Reached(run) => (GoalStatus::Reached, format!("in {} steps", run.witness.steps.len())),
+        GoalFate::Unreachable => (
             GoalStatus::Unreachable,
             format!("proved: none of the {states} symbolic states that the model can reach meets it"),
         ),
-        Fate::Open(why) => (GoalStatus::Open, why.clone()),
+        GoalFate::Inconclusive(why) => (GoalStatus::Open, why.clone()),
     }
 }
 
 /// What a search must keep besides the state, so that goals that need more do not burden the others.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Needs {
+enum SearchHistory {
     Nothing,
     LastEdges,
     LastDefinitions,
 }
 
-fn needs(goal: &Goal) -> Needs {
+fn needs(goal: &ReachabilityGoal) -> SearchHistory {
     match goal.what {
-        GoalKind::Pair { .. } => Needs::LastEdges,
-        GoalKind::Use { .. } => Needs::LastDefinitions,
+        GoalKind::Pair { .. } => SearchHistory::LastEdges,
+        GoalKind::Use { .. } => SearchHistory::LastDefinitions,
         GoalKind::Edge { .. } | GoalKind::Location { .. } | GoalKind::Condition(_) | GoalKind::Formula(_) => {
-            Needs::Nothing
+            SearchHistory::Nothing
         }
     }
 }
@@ -157,27 +161,28 @@ fn needs(goal: &Goal) -> Needs {
 fn fates(
     program: &Program,
     network: &Network,
-    named: &[&Named],
-    settings: &Settings,
+    named: &[&NamedGoal],
+    settings: &ProofOptions,
     notes: &mut Vec<String>,
-) -> Result<(Vec<Fate>, usize), Error> {
-    let plain = Observed::new(program, network);
-    let questions: Vec<Goal> = named.iter().flat_map(|n| n.ways.iter().cloned()).collect();
-    let mut decided = Decided { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
-    let mut ways: Vec<Fate> = vec![Fate::Unreachable; questions.len()];
-    for need in [Needs::Nothing, Needs::LastEdges, Needs::LastDefinitions] {
+) -> Result<(Vec<GoalFate>, usize), SearchError> {
+    let plain = ObservedNetwork::new(program, network);
+    let questions: Vec<ReachabilityGoal> =
+        named.iter().flat_map(|n| n.alternatives.iter().cloned()).collect();
+    let mut decided = GoalDecision { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut outcomes: Vec<GoalFate> = vec![GoalFate::Unreachable; questions.len()];
+    for need in [SearchHistory::Nothing, SearchHistory::LastEdges, SearchHistory::LastDefinitions] {
         let of: Vec<usize> = (0..questions.len()).filter(|q| needs(&questions[*q]) == need).collect();
         if of.is_empty() {
             continue;
         }
-        let some: Vec<Goal> = of.iter().map(|q| questions[*q].clone()).collect();
-        let counters = if need == Needs::Nothing { counters(program) } else { Vec::new() };
-        let more = decide(program, &plain, &some, &counters, settings, &Watch::default())?;
+        let some: Vec<ReachabilityGoal> = of.iter().map(|q| questions[*q].clone()).collect();
+        let counters = if need == SearchHistory::Nothing { counters(program) } else { Vec::new() };
+        let more = decide(program, &plain, &some, &counters, settings, &SearchWatch::default())?;
         decided.states += more.states;
         decided.visited += more.visited;
         decided.searches += more.searches;
         for (question, fate) in of.into_iter().zip(more.fates) {
-            ways[question] = fate;
+            outcomes[question] = fate;
         }
     }
     let alone = named.iter().filter(|n| n.monitor.is_none()).count();
@@ -191,25 +196,27 @@ fn fates(
             n => format!("{n} explorations"),
         }
     ));
-    let (states, mut ways) = (decided.states, ways.into_iter());
+    let (states, mut outcomes) = (decided.states, outcomes.into_iter());
     let mut fates = Vec::new();
     for goal in named {
         fates.push(match goal.monitor {
-            None => any(ways.by_ref().take(goal.ways.len())),
+            None => any(outcomes.by_ref().take(goal.alternatives.len())),
             Some(monitor) => of_requirement(program, network, monitor, &goal.shown, settings)?,
         });
     }
     Ok((fates, states))
 }
 
-/// The fate of a goal to which there are several ways.
-fn any(ways: impl Iterator<Item = Fate>) -> Fate {
-    let mut fate = Fate::Unreachable;
-    for way in ways {
-        fate = match (fate, way) {
-            (Fate::Reached(run), _) | (_, Fate::Reached(run)) => Fate::Reached(run),
-            (Fate::Open(why), _) | (_, Fate::Open(why)) => Fate::Open(why),
-            (Fate::Unreachable, Fate::Unreachable) => Fate::Unreachable,
+/// The fate of a goal that has several alternatives.
+fn any(outcomes: impl Iterator<Item = GoalFate>) -> GoalFate {
+    let mut fate = GoalFate::Unreachable;
+    for outcome in outcomes {
+        fate = match (fate, outcome) {
+            (GoalFate::Reached(run), _) | (_, GoalFate::Reached(run)) => GoalFate::Reached(run),
+            (GoalFate::Inconclusive(why), _) | (_, GoalFate::Inconclusive(why)) => {
+                GoalFate::Inconclusive(why)
+            }
+            (GoalFate::Unreachable, GoalFate::Unreachable) => GoalFate::Unreachable,
         };
     }
     fate
@@ -219,21 +226,21 @@ fn of_requirement(
     program: &Program,
     network: &Network,
     monitor: usize,
-    shown: &[Shown],
-    settings: &Settings,
-) -> Result<Fate, Error> {
-    let mut observed = Observed::new(program, network);
+    shown: &[WitnessedGoal],
+    settings: &ProofOptions,
+) -> Result<GoalFate, SearchError> {
+    let mut observed = ObservedNetwork::new(program, network);
     let verdicts = match observed.add(&program.monitors[monitor]) {
         Ok(verdicts) => verdicts,
-        Err(why) => return Ok(Fate::Open(why)),
+        Err(why) => return Ok(GoalFate::Inconclusive(why)),
     };
-    let formula = if shown.iter().any(|s| matches!(s, Shown::Violation(_))) {
+    let formula = if shown.iter().any(|s| matches!(s, WitnessedGoal::Violation(_))) {
         verdicts.violated
     } else {
         Some(verdicts.triggered)
     };
-    let Some(formula) = formula else { return Ok(Fate::Unreachable) };
-    let Decided { mut fates, .. } =
-        decide(program, &observed, &[of_formula(&formula)], &[], settings, &Watch::default())?;
-    Ok(fates.pop().unwrap_or(Fate::Unreachable))
+    let Some(formula) = formula else { return Ok(GoalFate::Unreachable) };
+    let GoalDecision { mut fates, .. } =
+        decide(program, &observed, &[of_formula(&formula)], &[], settings, &SearchWatch::default())?;
+    Ok(fates.pop().unwrap_or(GoalFate::Unreachable))
 }

@@ -67,12 +67,12 @@ pub fn step_text(program: &Program, step: &TestStep) -> String {
 }
 
 fn call<'p>(name: &str, args: impl Iterator<Item = (&'p str, String)>) -> String {
-    let parts: Vec<Part> = args.map(|(name, text)| Part { path: path(name), text }).collect();
+    let parts: Vec<ArgumentLeaf> = args.map(|(name, text)| ArgumentLeaf { path: path(name), text }).collect();
     if parts.is_empty() { name.to_owned() } else { format!("{name}({})", grouped(&parts, 0).join(", ")) }
 }
 
 /// An argument that is a number, a bool or a symbol: by itself, or a part of a record or an array.
-struct Part<'p> {
+struct ArgumentLeaf<'p> {
     path: Vec<&'p str>,
     text: String,
 }
@@ -84,10 +84,10 @@ fn path(name: &str) -> Vec<&str> {
 
 /// The arguments as they were before records and arrays were taken apart: consecutive parts of one name, at this depth,
 /// make one tuple.
-fn grouped(parts: &[Part], depth: usize) -> Vec<String> {
-    let is_inner = |p: &Part| p.path.len() > depth + 1;
+fn grouped(parts: &[ArgumentLeaf], depth: usize) -> Vec<String> {
+    let is_inner = |p: &ArgumentLeaf| p.path.len() > depth + 1;
     let groups = parts.chunk_by(|a, b| is_inner(a) && is_inner(b) && a.path.get(depth) == b.path.get(depth));
-    let text = |group: &[Part]| match group {
+    let text = |group: &[ArgumentLeaf]| match group {
         [whole] if !is_inner(whole) => whole.text.clone(),
         inner => format!("({})", grouped(inner, depth + 1).join(", ")),
     };

@@ -19,19 +19,19 @@ use serde::{Deserialize, Serialize};
 /// One run's timestamped events and samples, in order of time; steps of the same instant in the order they happened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
-    pub steps: Vec<Step>,
+    pub steps: Vec<TraceStep>,
     /// When the run ended; no step is later.
     pub end: Nanos,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct TraceStep {
     pub time: Nanos,
-    pub what: What,
+    pub what: TraceStepKind,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum TraceStepKind {
     /// An event or stimulus happened.
     Event { event: EventId, args: Vec<Value> },
     /// A signal has this value from now on; it is recorded when it changes.
@@ -72,16 +72,16 @@ impl RunEnd {
 }
 
 /// Something that reads a trace step by step, in bounded memory: a monitor, a coverage collector, a recorder.
-pub trait Observer {
+pub trait TraceObserver {
     /// `index` counts the trace's steps from 0.
-    fn step(&mut self, index: usize, step: &Step);
+    fn step(&mut self, index: usize, step: &TraceStep);
     /// The run ended; called once, after the last step.
     fn end(&mut self, time: Nanos);
 }
 
 impl Trace {
     /// Shows the whole trace to an observer.
-    pub fn replay(&self, observer: &mut dyn Observer) {
+    pub fn replay(&self, observer: &mut dyn TraceObserver) {
         for (index, step) in self.steps.iter().enumerate() {
             observer.step(index, step);
         }
@@ -90,8 +90,8 @@ impl Trace {
 }
 
 /// A trace takes down what it is shown.
-impl Observer for Trace {
-    fn step(&mut self, _: usize, step: &Step) {
+impl TraceObserver for Trace {
+    fn step(&mut self, _: usize, step: &TraceStep) {
         self.steps.push(step.clone());
     }
 

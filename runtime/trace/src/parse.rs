@@ -4,6 +4,7 @@
 //! Recordings come from other programs, too: whatever is wrong with one is said with the number of its line.
 
 mod line;
+mod problem;
 
 use std::{
     collections::BTreeMap,
@@ -15,21 +16,20 @@ use serde_json::Value as Json;
 use thiserror::Error;
 
 use crate::{
-    Observer, Step, Trace, What, decimal,
-    record::{Ending, Header, KIND, VERSION},
+    Trace, TraceObserver, TraceStep, TraceStepKind, decimal,
+    record::{KIND, RecordingEnd, RecordingHeader, VERSION},
 };
-use line::{HeaderLine, Line};
-
-/// The most bytes of one line, so that a file of another kind does not fill the memory.
-const LONGEST_LINE: u64 = 16 << 20;
+use line::{HeaderLine, StepLine};
+use problem::LONGEST_LINE;
+pub use problem::LineProblem;
 
 /// A recording, apart from its steps.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Recorded {
-    pub header: Header,
+pub struct RecordingSummary {
+    pub header: RecordingHeader,
     /// When the run ended.
     pub end: Nanos,
-    pub ending: Ending,
+    pub ending: RecordingEnd,
     /// How many steps there were.
     pub steps: usize,
 }
@@ -49,73 +49,30 @@ pub enum ReadError {
 pub struct ParseError {
     /// Counted from 1.
     pub line: usize,
-    pub problem: Problem,
-}
-
-/// What is wrong with a line.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Problem {
-    #[error("not a line of a recording: {0}")]
-    Json(String),
-    #[error(
-        "the recording has to start with a header: {{\"hrdsl\":\"trace\",\"version\":2,\"scenario\":...}}"
-    )]
-    NoHeader,
-    #[error("this is format version {0}; versions 1 to {VERSION} can be read")]
-    Version(u64),
-    #[error("`{0}` is not how a run ends; that is `quiet`, `limit` or `error`")]
-    End(String),
-    #[error("the line is longer than {} MiB", LONGEST_LINE >> 20)]
-    TooLong,
-    #[error("the line is not text in UTF-8")]
-    NotText,
-    #[error("{0}")]
-    Form(&'static str),
-    #[error("unknown event `{name}`{}", hint(.near))]
-    UnknownEvent { name: String, near: Option<String> },
-    #[error("unknown signal `{name}`{}", hint(.near))]
-    UnknownSignal { name: String, near: Option<String> },
-    #[error("event `{event}` has no parameter `{name}`{}", hint(.near))]
-    UnknownArgument { event: String, name: String, near: Option<String> },
-    #[error("event `{event}` has the argument `{name}` twice")]
-    DoubleArgument { event: String, name: String },
-    #[error("event `{event}` lacks the argument `{name}`")]
-    MissingArgument { event: String, name: String },
-    #[error("`{of}` has to be {expected}, not {found}")]
-    Type { of: String, expected: String, found: String },
-    #[error("`{0}` is not a time in seconds, at least 0")]
-    Time(String),
-    #[error("time goes backwards: {now} s after {before} s")]
-    Backwards { before: String, now: String },
-    #[error("the recording is cut off: its last line has to be {{\"end\":...}}")]
-    Truncated,
-    #[error("there is something after the end")]
-    AfterEnd,
-}
-
-fn hint(near: &Option<String>) -> String {
-    near.as_ref().map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+    pub problem: LineProblem,
 }
 
 /// A recording's trace and the rest of it. Blank lines are skipped.
 ///
 /// # Errors
 /// The first line that is wrong, and why.
-pub fn parse(program: &Program, text: &str) -> Result<(Recorded, Trace), ParseError> {
+pub fn parse(program: &Program, text: &str) -> Result<(RecordingSummary, Trace), ParseError> {
     let mut trace = Trace::default();
     match Recording::open(text.as_bytes()).and_then(|r| r.replay(program, &mut trace)) {
         Ok(recorded) => Ok((recorded, trace)),
         Err(ReadError::Parse(error)) => Err(error),
         // Nothing goes wrong with reading from memory.
-        Err(ReadError::Io(error)) => Err(ParseError { line: 1, problem: Problem::Json(error.to_string()) }),
+        Err(ReadError::Io(error)) => {
+            Err(ParseError { line: 1, problem: LineProblem::Json(error.to_string()) })
+        }
     }
 }
 
 /// A recording of which the header was read.
 #[derive(Debug)]
 pub struct Recording<R> {
-    lines: Lines<R>,
-    header: Header,
+    lines: RecordingLines<R>,
+    header: RecordingHeader,
 }
 
 impl<R: BufRead> Recording<R> {
@@ -124,17 +81,17 @@ impl<R: BufRead> Recording<R> {
     /// # Errors
     /// A first line that is none.
     pub fn open(source: R) -> Result<Self, ReadError> {
-        let mut lines = Lines { source, bytes: Vec::new(), read: 0, number: 0, is_whole: true };
+        let mut lines = RecordingLines { source, bytes: Vec::new(), read: 0, number: 0, is_whole: true };
         let header = match lines.next()? {
             Some(text) => header(text),
-            None => Err(Problem::NoHeader),
+            None => Err(LineProblem::NoHeader),
         };
         let header = header.map_err(|problem| lines.wrong(problem))?;
         Ok(Self { lines, header })
     }
 
     #[must_use]
-    pub fn header(&self) -> &Header {
+    pub fn header(&self) -> &RecordingHeader {
         &self.header
     }
 
@@ -142,9 +99,13 @@ impl<R: BufRead> Recording<R> {
     ///
     /// # Errors
     /// The first line that is wrong, and why; then the observer has seen the steps before it.
-    pub fn replay(self, program: &Program, observer: &mut dyn Observer) -> Result<Recorded, ReadError> {
+    pub fn replay(
+        self,
+        program: &Program,
+        observer: &mut dyn TraceObserver,
+    ) -> Result<RecordingSummary, ReadError> {
         let Self { mut lines, header } = self;
-        let mut reader = Reader::new(program, header);
+        let mut reader = StepReader::new(program, header);
         while let Some(text) = lines.next()? {
             match reader.line(text) {
                 Ok(Some(step)) => {
@@ -163,7 +124,7 @@ impl<R: BufRead> Recording<R> {
 
 /// The lines of a recording, one at a time.
 #[derive(Debug)]
-struct Lines<R> {
+struct RecordingLines<R> {
     source: R,
     bytes: Vec<u8>,
     /// How many were read.
@@ -174,7 +135,7 @@ struct Lines<R> {
     is_whole: bool,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> RecordingLines<R> {
     /// The next line that is not blank.
     fn next(&mut self) -> Result<Option<&str>, ReadError> {
         loop {
@@ -185,7 +146,7 @@ impl<R: BufRead> Lines<R> {
             self.read += 1;
             self.is_whole = self.bytes.ends_with(b"\n");
             if !self.is_whole && self.bytes.len() as u64 == LONGEST_LINE {
-                return Err(ParseError { line: self.read, problem: Problem::TooLong }.into());
+                return Err(ParseError { line: self.read, problem: LineProblem::TooLong }.into());
             }
             if !self.bytes.iter().all(u8::is_ascii_whitespace) {
                 break;
@@ -194,30 +155,33 @@ impl<R: BufRead> Lines<R> {
         self.number = self.read;
         match std::str::from_utf8(&self.bytes) {
             Ok(text) => Ok(Some(text.trim_end_matches(['\n', '\r']))),
-            Err(_) => Err(ParseError { line: self.number, problem: Problem::NotText }.into()),
+            Err(_) => Err(ParseError { line: self.number, problem: LineProblem::NotText }.into()),
         }
     }
 
     /// What is wrong with the latest line.
-    fn wrong(&self, problem: Problem) -> ParseError {
+    fn wrong(&self, problem: LineProblem) -> ParseError {
         // A line that was being written when the recorder died has no line break.
-        let is_cut = matches!(problem, Problem::Json(_)) && !self.is_whole;
-        ParseError { line: self.number.max(1), problem: if is_cut { Problem::Truncated } else { problem } }
+        let is_cut = matches!(problem, LineProblem::Json(_)) && !self.is_whole;
+        ParseError {
+            line: self.number.max(1),
+            problem: if is_cut { LineProblem::Truncated } else { problem },
+        }
     }
 }
 
 /// Gives names their meaning, line by line.
-struct Reader<'a> {
+struct StepReader<'a> {
     program: &'a Program,
     events: BTreeMap<&'a str, EventId>,
     signals: BTreeMap<&'a str, SignalId>,
-    recorded: Recorded,
+    recorded: RecordingSummary,
     now: Nanos,
     ended: bool,
 }
 
-impl<'a> Reader<'a> {
-    fn new(program: &'a Program, header: Header) -> Self {
+impl<'a> StepReader<'a> {
+    fn new(program: &'a Program, header: RecordingHeader) -> Self {
         // From the back, so that the first of several of the same name stands.
         let events = (0u16..).zip(&program.events).map(|(i, e)| (e.name.as_str(), EventId(i)));
         let signals = (0u16..).zip(&program.signals).map(|(i, s)| (s.name.as_str(), SignalId(i)));
@@ -225,17 +189,17 @@ impl<'a> Reader<'a> {
             program,
             events: events.collect::<Vec<_>>().into_iter().rev().collect(),
             signals: signals.collect::<Vec<_>>().into_iter().rev().collect(),
-            recorded: Recorded { header, ..Recorded::default() },
+            recorded: RecordingSummary { header, ..RecordingSummary::default() },
             now: 0,
             ended: false,
         }
     }
 
     /// The line's step; none if it is the last line.
-    fn line(&mut self, text: &str) -> Result<Option<Step>, Problem> {
-        let line = Line::read(text)?;
+    fn line(&mut self, text: &str) -> Result<Option<TraceStep>, LineProblem> {
+        let line = StepLine::read(text)?;
         if self.ended {
-            return Err(Problem::AfterEnd);
+            return Err(LineProblem::AfterEnd);
         }
         if let Some(end) = line.end {
             self.recorded.end = self.pass(end.get())?;
@@ -244,86 +208,87 @@ impl<'a> Reader<'a> {
             return Ok(None);
         }
         if line.ended.is_some() || line.error.is_some() {
-            return Err(Problem::Form("only the last line says how the run ended"));
+            return Err(LineProblem::Form("only the last line says how the run ended"));
         }
-        let Some(time) = line.t else { return Err(Problem::Form("the step lacks its time `t`")) };
+        let Some(time) = line.t else { return Err(LineProblem::Form("the step lacks its time `t`")) };
         let time = self.pass(time.get())?;
         let what = match (line.event, line.args, line.signal, line.value) {
             (Some(event), args, None, None) => self.event(&event, args.map(|a| a.0).unwrap_or_default())?,
             (None, None, Some(signal), Some(value)) => self.sample(&signal, &value)?,
-            (Some(_), _, _, _) => return Err(Problem::Form("an event has `t`, `event` and `args` only")),
-            (None, _, Some(_), None) => return Err(Problem::Form("the sample lacks its `value`")),
+            (Some(_), _, _, _) => return Err(LineProblem::Form("an event has `t`, `event` and `args` only")),
+            (None, _, Some(_), None) => return Err(LineProblem::Form("the sample lacks its `value`")),
             (None, _, Some(_), Some(_)) => {
-                return Err(Problem::Form("a sample has `t`, `signal` and `value` only"));
+                return Err(LineProblem::Form("a sample has `t`, `signal` and `value` only"));
             }
-            (None, _, None, _) => return Err(Problem::Form("the step has neither `event` nor `signal`")),
+            (None, _, None, _) => return Err(LineProblem::Form("the step has neither `event` nor `signal`")),
         };
-        Ok(Some(Step { time, what }))
+        Ok(Some(TraceStep { time, what }))
     }
 
-    fn pass(&mut self, text: &str) -> Result<Nanos, Problem> {
-        let time = decimal::nanos(text).filter(|t| *t >= 0).ok_or_else(|| Problem::Time(text.to_owned()))?;
+    fn pass(&mut self, text: &str) -> Result<Nanos, LineProblem> {
+        let time =
+            decimal::nanos(text).filter(|t| *t >= 0).ok_or_else(|| LineProblem::Time(text.to_owned()))?;
         if time < self.now {
             let (before, now) = (decimal::seconds(self.now), decimal::seconds(time));
-            return Err(Problem::Backwards { before, now });
+            return Err(LineProblem::Backwards { before, now });
         }
         self.now = time;
         Ok(time)
     }
 
-    fn event(&self, name: &str, given: Vec<(String, Json)>) -> Result<What, Problem> {
+    fn event(&self, name: &str, given: Vec<(String, Json)>) -> Result<TraceStepKind, LineProblem> {
         let Some(&event) = self.events.get(name) else {
             let near = nearest(name, self.events.keys().copied());
-            return Err(Problem::UnknownEvent { name: name.to_owned(), near });
+            return Err(LineProblem::UnknownEvent { name: name.to_owned(), near });
         };
         let params = &self.program.event(event).params;
         let mut args: Vec<Option<Value>> = vec![None; params.len()];
         for (arg, json) in given {
             let Some(index) = params.iter().position(|p| p.name == arg) else {
                 let near = nearest(&arg, params.iter().map(|p| p.name.as_str()));
-                return Err(Problem::UnknownArgument { event: name.to_owned(), name: arg, near });
+                return Err(LineProblem::UnknownArgument { event: name.to_owned(), name: arg, near });
             };
             if args[index].is_some() {
-                return Err(Problem::DoubleArgument { event: name.to_owned(), name: arg });
+                return Err(LineProblem::DoubleArgument { event: name.to_owned(), name: arg });
             }
             args[index] = Some(typed(&arg, params[index].ty, &json)?);
         }
         let missing =
-            |param: &Param| Problem::MissingArgument { event: name.to_owned(), name: param.name.clone() };
+            |param: &Param| LineProblem::MissingArgument { event: name.to_owned(), name: param.name.clone() };
         let all = args.into_iter().zip(params).map(|(arg, param)| arg.ok_or_else(|| missing(param)));
-        Ok(What::Event { event, args: all.collect::<Result<_, _>>()? })
+        Ok(TraceStepKind::Event { event, args: all.collect::<Result<_, _>>()? })
     }
 
-    fn sample(&self, name: &str, json: &Json) -> Result<What, Problem> {
+    fn sample(&self, name: &str, json: &Json) -> Result<TraceStepKind, LineProblem> {
         let Some(&signal) = self.signals.get(name) else {
             let near = nearest(name, self.signals.keys().copied());
-            return Err(Problem::UnknownSignal { name: name.to_owned(), near });
+            return Err(LineProblem::UnknownSignal { name: name.to_owned(), near });
         };
         let ty = self.program.signals[usize::from(signal.0)].ty;
-        Ok(What::Sample { signal, value: typed(name, ty, json)? })
+        Ok(TraceStepKind::Sample { signal, value: typed(name, ty, json)? })
     }
 
-    fn finish(self) -> Result<Recorded, Problem> {
-        if self.ended { Ok(self.recorded) } else { Err(Problem::Truncated) }
+    fn finish(self) -> Result<RecordingSummary, LineProblem> {
+        if self.ended { Ok(self.recorded) } else { Err(LineProblem::Truncated) }
     }
 }
 
-fn header(text: &str) -> Result<Header, Problem> {
+fn header(text: &str) -> Result<RecordingHeader, LineProblem> {
     let head = HeaderLine::read(text)?;
     let (Some(kind), Some(version), Some(scenario)) = (head.hrdsl, head.version, head.scenario) else {
-        return Err(Problem::NoHeader);
+        return Err(LineProblem::NoHeader);
     };
     if kind != KIND {
-        return Err(Problem::NoHeader);
+        return Err(LineProblem::NoHeader);
     }
     if !(1..=VERSION).contains(&version) {
-        return Err(Problem::Version(version));
+        return Err(LineProblem::Version(version));
     }
-    Ok(Header { scenario, vocabulary: head.vocabulary, test: head.test, seed: head.seed })
+    Ok(RecordingHeader { scenario, vocabulary: head.vocabulary, test: head.test, seed: head.seed })
 }
 
 /// The value, if it is of the type. A whole number will do for a float; a float that no JSON number can be is a string.
-fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, Problem> {
+fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, LineProblem> {
     let value = match ty {
         Type::Bool => json.as_bool().map(Value::Bool),
         Type::Int { .. } => json.as_i64().map(Value::Int),
@@ -339,7 +304,7 @@ fn typed(of: &str, ty: Type, json: &Json) -> Result<Value, Problem> {
         // Agents have these alone; no event or signal does.
         Type::Text | Type::List(_) => None,
     };
-    value.filter(|v| ty.admits(*v)).ok_or_else(|| Problem::Type {
+    value.filter(|v| ty.admits(*v)).ok_or_else(|| LineProblem::Type {
         of: of.to_owned(),
         expected: described(ty),
         found: json.to_string(),

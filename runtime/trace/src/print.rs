@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
 
-use crate::{Step, What, record};
+use crate::{TraceStep, TraceStepKind, record};
 
 /// What stands in the column of the actors when a signal is sampled.
 const SIGNAL: &str = "signal";
@@ -14,7 +14,7 @@ const SIGNAL: &str = "signal";
 ///   12.550 s  signal  gaze = 0.25 m
 /// ```
 #[must_use]
-pub fn line(program: &Program, step: &Step) -> String {
+pub fn line(program: &Program, step: &TraceStep) -> String {
     let names = program.actors.iter().map(|a| a.name.as_str());
     let width = names.chain([SIGNAL]).map(|n| n.chars().count()).max().unwrap_or(0);
     let (who, what) = who_did_what(program, &step.what);
@@ -23,10 +23,10 @@ pub fn line(program: &Program, step: &Step) -> String {
 
 /// The line's last two columns: the actor (or `signal`), and what it did (or its value).
 #[must_use]
-pub fn who_did_what<'p>(program: &'p Program, what: &What) -> (&'p str, String) {
+pub fn who_did_what<'p>(program: &'p Program, what: &TraceStepKind) -> (&'p str, String) {
     match what {
-        What::Event { event, args } => (maker(program, *event), event_text(program, *event, args)),
-        What::Sample { signal, value } => (SIGNAL, sample(program, *signal, *value)),
+        TraceStepKind::Event { event, args } => (maker(program, *event), event_text(program, *event, args)),
+        TraceStepKind::Sample { signal, value } => (SIGNAL, sample(program, *signal, *value)),
     }
 }
 

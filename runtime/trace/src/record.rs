@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use hrdsl_ir::{EventId, Nanos, Program, Value, world::SignalId};
 
-use crate::{RunEnd, Step, Trace, What, decimal, vocabulary};
+use crate::{RunEnd, Trace, TraceStep, TraceStepKind, decimal, vocabulary};
 
 /// What kind of file this is: the header's `hrdsl`.
 pub const KIND: &str = "trace";
@@ -13,7 +13,7 @@ pub const VERSION: u64 = 2;
 
 /// Where a recording comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Header {
+pub struct RecordingHeader {
     pub scenario: String,
     /// The digest of the scenario's [`vocabulary`](crate::vocabulary); recordings by other programs may lack it.
     pub vocabulary: Option<String>,
@@ -22,7 +22,7 @@ pub struct Header {
     pub seed: Option<u64>,
 }
 
-impl Header {
+impl RecordingHeader {
     /// The header of a recording of this scenario.
     #[must_use]
     pub fn of(program: &Program) -> Self {
@@ -33,15 +33,15 @@ impl Header {
 
 /// How the run of a recording ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Ending {
-    pub how: RunEnd,
+pub struct RecordingEnd {
+    pub kind: RunEnd,
     /// What happened to a run that broke off.
     pub error: Option<String>,
 }
 
 /// The whole recording of a trace; every line ends with a line break.
 #[must_use]
-pub fn write(program: &Program, header: &Header, trace: &Trace, ending: &Ending) -> String {
+pub fn write(program: &Program, header: &RecordingHeader, trace: &Trace, ending: &RecordingEnd) -> String {
     let mut text = header_line(header) + "\n";
     for step in &trace.steps {
         text.push_str(&step_line(program, step));
@@ -54,7 +54,7 @@ pub fn write(program: &Program, header: &Header, trace: &Trace, ending: &Ending)
 
 /// The first line, without a line break.
 #[must_use]
-pub fn header_line(header: &Header) -> String {
+pub fn header_line(header: &RecordingHeader) -> String {
     let mut line = format!("{{\"hrdsl\":{},\"version\":{VERSION},\"scenario\":", text(KIND));
     line.push_str(&text(&header.scenario));
     for (key, value) in [("vocabulary", &header.vocabulary), ("test", &header.test)] {
@@ -72,10 +72,10 @@ pub fn header_line(header: &Header) -> String {
 
 /// The line of one step, without a line break.
 #[must_use]
-pub fn step_line(program: &Program, step: &Step) -> String {
+pub fn step_line(program: &Program, step: &TraceStep) -> String {
     let mut line = format!("{{\"t\":{}", decimal::seconds(step.time));
     match &step.what {
-        What::Event { event, args } => {
+        TraceStepKind::Event { event, args } => {
             line.push_str(",\"event\":");
             line.push_str(&text(event_name(program, *event)));
             if !args.is_empty() {
@@ -88,7 +88,7 @@ pub fn step_line(program: &Program, step: &Step) -> String {
                 line.push('}');
             }
         }
-        What::Sample { signal, value: sampled } => {
+        TraceStepKind::Sample { signal, value: sampled } => {
             let name = text(signal_name(program, *signal));
             let _ = write!(line, ",\"signal\":{name},\"value\":{}", value(*sampled));
         }
@@ -99,8 +99,8 @@ pub fn step_line(program: &Program, step: &Step) -> String {
 
 /// The last line, without a line break.
 #[must_use]
-pub fn end_line(time: Nanos, ending: &Ending) -> String {
-    let mut line = format!("{{\"end\":{},\"ended\":{}", decimal::seconds(time), text(ending.how.word()));
+pub fn end_line(time: Nanos, ending: &RecordingEnd) -> String {
+    let mut line = format!("{{\"end\":{},\"ended\":{}", decimal::seconds(time), text(ending.kind.word()));
     if let Some(error) = &ending.error {
         line.push_str(",\"error\":");
         line.push_str(&text(error));

@@ -8,10 +8,10 @@ use hrdsl_ir::{
 use proptest::prelude::*;
 
 use crate::{
-    RunEnd, Step, Trace, What, decimal,
-    parse::{Problem, Recorded, Recording, parse},
+    RunEnd, Trace, TraceStep, TraceStepKind, decimal,
+    parse::{LineProblem, Recording, RecordingSummary, parse},
     print,
-    record::{self, Ending, Header},
+    record::{self, RecordingEnd, RecordingHeader},
     vocabulary,
 };
 
@@ -80,12 +80,12 @@ fn fault(lines: &[&str]) -> (usize, String) {
     (error.line, error.problem.to_string())
 }
 
-fn happens(time: Nanos, event: u16, args: Vec<Value>) -> Step {
-    Step { time, what: What::Event { event: EventId(event), args } }
+fn happens(time: Nanos, event: u16, args: Vec<Value>) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Event { event: EventId(event), args } }
 }
 
-fn reads(time: Nanos, signal: u16, value: Value) -> Step {
-    Step { time, what: What::Sample { signal: SignalId(signal), value } }
+fn reads(time: Nanos, signal: u16, value: Value) -> TraceStep {
+    TraceStep { time, what: TraceStepKind::Sample { signal: SignalId(signal), value } }
 }
 
 #[test]
@@ -100,13 +100,13 @@ fn a_recording_is_lines_of_names() {
         ],
         end: 300_000_000_000,
     };
-    let header = Header {
+    let header = RecordingHeader {
         scenario: "handover".into(),
         vocabulary: Some("0123456789abcdef".into()),
         test: Some("t \"1\"".into()),
         seed: Some(u64::MAX),
     };
-    let ending = Ending { how: RunEnd::Error, error: Some("it \"fell\"\noff".into()) };
+    let ending = RecordingEnd { kind: RunEnd::Error, error: Some("it \"fell\"\noff".into()) };
     let text = record::write(&program(), &header, &trace, &ending);
     let expected = [
         r#"{"hrdsl":"trace","version":2,"scenario":"handover","vocabulary":"0123456789abcdef","test":"t \"1\"","seed":18446744073709551615}"#,
@@ -118,7 +118,7 @@ fn a_recording_is_lines_of_names() {
         "",
     ];
     assert_eq!(text, expected.join("\n"));
-    let recorded = Recorded { header, end: trace.end, ending, steps: 4 };
+    let recorded = RecordingSummary { header, end: trace.end, ending, steps: 4 };
     assert_eq!(parse(&program(), &text).unwrap(), (recorded, trace));
 }
 
@@ -170,19 +170,19 @@ fn time_goes_forward_until_the_end() {
     let found = fault(&[HEADER, &ask("1.5"), "", &ask("1.499999999")]);
     assert_eq!(found, (4, "time goes backwards: 1.499999999 s after 1.5 s".to_owned()));
     assert_eq!(fault(&[HEADER, &ask("2"), r#"{"end":1}"#]).0, 3);
-    assert_eq!(fault(&[HEADER, r#"{"end":1}"#, &ask("2")]), (3, Problem::AfterEnd.to_string()));
+    assert_eq!(fault(&[HEADER, r#"{"end":1}"#, &ask("2")]), (3, LineProblem::AfterEnd.to_string()));
 }
 
 #[test]
 fn a_file_cut_off_anywhere_is_noticed() {
     let trace = Trace { steps: vec![happens(5, 1, vec![Value::Bool(true)])], end: 25_000_000_000 };
-    let header = Header { scenario: "handover".into(), ..Header::default() };
-    let text = record::write(&program(), &header, &trace, &Ending::default());
+    let header = RecordingHeader { scenario: "handover".into(), ..RecordingHeader::default() };
+    let text = record::write(&program(), &header, &trace, &RecordingEnd::default());
     for cut in 0..text.len() - 1 {
         let error = parse(&program(), &text[..cut]);
         // Without its final line break it is still whole.
         let line = text[..cut].lines().count().max(1);
-        let problem = if cut == 0 { Problem::NoHeader } else { Problem::Truncated };
+        let problem = if cut == 0 { LineProblem::NoHeader } else { LineProblem::Truncated };
         assert_eq!(error.map_err(|e| (e.line, e.problem)), Err((line, problem)), "cut at {cut}");
     }
     assert!(parse(&program(), text.trim_end()).is_ok());
@@ -191,10 +191,10 @@ fn a_file_cut_off_anywhere_is_noticed() {
 #[test]
 fn the_last_line_says_how_the_run_ended() {
     let ending = |last: &str| parse(&program(), &[HEADER, last].join("\n")).unwrap().0.ending;
-    assert_eq!(ending(r#"{"end":1}"#), Ending::default());
-    assert_eq!(ending(r#"{"end":1,"ended":"limit"}"#).how, RunEnd::Limit);
+    assert_eq!(ending(r#"{"end":1}"#), RecordingEnd::default());
+    assert_eq!(ending(r#"{"end":1,"ended":"limit"}"#).kind, RunEnd::Limit);
     let error = ending(r#"{"end":1,"ended":"error","error":"gone"}"#);
-    assert_eq!(error, Ending { how: RunEnd::Error, error: Some("gone".into()) });
+    assert_eq!(error, RecordingEnd { kind: RunEnd::Error, error: Some("gone".into()) });
     let faults = [
         (r#"{"end":1,"ended":"over"}"#, "`over` is not how a run ends; that is `quiet`, `limit` or `error`"),
         (r#"{"end":1,"error":"gone"}"#, "a run has an `error` only if it `ended` in error"),
@@ -238,8 +238,11 @@ fn a_vocabulary_is_names_and_types_in_any_order() {
 
 #[test]
 fn headers_are_checked() {
-    assert_eq!(fault(&[r#"{"end":1}"#]), (1, Problem::NoHeader.to_string()));
-    assert_eq!(fault(&[r#"{"hrdsl":"report","version":1,"scenario":"s"}"#]).1, Problem::NoHeader.to_string());
+    assert_eq!(fault(&[r#"{"end":1}"#]), (1, LineProblem::NoHeader.to_string()));
+    assert_eq!(
+        fault(&[r#"{"hrdsl":"report","version":1,"scenario":"s"}"#]).1,
+        LineProblem::NoHeader.to_string()
+    );
     for (version, says) in [(0, "version 0"), (3, "version 3; versions 1 to 2 can be read")] {
         let found = fault(&[&format!(r#"{{"hrdsl":"trace","version":{version},"scenario":"s"}}"#)]).1;
         assert!(found.contains(says), "{found}");
@@ -266,7 +269,7 @@ fn the_first_of_several_of_one_name_is_meant() {
 fn floats_that_are_no_json_numbers_are_kept() {
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let trace = Trace { steps: vec![reads(0, 1, Value::Float(x))], end: 0 };
-        let text = record::write(&program(), &Header::default(), &trace, &Ending::default());
+        let text = record::write(&program(), &RecordingHeader::default(), &trace, &RecordingEnd::default());
         let (_, read) = parse(&program(), &text).unwrap();
         assert_eq!(format!("{trace:?}"), format!("{read:?}"));
     }
@@ -282,7 +285,7 @@ fn symbols_are_names_and_read_by_their_type() {
         ],
         end: 2,
     };
-    let text = record::write(&program(), &Header::default(), &trace, &Ending::default());
+    let text = record::write(&program(), &RecordingHeader::default(), &trace, &RecordingEnd::default());
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[1], r#"{"t":0,"event":"paced","args":{"pace":"nan","far":"nan"}}"#);
     assert_eq!(lines[2], r#"{"t":0.000000001,"signal":"pace","value":"fast"}"#);
@@ -356,7 +359,7 @@ fn the_specification_shows_real_recordings() {
         .collect();
     assert!(!blocks.is_empty());
     for block in blocks {
-        let (Recorded { mut header, ending, .. }, trace) = parse(&program(), block).unwrap();
+        let (RecordingSummary { mut header, ending, .. }, trace) = parse(&program(), block).unwrap();
         assert_eq!(header.vocabulary.take().is_some(), header.test.is_some(), "those of tests have it");
         header.vocabulary = header.test.as_ref().map(|_| "45b92b0b4a1c8e6d".to_owned());
         assert_eq!(record::write(&program(), &header, &trace, &ending), block);
@@ -378,14 +381,14 @@ fn values(ty: Type) -> BoxedStrategy<Value> {
     }
 }
 
-fn whats() -> BoxedStrategy<What> {
+fn whats() -> BoxedStrategy<TraceStepKind> {
     let program = program();
     let of_event = (0u16..).zip(&program.events).map(|(id, event)| {
         let args: Vec<BoxedStrategy<Value>> = event.params.iter().map(|p| values(p.ty)).collect();
-        args.prop_map(move |args| What::Event { event: EventId(id), args }).boxed()
+        args.prop_map(move |args| TraceStepKind::Event { event: EventId(id), args }).boxed()
     });
     let of_signal = (0u16..).zip(&program.signals).map(|(id, signal)| {
-        values(signal.ty).prop_map(move |value| What::Sample { signal: SignalId(id), value }).boxed()
+        values(signal.ty).prop_map(move |value| TraceStepKind::Sample { signal: SignalId(id), value }).boxed()
     });
     prop::strategy::Union::new(of_event.chain(of_signal)).boxed()
 }
@@ -398,7 +401,7 @@ fn traces() -> impl Strategy<Value = Trace> {
             .into_iter()
             .map(|(gap, what)| {
                 time += gap;
-                Step { time, what }
+                TraceStep { time, what }
             })
             .collect();
         Trace { steps, end: time + rest }
@@ -414,11 +417,11 @@ proptest! {
         scenario in any::<String>(),
         test in any::<Option<String>>(),
         seed in any::<Option<u64>>(),
-        how in prop::sample::select(&RunEnd::ALL[..]),
+        kind in prop::sample::select(&RunEnd::ALL[..]),
         error in any::<String>(),
     ) {
-        let header = Header { scenario, vocabulary: test.clone(), test, seed };
-        let ending = Ending { how, error: (how == RunEnd::Error).then_some(error) };
+        let header = RecordingHeader { scenario, vocabulary: test.clone(), test, seed };
+        let ending = RecordingEnd { kind, error: (kind == RunEnd::Error).then_some(error) };
         let text = record::write(&program(), &header, &trace, &ending);
         prop_assert_eq!(text.lines().count(), trace.steps.len() + 2);
         let (found, read) = parse(&program(), &text).unwrap();

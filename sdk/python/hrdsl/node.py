@@ -45,11 +45,13 @@ class _Device:
     def __init__(self, link: _links.Link, name: str) -> None:
         self._link = link
         self.name = name
-        self.last_error: str | None = None  # why the last action failed
+        self.last_error: str | None = None  # why the last command failed
 
-    def _act(self, do: str, **args: Any) -> bool:
+    def command(self, command: str, /, **args: Any) -> bool:
+        """Gives the device a command that it is declared to have, and returns when that has ended: whether it succeeded. An
+        argument that is `None` is left out."""
         given = {key: value for key, value in args.items() if value is not None}
-        message = {"request": "act", "on": self.name, "do": do, "args": given, "wait": True}
+        message = {"request": "act", "on": self.name, "do": command, "args": given, "wait": True}
         answer = self._link.request(message)
         self.last_error = answer.get("error")
         return bool(answer.get("ok"))
@@ -60,21 +62,21 @@ class Arm(_Device):
 
     def move_to(self, place: Iterable[float], speed: float | None = None) -> bool:
         """Brings the tool to a place (x, y, z; metres); `speed` limits the joints (rad/s)."""
-        return self._act("move_to", to=_numbers(place, 3), speed=speed)
+        return self.command("move_to", to=_numbers(place, 3), speed=speed)
 
     def move_joints(self, angles: Iterable[float], speed: float | None = None) -> bool:
         """Brings the joints to these angles (radians, from the base to the tip)."""
-        return self._act("move_joints", to=_numbers(angles, None), speed=speed)
+        return self.command("move_joints", to=_numbers(angles, None), speed=speed)
 
 
 class Gripper(_Device):
     """A hand. Both calls return when the hand has done it; `close` says whether it now holds something."""
 
     def close(self) -> bool:
-        return self._act("close")
+        return self.command("close")
 
     def open(self) -> bool:
-        return self._act("open")
+        return self.command("open")
 
 
 class Node:

@@ -59,6 +59,11 @@ class Messages(unittest.TestCase):
             {"request": "act", "on": "robot.arm", "do": "move_to", "args": {"to": [1.0, 2.0, 3.0]}, "wait": True},
         )
         self.assertEqual(node.now(), 1.5)
+        self.assertIs(node.gripper("robot.grip").command("drop", command="gently", force=None), True)
+        self.assertEqual(
+            harness.requests[-1],
+            {"request": "act", "on": "robot.grip", "do": "drop", "args": {"command": "gently"}, "wait": True},
+        )
 
     def test_a_name_is_one_device(self):
         _, node = self.node(lambda request: {"t": 1, "ok": False, "error": "joint 2 is at its limit"})
@@ -99,6 +104,7 @@ class Messages(unittest.TestCase):
             lambda: node.sleep(float("inf")),
             lambda: node.wait_for("a", timeout=-1),
             lambda: node.arm("a").move_to((1, 2)),
+            lambda: node.arm("a").command("turn", by=float("nan")),
             lambda: node.emit("a", x=float("nan")),
         ):
             with self.assertRaises(ValueError):

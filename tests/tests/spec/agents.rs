@@ -8,7 +8,7 @@ use std::{
 };
 
 use hrdsl_bdi::{
-    CYCLE_LIMIT, Detail,
+    CYCLE_LIMIT, LogDetail,
     choose::{BeliefSet, explore, factors},
 };
 use hrdsl_compiler::{Input, compile};
@@ -19,10 +19,10 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_runtime::{
-    harness::{Ended, Fault},
-    testgen::model_run::{How, LogLine, model_run},
+    harness::{HarnessError, RunTermination},
+    testgen::model_run::{LogLine, ModelRunOptions, model_run},
 };
-use hrdsl_trace::What;
+use hrdsl_trace::TraceStepKind;
 
 use crate::page::root;
 
@@ -48,14 +48,14 @@ pub type Cast = (Vec<u16>, BeliefSet);
 /// What a run prints: the log, what happened, how it ended.
 pub fn printed(program: &Program, text: &str, (agents, set): &Cast, cycles: u64) -> String {
     let players: Vec<PlayerRef> = agents.iter().map(|n| PlayerRef::Agent(AgentId(*n))).collect();
-    let how = How { seed: 0, horizon: LIMIT, detail: Detail::Steps, cycles };
+    let how = ModelRunOptions { seed: 0, horizon: LIMIT, detail: LogDetail::Steps, cycles };
     let run = model_run(program, &players, &set.facts, &how);
     let mut out = String::new();
     for line in &run.log {
         let _ = writeln!(out, "{}{}", line.line(), place(line, text));
     }
     for step in &run.trace.steps {
-        let What::Event { event, args } = &step.what else { continue };
+        let TraceStepKind::Event { event, args } = &step.what else { continue };
         let args: String = args.iter().map(|v: &Value| format!(" {v}")).collect();
         let _ = writeln!(out, "event {} {}{args}", step.time, program.event(*event).name);
     }
@@ -71,11 +71,11 @@ fn place(line: &LogLine, text: &str) -> String {
     line.origin.as_ref().filter(|_| failed).map_or_else(String::new, |s| format!(" (line {})", number(s)))
 }
 
-fn ended(ended: &Ended) -> String {
+fn ended(ended: &RunTermination) -> String {
     match ended {
-        Ended::Quiet => "quiescent".to_owned(),
-        Ended::Limit => "horizon".to_owned(),
-        Ended::Fault(Fault::Model(text)) => {
+        RunTermination::Quiet => "quiescent".to_owned(),
+        RunTermination::Limit => "horizon".to_owned(),
+        RunTermination::Fault(HarnessError::Model(text)) => {
             let agent = text.split('`').nth(1).unwrap_or("?");
             match () {
                 () if text.contains("livelock") => format!("livelock of {agent}"),
@@ -84,7 +84,7 @@ fn ended(ended: &Ended) -> String {
                 () => text.clone(),
             }
         }
-        Ended::Fault(other) => other.to_string(),
+        RunTermination::Fault(other) => other.to_string(),
     }
 }
 

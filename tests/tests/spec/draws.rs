@@ -6,7 +6,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use hrdsl_bdi::choose::{Alternative, BeliefSet, Explorer, Factor, explore};
+use hrdsl_bdi::choose::{BeliefExplorer, BeliefFactor, BeliefSet, FactorAlternative, explore};
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{
     Value,
@@ -123,7 +123,7 @@ for row in fill([], sizes, tests, chance): print(*row)
     let spaces: [&[u32]; 6] = [&[], &[4], &[2, 2], &[3, 1, 2, 5], &[5, 8, 8, 8, 8, 2, 2], &[4; 9]];
     for sizes in spaces {
         for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
-            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
             let mut expected = String::new();
             for how in [Explore::Wise(2), Explore::Random] {
                 for set in explore(&factors, how, tests, seed).sets {
@@ -147,7 +147,7 @@ for row in wise(strength, sizes, Generator(seed)): print(*row)
     let spaces: [&[u32]; 5] = [&[3], &[2, 2], &[3, 2, 4], &[3, 1, 2, 3], &[2, 3, 2, 2, 3]];
     for sizes in spaces {
         for (strength, seed) in [(2u8, 4), (3, 0), (3, 9), (4, 1), (6, 2)] {
-            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
+            let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
             let sets = explore(&factors, Explore::Wise(strength), 0, seed).sets;
             let expected: String = sets.iter().map(|s| row(s) + "\n").collect();
             let args = [format!("{sizes:?}"), strength.to_string(), seed.to_string()];
@@ -166,8 +166,8 @@ for row in learn(sizes, tests, Generator(seed), lambda row: sum(row) % 3): print
     let spaces: [&[u32]; 4] = [&[4], &[2, 3, 2], &[5, 8, 8, 2], &[4; 6]];
     for sizes in spaces {
         for (tests, seed) in [(10, 0), (200, 3)] {
-            let factors: Vec<Factor> = sizes.iter().map(|n| factor(*n)).collect();
-            let mut explorer = Explorer::new(&factors, Explore::Learn, tests, seed);
+            let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
+            let mut explorer = BeliefExplorer::new(&factors, Explore::Learn, tests, seed);
             let mut expected = String::new();
             loop {
                 let batch = explorer.next_batch();
@@ -194,8 +194,12 @@ fn row(set: &BeliefSet) -> String {
 }
 
 /// A dimension whose alternatives are numbers.
-fn factor(size: u32) -> Factor {
+fn factor(size: u32) -> BeliefFactor {
     let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())], annotations: vec![] };
-    let alternative = |n| Alternative { facts: vec![fact(n)], text: n.to_string() };
-    Factor { agent: AgentId(0), name: "n".to_owned(), alternatives: (0..size).map(alternative).collect() }
+    let alternative = |n| FactorAlternative { facts: vec![fact(n)], text: n.to_string() };
+    BeliefFactor {
+        agent: AgentId(0),
+        name: "n".to_owned(),
+        alternatives: (0..size).map(alternative).collect(),
+    }
 }

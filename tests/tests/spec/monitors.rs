@@ -8,8 +8,8 @@ use std::{
 
 use hrdsl_compiler::{Input, compile};
 use hrdsl_ir::{EventId, Program, Type, Value, value::SECOND, world::SignalId};
-use hrdsl_monitor::{Checker, Outcome, Verdict, Violation};
-use hrdsl_trace::{Step, Trace, What};
+use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, Violation};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 use serde_json::{Value as Json, json};
 
 use crate::page::root;
@@ -43,28 +43,28 @@ impl Chance {
             let what = if self.below(2) == 0 {
                 let event = EventId(self.below(program.events.len()) as u16);
                 let params = &program.event(event).params;
-                What::Event { event, args: params.iter().map(|p| self.value(p.ty)).collect() }
+                TraceStepKind::Event { event, args: params.iter().map(|p| self.value(p.ty)).collect() }
             } else {
                 let signal = self.below(program.signals.len());
                 let value = self.value(program.signals[signal].ty);
-                What::Sample { signal: SignalId(signal as u16), value }
+                TraceStepKind::Sample { signal: SignalId(signal as u16), value }
             };
-            steps.push(Step { time, what });
+            steps.push(TraceStep { time, what });
         }
         Trace { steps, end: time + [0, SECOND, 4 * SECOND][self.below(3)] }
     }
 }
 
 fn as_json(trace: &Trace) -> Json {
-    let step = |s: &Step| match &s.what {
-        What::Event { event, args } => json!([s.time, event, args]),
-        What::Sample { signal, value } => json!([s.time, { "signal": signal }, value]),
+    let step = |s: &TraceStep| match &s.what {
+        TraceStepKind::Event { event, args } => json!([s.time, event, args]),
+        TraceStepKind::Sample { signal, value } => json!([s.time, { "signal": signal }, value]),
     };
     json!({ "steps": trace.steps.iter().map(step).collect::<Vec<_>>(), "end": trace.end })
 }
 
 /// A verdict as the reference says it.
-fn in_words(verdict: &Verdict) -> Json {
+fn in_words(verdict: &MonitorVerdict) -> Json {
     let violation = |v: &Violation| {
         let witness: Vec<usize> = v.witness.iter().map(|seen| seen.index).collect();
         json!({
@@ -74,10 +74,10 @@ fn in_words(verdict: &Verdict) -> Json {
     json!({
         "monitor": verdict.monitor,
         "outcome": match verdict.outcome {
-            Outcome::Pass => "pass",
-            Outcome::Fail => "fail",
-            Outcome::NotChecked => "not_checked",
-            Outcome::Open => "open",
+            MonitorOutcome::Pass => "pass",
+            MonitorOutcome::Fail => "fail",
+            MonitorOutcome::NotChecked => "not_checked",
+            MonitorOutcome::Open => "open",
         },
         "triggered": verdict.triggered,
         "discharged": verdict.discharged,
@@ -109,7 +109,7 @@ fn the_reference_gives_the_same_verdicts() {
     assert_eq!(got.lines().count(), traces.len());
     let mut outcomes = std::collections::BTreeSet::new();
     for (number, (trace, got)) in traces.iter().zip(got.lines()).enumerate() {
-        let mut checker = Checker::new(&program);
+        let mut checker = MonitorRunner::new(&program);
         trace.replay(&mut checker);
         let got: Vec<Json> = serde_json::from_str(got).unwrap();
         for (verdict, got) in checker.verdicts().iter().zip(got) {

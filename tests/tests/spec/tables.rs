@@ -4,7 +4,11 @@
 use std::{env, fmt::Write, fs};
 
 use hrdsl_compiler::token::{Class, KEYWORDS};
-use hrdsl_model::{Dim, Type, UNITS};
+use hrdsl_ir::{
+    Type,
+    device::{CommandType, DevicePrimitive, NumberCount},
+};
+use hrdsl_model::{Dim, UNITS, type_named, type_names};
 use hrdsl_source::{GROUPS, REGISTRY};
 
 use crate::page::{pages, read, root};
@@ -33,18 +37,18 @@ fn same(page: &str, old: &str, new: &str) {
 
 /// The name of a dimension's type.
 fn type_of(dim: Dim) -> &'static str {
-    let mut names = Type::names().filter(|n| *n != "float");
-    names.find(|n| Type::named(n) == Some(Type::Float(dim))).expect("each unit is of a named dimension")
+    let mut names = type_names().filter(|n| *n != "float");
+    names.find(|n| type_named(n) == Some(Type::Float(dim.unit()))).expect("each unit is of a named dimension")
 }
 
 #[test]
 fn the_types() {
     let mut table = String::from("| type | values | counted in |\n|---|---|---|\n");
-    for name in Type::names() {
-        let (values, unit) = match Type::named(name) {
-            Some(Type::Float(dim)) => {
-                let unit = dim.symbol().filter(|s| !s.is_empty()).map(|s| format!("`{s}`"));
-                ("64-bit floats", unit.unwrap_or_default())
+    for name in type_names() {
+        let (values, unit) = match type_named(name) {
+            Some(Type::Float(unit)) => {
+                let symbol = Some(unit.symbol()).filter(|s| !s.is_empty()).map(|s| format!("`{s}`"));
+                ("64-bit floats", symbol.unwrap_or_default())
             }
             Some(Type::Bool) => ("`false`, `true`", String::new()),
             Some(Type::Int { .. }) => ("whole numbers of 64 bits", String::new()),
@@ -77,6 +81,46 @@ fn the_keywords() {
         let _ = writeln!(table, "| `{}` | {reserved} | {} |", keyword.word, keyword.place);
     }
     generated("spec/grammar.md", "keywords", &table);
+}
+
+/// What follows the comment at the module's head.
+#[test]
+fn the_devices() {
+    let module = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES).unwrap();
+    let declared = module.split_once("\n\n").unwrap().1;
+    let mut text = String::from("```text\n");
+    let mut example = false;
+    for line in declared.lines() {
+        let comment = line.starts_with("///");
+        example = comment && (example || line == "///");
+        if !example {
+            let _ = writeln!(text, "{line}");
+        }
+    }
+    generated("spec/world.md", "devices", &(text + "```"));
+}
+
+#[test]
+fn the_primitives() {
+    let type_text = |ty: CommandType| {
+        let dim = UNITS.iter().find(|unit| unit.symbol == ty.unit.symbol()).unwrap().dim;
+        match ty.count {
+            NumberCount::One => type_of(dim).to_owned(),
+            NumberCount::Array(n) => format!("{}[{n}]", type_of(dim)),
+            NumberCount::List => format!("[{}]", type_of(dim)),
+        }
+    };
+    let mut table = String::from("| primitive | of | needs | may take |\n|---|---|---|---|\n");
+    for primitive in DevicePrimitive::ALL {
+        let params = |optional: bool| {
+            let these = primitive.params().iter().filter(|p| p.optional == optional);
+            let these: Vec<String> = these.map(|p| format!("`{}: {}`", p.name, type_text(p.ty))).collect();
+            if these.is_empty() { "–".to_owned() } else { these.join(", ") }
+        };
+        let (name, of) = (primitive.name(), primitive.sort().name());
+        let _ = writeln!(table, "| `{name}` | {of} | {} | {} |", params(false), params(true));
+    }
+    generated("spec/world.md", "primitives", &table);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use hrdsl_compiler::{
     Compilation, Input,
-    ast::{Instance, ItemKind, Sort, World, WorldMemberKind as Member},
+    ast::{DeviceMemberKind, Instance, ItemKind, Sort, World, WorldMemberKind as Member},
     compile,
 };
 
@@ -56,6 +56,19 @@ fn module(path: &'static str, text: &str) -> Module {
                 (require.name.text.clone(), require.params.as_ref().map(|_| Sorted::Require), &[][..])
             }
             ItemKind::Const { name, .. } => (name.text.clone(), None, &[][..]),
+            ItemKind::Device(device) => {
+                let commands = device.members.iter().filter_map(|m| match &m.kind {
+                    DeviceMemberKind::Command(command) => {
+                        let (from, to) = (command.name.span.start, m.span.end);
+                        let span = hrdsl_source::Span { start: from, end: to, ..m.span };
+                        Some(("command", files.text(span).to_owned(), m.doc.clone()))
+                    }
+                    DeviceMemberKind::Error => None,
+                });
+                let text = format!("device {}", device.kind.text);
+                let (name, doc, members) = (device.kind.text.clone(), item.doc.clone(), commands.collect());
+                return Some(Declaration { name, sort: None, text, doc, members });
+            }
             ItemKind::Use(_) => return None,
             other => panic!("{path}: the page does not know how to show {other:?}"),
         };

@@ -12,7 +12,7 @@ use hrdsl_ir::{
     Expr, Program, Value,
     world::{BodyRef, Point, SignalId, WorldAction},
 };
-use hrdsl_sim::{Command, Sim};
+use hrdsl_sim::{MotorCommand, Sim};
 use library::{Sorted, blocks, instantiated, modules};
 
 /// Everything that was said, by place.
@@ -113,7 +113,7 @@ fn arms_reach_what_is_in_front_of_them() {
         let mut sim = Sim::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
         let arm = sim.arm_named("robot.arm").unwrap();
         for target in places {
-            let id = sim.command(Command::MoveTo { arm, target, max_speed: None }).unwrap();
+            let id = sim.command(MotorCommand::ReachPoint { arm, target, max_speed: None }).unwrap();
             let end = sim.now() + 20_000_000_000;
             let mut finished = Vec::new();
             while finished.is_empty() && sim.now() < end {

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use Outcome::{Fail, NotChecked, Open, Pass};
+use MonitorOutcome::{Fail, NotChecked, Open, Pass};
 use hrdsl_ir::{EventId, Program, Value, world::SignalId};
-use hrdsl_monitor::{Checker, Outcome, Verdict};
-use hrdsl_trace::{Step, Trace, What};
+use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 /// Short names of the measurements in the traces below.
 const SHORT: &[(&str, &str)] = &[
@@ -24,7 +24,7 @@ const SHORT: &[(&str, &str)] = &[
 ];
 
 /// The requirement, a trace of 100 s (a time in s, then an event or `signal=value`), and what it must say of it.
-const CASES: &[(&str, &str, Outcome)] = &[
+const CASES: &[(&str, &str, MonitorOutcome)] = &[
     ("never_opened", "1 closing", NotChecked),
     ("never_opened", "1 opening", Fail),
     ("no_blind_closing", "0 sees=false; 1 opening", NotChecked),
@@ -112,7 +112,7 @@ const CASES: &[(&str, &str, Outcome)] = &[
     ("nothing_dropped", "0 has_cup=false; 1 opening", Fail),
 ];
 
-fn step(program: &Program, text: &str) -> Step {
+fn step(program: &Program, text: &str) -> TraceStep {
     let (time, what) = text.split_once(' ').unwrap();
     let time = (time.parse::<f64>().unwrap() * 1e9).round() as i64;
     let what = match what.split_once('=') {
@@ -121,21 +121,21 @@ fn step(program: &Program, text: &str) -> Step {
             let at =
                 program.signals.iter().position(|s| s.name == name).unwrap_or_else(|| panic!("no {name}"));
             let value = value.parse().map_or_else(|_| Value::Bool(value == "true"), Value::Float);
-            What::Sample { signal: SignalId(u16::try_from(at).unwrap()), value }
+            TraceStepKind::Sample { signal: SignalId(u16::try_from(at).unwrap()), value }
         }
         None => {
             let at =
                 program.events.iter().position(|e| e.name == what).unwrap_or_else(|| panic!("no {what}"));
-            What::Event { event: EventId(u16::try_from(at).unwrap()), args: Vec::new() }
+            TraceStepKind::Event { event: EventId(u16::try_from(at).unwrap()), args: Vec::new() }
         }
     };
-    Step { time, what }
+    TraceStep { time, what }
 }
 
-fn judged(program: &Program, requirement: &str, trace: &str) -> Verdict {
+fn judged(program: &Program, requirement: &str, trace: &str) -> MonitorVerdict {
     let steps = trace.split(';').map(str::trim).filter(|s| !s.is_empty()).map(|s| step(program, s));
     let trace = Trace { steps: steps.collect(), end: 100_000_000_000 };
-    let mut checker = Checker::new(program);
+    let mut checker = MonitorRunner::new(program);
     trace.replay(&mut checker);
     let at = program.monitors.iter().position(|m| m.name == requirement);
     let at = at.unwrap_or_else(|| panic!("no requirement `{requirement}`"));
@@ -145,7 +145,7 @@ fn judged(program: &Program, requirement: &str, trace: &str) -> Verdict {
 #[test]
 fn requirements_judge_as_they_say() {
     let program = crate::program("std.requirements", 0);
-    let mut seen: BTreeMap<&str, BTreeSet<Outcome>> = BTreeMap::new();
+    let mut seen: BTreeMap<&str, BTreeSet<MonitorOutcome>> = BTreeMap::new();
     for (requirement, trace, outcome) in CASES {
         let verdict = judged(&program, requirement, trace);
         assert_eq!(verdict.outcome, *outcome, "{requirement}: {trace}");

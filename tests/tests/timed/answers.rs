@@ -6,7 +6,7 @@ use hrdsl_ir::{
     value::SECOND,
 };
 
-use hrdsl_ta::{Error, Manner, Verdict, answer};
+use hrdsl_ta::{QueryOptions, QueryVerdict, SearchError, answer};
 
 use crate::oracle::{Limits, explore};
 
@@ -17,7 +17,7 @@ pub fn by_regions(p: &Program, query: &Query) -> String {
         limits.bound = limits.bound.max(c.bound.nanos.abs() / SECOND);
         limits.differences |= c.minus.is_some();
     });
-    let graph = match explore(p, &p.networks[usize::from(query.network)], limits) {
+    let graph = match explore(p, &p.networks[usize::from(query.network.0)], limits) {
         Ok(graph) => graph,
         Err(why) => return why,
     };
@@ -41,14 +41,14 @@ pub fn by_regions(p: &Program, query: &Query) -> String {
 
 /// The same, by the search.
 pub fn by_search(p: &Program, query: &Query) -> String {
-    match answer(p, &p.networks[usize::from(query.network)], query, &Manner::default()) {
+    match answer(p, &p.networks[usize::from(query.network.0)], query, &QueryOptions::default()) {
         Ok(found) => match found.verdict {
-            Verdict::Holds => "holds".to_owned(),
-            Verdict::Fails => "fails".to_owned(),
-            Verdict::Open => "open".to_owned(),
+            QueryVerdict::Holds => "holds".to_owned(),
+            QueryVerdict::Fails => "fails".to_owned(),
+            QueryVerdict::Open => "open".to_owned(),
         },
-        Err(Error::Model { .. }) => "fault".to_owned(),
-        Err(Error::Internal(why)) => why,
+        Err(SearchError::Model { .. }) => "fault".to_owned(),
+        Err(SearchError::Internal(why)) => why,
     }
 }
 

@@ -8,7 +8,7 @@ use hrdsl_ir::{
     bdi::{Agent, AgentId, BeliefId, Fact},
 };
 
-use crate::input::{self, Disk, Fault};
+use crate::{fault::Fault, files, reach::Disk};
 
 /// One of the beliefs, and whose it is.
 struct Given<'a> {
@@ -120,7 +120,7 @@ fn fact(
     let disk = Disk::of(Some(scenario));
     let changed = Changed { disk, name: &file.name, text: &text };
     let name = scenario.display().to_string();
-    let own = input::read(scenario)?;
+    let own = files::read(scenario)?;
     let head = if file.name == name { &text } else { &own };
     let compiled = compile_with(Input { name: &name, text: head }, &[], &changed);
     let Some(changed) = &compiled.program else {

@@ -13,20 +13,15 @@ use hrdsl_ir::{
     value::nanos,
 };
 use hrdsl_runtime::testgen::{
-    self, Options, Origin, generate_with, how_many_sets,
-    model_run::{Detail, How, Inspection, LogLine, inspect},
+    self, GenerateOptions, TestOrigin, generate_with, how_many_sets,
+    model_run::{LogDetail, LogLine, ModelInspection, ModelRunOptions, inspect},
     seed_of,
 };
 use hrdsl_source::printable_line;
 use serde::Serialize;
 
 use self::reasoning::{End, Picked, ending, reasoning};
-use crate::{
-    color,
-    exit::Exit,
-    input::{self, Fault},
-    terminal,
-};
+use crate::{color, exit::Exit, fault::Fault, input, terminal};
 
 /// Show how the agents of a suite reason: what they take up, which plans they try and why, what they do.
 ///
@@ -124,18 +119,18 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             return Err(format!("no agent `{agent}` in the suite; it has: {}", names.join(", ")));
         }
     }
-    let detail = if args.steps { Detail::Steps } else { Detail::Reasons };
+    let detail = if args.steps { LogDetail::Steps } else { LogDetail::Reasons };
     let inspection = chosen.inspect(program, detail);
     let end = End::of(&inspection, &picked);
     let place = |span: Span| compilation.files.place(span);
     match (args.json, args.end) {
-        (true, true) => input::print_data(&(json(&end)? + "\n"))?,
-        (true, false) => input::print_data(&json_lines(&inspection, &picked, &place)?)?,
+        (true, true) => terminal::print_data(&(json(&end)? + "\n"))?,
+        (true, false) => terminal::print_data(&json_lines(&inspection, &picked, &place)?)?,
         (false, only_end) => {
             let color = color::stdout_has();
             let log = if only_end { String::new() } else { reasoning(&inspection, &picked, color, &place) };
             let text = format!("{}\n{log}{}", chosen.heading(program, color), ending(&end, color));
-            input::print(&text)?;
+            terminal::print(&text)?;
         }
     }
     Ok(if end.is_regular() { Exit::Ok } else { Exit::Errors })
@@ -156,7 +151,7 @@ pub struct Chosen<'p> {
 impl<'p> Chosen<'p> {
     /// The run that a generated test came from; `None` if the suite is not by agents.
     #[must_use]
-    pub fn of_test(suite: &'p Suite, test: &str, origin: &Origin, seed: u64) -> Option<Self> {
+    pub fn of_test(suite: &'p Suite, test: &str, origin: &TestOrigin, seed: u64) -> Option<Self> {
         let Method::Agents { players, .. } = &suite.method else { return None };
         Some(Self {
             suite,
@@ -169,8 +164,13 @@ impl<'p> Chosen<'p> {
     }
 
     #[must_use]
-    pub fn inspect(&self, program: &Program, detail: Detail) -> Inspection {
-        inspect(program, self.players, &self.facts, &How::new(self.seed, self.suite.horizon, detail))
+    pub fn inspect(&self, program: &Program, detail: LogDetail) -> ModelInspection {
+        inspect(
+            program,
+            self.players,
+            &self.facts,
+            &ModelRunOptions::new(self.seed, self.suite.horizon, detail),
+        )
     }
 
     /// What is shown, in a few lines.
@@ -276,7 +276,7 @@ fn of_test<'p>(
     let generated = generate_with(
         program,
         suite,
-        Options { count: args.count, seed: args.seed, minimise, ..Options::default() },
+        GenerateOptions { count: args.count, seed: args.seed, minimise, ..GenerateOptions::default() },
     )?;
     let name = format!("{}.t{number:03}", suite.name);
     let origin = generated.origins.get(number - 1);
@@ -298,7 +298,7 @@ struct Line<'a> {
 /// # Errors
 /// What cannot be written as JSON.
 pub fn json_lines(
-    inspection: &Inspection,
+    inspection: &ModelInspection,
     picked: &Picked<'_>,
     place: &dyn Fn(Span) -> String,
 ) -> Result<String, Fault> {

@@ -6,9 +6,9 @@ use hrdsl_ir::{Nanos, Span};
 use serde::Serialize;
 
 use hrdsl_runtime::{
-    harness::{Ended, Fault},
+    harness::{HarnessError, RunTermination},
     report::text,
-    testgen::model_run::{Inspection, LogLine, Standing, Status, show},
+    testgen::model_run::{IntentionSummary, LogLine, ModelInspection, RunStatus, show},
 };
 
 /// Of more cycles of an agent in a round than this only the first and last are shown.
@@ -65,23 +65,28 @@ pub struct End {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AgentEnd {
     pub agent: String,
-    pub intentions: Vec<Standing>,
+    pub intentions: Vec<IntentionSummary>,
     pub beliefs: Vec<String>,
 }
 
 impl End {
     /// How a run ended for the agents that are shown.
     #[must_use]
-    pub fn of(inspection: &Inspection, picked: &Picked<'_>) -> Self {
+    pub fn of(inspection: &ModelInspection, picked: &Picked<'_>) -> Self {
         let (how, why) = match (&inspection.run.ended, inspection.status) {
-            (Ended::Quiet, _) => ("quiescent", "nobody waits for anything that can still come".to_owned()),
-            (Ended::Limit, _) => ("horizon", "the time of the suite's model runs is over".to_owned()),
-            (Ended::Fault(fault), Status::Livelock) => ("livelock", reason(fault)),
-            (Ended::Fault(fault), Status::Endless) => ("cycle bound", reason(fault)),
-            (Ended::Fault(fault), Status::Overfull(_)) => ("holding bound", reason(fault)),
-            (Ended::Fault(fault), Status::Ready | Status::Waiting | Status::Idle | Status::Malformed) => {
-                ("fault", fault.to_string())
+            (RunTermination::Quiet, _) => {
+                ("quiescent", "nobody waits for anything that can still come".to_owned())
             }
+            (RunTermination::Limit, _) => {
+                ("horizon", "the time of the suite's model runs is over".to_owned())
+            }
+            (RunTermination::Fault(fault), RunStatus::Livelock) => ("livelock", reason(fault)),
+            (RunTermination::Fault(fault), RunStatus::Endless) => ("cycle bound", reason(fault)),
+            (RunTermination::Fault(fault), RunStatus::Overfull(_)) => ("holding bound", reason(fault)),
+            (
+                RunTermination::Fault(fault),
+                RunStatus::Ready | RunStatus::Waiting | RunStatus::Idle | RunStatus::Malformed,
+            ) => ("fault", fault.to_string()),
         };
         let last = inspection.snapshots.last();
         let agent = |(place, name): (usize, &String)| AgentEnd {
@@ -107,7 +112,7 @@ impl End {
 }
 
 /// The fault, without the word that says how the run ended.
-fn reason(fault: &Fault) -> String {
+fn reason(fault: &HarnessError) -> String {
     fault.to_string().replacen("livelock: ", "", 1).replacen("cycle bound: ", "", 1)
 }
 
@@ -152,7 +157,7 @@ impl Page<'_> {
         self.out.push('\n');
     }
 
-    fn standing(&mut self, start: &str, who: &str, standing: &Standing) {
+    fn standing(&mut self, start: &str, who: &str, standing: &IntentionSummary) {
         let number = format!("#{}", standing.intention);
         let plans = standing.plans.join(" > ");
         let held = if standing.suspended { ", suspended" } else { "" };
@@ -167,7 +172,7 @@ impl Page<'_> {
 /// where a span is, as people count.
 #[must_use]
 pub fn reasoning(
-    inspection: &Inspection,
+    inspection: &ModelInspection,
     picked: &Picked<'_>,
     color: bool,
     place: &dyn Fn(Span) -> String,
@@ -256,7 +261,7 @@ fn plain(page: &mut Page<'_>, gutter: &str, line: &LogLine) {
     page.line(gutter, &[(style, &line.text), (Style::Dim, &place)]);
 }
 
-fn still_to_do(page: &mut Page<'_>, inspection: &Inspection, picked: &Picked<'_>, time: Nanos) {
+fn still_to_do(page: &mut Page<'_>, inspection: &ModelInspection, picked: &Picked<'_>, time: Nanos) {
     let Ok(at) = inspection.snapshots.binary_search_by_key(&time, |s| s.time) else { return };
     let each = inspection.agents.iter().zip(&inspection.snapshots[at].agents);
     let mut each = each.filter(|(name, all)| picked.has_agent(name) && !all.is_empty()).peekable();

@@ -4,7 +4,7 @@ use hrdsl_compiler::{Compilation, Input, ast, compile_with};
 use hrdsl_ir::{Program, ta::Network};
 
 use super::{Args, Job, What};
-use crate::input::{self, Disk, Fault};
+use crate::{fault::Fault, files, reach::Disk};
 
 /// A scenario with the queries of the command line.
 pub struct Asked {
@@ -19,7 +19,7 @@ impl Asked {
     /// # Errors
     /// A file that cannot be read, or no network to ask.
     pub fn load(args: &Args) -> Result<Self, Fault> {
-        let mut text = input::read(&args.file)?;
+        let mut text = files::read(&args.file)?;
         let name = args.file.display().to_string();
         let plain = compile_with(Input { name: &name, text: &text }, &[], &Disk::of(Some(&args.file)));
         if args.ask.is_empty() {
@@ -61,7 +61,7 @@ impl Asked {
             }
             let wanted = |(_, q): &(usize, &hrdsl_ir::ta::Query)| {
                 let named = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
-                named && usize::from(q.network) == network
+                named && usize::from(q.network.0) == network
             };
             let queries: Vec<usize> =
                 program.queries.iter().enumerate().filter(wanted).map(|(query, _)| query).collect();

@@ -16,16 +16,14 @@ use std::{
 };
 
 use hrdsl_ir::Program;
-use hrdsl_runtime::prove::{self, Answered, Found, Proof, Settings, Status, Watch};
+use hrdsl_runtime::prove::{
+    self, ProofOptions, ProofStatus, QueryFinding, QueryResult, RequirementProof, SearchWatch,
+};
 use hrdsl_source::{printable, printable_line};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::how::{Way, When, Witness};
-use crate::{
-    exit::Exit,
-    input::{self, Fault},
-    terminal,
-};
+use crate::{exit::Exit, fault::Fault, files, input, terminal};
 use asked::Asked;
 use table::Row;
 
@@ -107,9 +105,9 @@ pub struct How {
 }
 
 impl How {
-    fn settings(&self) -> Settings {
+    fn settings(&self) -> ProofOptions {
         let usual = if self.order.is_some() { Witness::Any } else { Witness::Shortest };
-        let mut settings = Settings {
+        let mut settings = ProofOptions {
             witness: self.witness.unwrap_or(usual).into(),
             delays: self.delays.into(),
             order: self.order.map(Into::into),
@@ -117,7 +115,7 @@ impl How {
             skip_committed: self.skip_committed,
             threads: usize::from(self.threads),
             seed: self.seed,
-            ..Settings::default()
+            ..ProofOptions::default()
         };
         if let Some(states) = self.budget_states {
             settings.budget.states = states;
@@ -151,9 +149,9 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     clock.finish();
     write_run(args, &rows)?;
     if args.json {
-        input::print_data(&show::json(program, &rows)?)?;
+        terminal::print_data(&show::json(program, &rows)?)?;
     } else {
-        input::print(&printable(&show::human(&rows, args.trace)))?;
+        terminal::print(&printable(&show::human(&rows, args.trace)))?;
     }
     Ok(verdict(&rows))
 }
@@ -173,24 +171,35 @@ pub enum What {
 }
 
 impl Job {
-    fn rows(&self, program: &Arc<Program>, settings: &Settings, clock: &Clock) -> Result<Vec<Row>, Fault> {
+    fn rows(
+        &self,
+        program: &Arc<Program>,
+        settings: &ProofOptions,
+        clock: &Clock,
+    ) -> Result<Vec<Row>, Fault> {
         let started = now();
         let (of, settings, network) = (Arc::clone(program), *settings, self.network);
         let mut rows = match &self.what {
             What::Requirement(monitor) => {
                 let monitor = *monitor;
-                let work =
-                    move |watch: &Watch| prove::prove(&of, &of.networks[network], monitor, &settings, watch);
-                let late = || Proof { monitor, status: Status::Open(LATE.to_owned()), states: 0, note: None };
+                let work = move |watch: &SearchWatch| {
+                    prove::prove(&of, &of.networks[network], monitor, &settings, watch)
+                };
+                let late = || RequirementProof {
+                    monitor,
+                    status: ProofStatus::Open(LATE.to_owned()),
+                    states: 0,
+                    note: None,
+                };
                 let proof = clock.watched(&program.monitors[monitor].name, work)?;
                 vec![Row::of_proof(program, &proof.unwrap_or_else(late))]
             }
             What::Queries(queries) => {
                 let asked = queries.clone();
-                let work = move |watch: &Watch| prove::answers(&of, &asked, &settings, watch);
-                let late = |query: &usize| Answered {
+                let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch);
+                let late = |query: &usize| QueryResult {
                     query: *query,
-                    found: Found::Open(LATE.to_owned()),
+                    found: QueryFinding::Open(LATE.to_owned()),
                     run: None,
                     notes: Vec::new(),
                     states: None,
@@ -242,12 +251,12 @@ impl Clock {
     fn watched<T: Send + 'static>(
         &self,
         name: &str,
-        work: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+        work: impl FnOnce(&SearchWatch) -> Result<T, Fault> + Send + 'static,
     ) -> Result<Option<T>, Fault> {
         if self.until.is_some_and(|until| now() >= until) {
             return Ok(None);
         }
-        let watch = Arc::new(Watch::default());
+        let watch = Arc::new(SearchWatch::default());
         let (done, result) = mpsc::channel();
         let watching = Arc::clone(&watch);
         // Searches recurse little, but expressions are as deep as they are written.
@@ -294,11 +303,11 @@ const STACK: usize = 64 << 20;
 fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
     let story = rows.iter().find_map(|r| r.story.as_ref());
     for (path, text) in [
-        (&args.mermaid, story.map(hrdsl_runtime::prove::Story::mermaid)),
-        (&args.dot, story.map(hrdsl_runtime::prove::Story::dot)),
+        (&args.mermaid, story.map(hrdsl_runtime::prove::WitnessTrace::mermaid)),
+        (&args.dot, story.map(hrdsl_runtime::prove::WitnessTrace::dot)),
     ] {
         match (path, text) {
-            (Some(path), Some(text)) => input::write(path, &text)?,
+            (Some(path), Some(text)) => files::write(path, &text)?,
             (Some(path), None) => {
                 terminal::say_line(format_args!(
                     "note: {} is not written: there is no run to show",

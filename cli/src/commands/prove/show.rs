@@ -1,11 +1,11 @@
 //! What was decided, for people and for programs.
 
 use hrdsl_ir::Program;
-use hrdsl_runtime::prove::Story;
+use hrdsl_runtime::prove::WitnessTrace;
 use serde::Serialize;
 
 use super::table::{Kind, Row, Verdict};
-use crate::input::Fault;
+use crate::fault::Fault;
 
 /// A table for each network: name, verdict, what it says, what it took; below it the bounds, and the runs if wanted.
 #[must_use]
@@ -94,7 +94,7 @@ struct RowJson<'r> {
     #[serde(skip_serializing_if = "Option::is_none")]
     states: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    run: Option<&'r Story>,
+    run: Option<&'r WitnessTrace>,
 }
 
 /// The same as one document; without times, so that it is the same each time.
@@ -114,7 +114,7 @@ pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
         }
     }
     let document = Document { format: "hrdsl-prove", version: 1, scenario: &program.name, networks };
-    crate::input::json(&document)
+    crate::files::json(&document)
 }
 
 fn of(row: &Row) -> RowJson<'_> {

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use hrdsl_ir::Program;
-use hrdsl_runtime::prove::{Answered, Found, Proof, Run, Status, Story};
+use hrdsl_runtime::prove::{
+    ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, WitnessTrace,
+};
 
 use crate::exit::Exit;
 
@@ -20,7 +22,7 @@ pub struct Row {
     pub remark: Option<String>,
     /// For a `sup` or `inf`: of each measure.
     pub bounds: Vec<String>,
-    pub story: Option<Story>,
+    pub story: Option<WitnessTrace>,
     /// Symbolic states stored, if that is known.
     pub states: Option<usize>,
     pub time: Duration,
@@ -76,18 +78,18 @@ impl Row {
         }
     }
 
-    pub fn of_proof(program: &Program, proof: &Proof) -> Self {
+    pub fn of_proof(program: &Program, proof: &RequirementProof) -> Self {
         let monitor = &program.monitors[proof.monitor];
         let (verdict, remark, run) = match &proof.status {
-            Status::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
-            Status::Holds { triggered } => {
+            ProofStatus::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
+            ProofStatus::Holds { triggered } => {
                 (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None)
             }
-            Status::Open(why) => (Verdict::Open, Some(why.clone()), None),
-            Status::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
-            Status::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
+            ProofStatus::Open(why) => (Verdict::Open, Some(why.clone()), None),
+            ProofStatus::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
+            ProofStatus::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
         };
-        let story = run.map(Run::story);
+        let story = run.map(ObservedRun::named_trace);
         Self {
             network: String::new(),
             kind: Kind::Requirement,
@@ -103,20 +105,23 @@ impl Row {
         }
     }
 
-    pub fn of_answer(program: &Program, answer: &Answered) -> Self {
+    pub fn of_answer(program: &Program, answer: &QueryResult) -> Self {
         let query = &program.queries[answer.query];
         let (verdict, remark) = match &answer.found {
-            Found::Satisfied => (Verdict::Satisfied, None),
-            Found::NotSatisfied => (Verdict::NotSatisfied, None),
-            Found::Bounds(_) => (Verdict::Answered, None),
-            Found::Open(why) => (Verdict::Open, Some(why.clone())),
-            Found::Fault(what) => (Verdict::Fault, Some(what.clone())),
+            QueryFinding::Satisfied => (Verdict::Satisfied, None),
+            QueryFinding::NotSatisfied => (Verdict::NotSatisfied, None),
+            QueryFinding::Bounds(_) => (Verdict::Answered, None),
+            QueryFinding::Open(why) => (Verdict::Open, Some(why.clone())),
+            QueryFinding::Fault(what) => (Verdict::Fault, Some(what.clone())),
         };
         let bounds = match &answer.found {
-            Found::Bounds(bounds) => bounds.clone(),
-            Found::Satisfied | Found::NotSatisfied | Found::Open(_) | Found::Fault(_) => Vec::new(),
+            QueryFinding::Bounds(bounds) => bounds.clone(),
+            QueryFinding::Satisfied
+            | QueryFinding::NotSatisfied
+            | QueryFinding::Open(_)
+            | QueryFinding::Fault(_) => Vec::new(),
         };
-        let story = answer.run.as_deref().map(Run::story);
+        let story = answer.run.as_deref().map(ObservedRun::named_trace);
         let remarks: Vec<String> =
             remark.into_iter().chain(answer.notes.iter().cloned()).chain(story.as_ref().map(shape)).collect();
         Self {
@@ -147,7 +152,7 @@ fn untriggered(triggered: Option<bool>, why: Option<&str>) -> Option<String> {
 }
 
 /// `in 7 steps, at 12.5 s`
-fn shape(story: &Story) -> String {
+fn shape(story: &WitnessTrace) -> String {
     let steps = story.scenes.len();
     format!("in {steps} {}, at {} s", if steps == 1 { "step" } else { "steps" }, story.end)
 }

@@ -11,7 +11,7 @@ use hrdsl_ir::test::Test;
 use hrdsl_runtime::campaign::Campaign;
 
 use super::run::{output_text, progress_bar, recording};
-use crate::input::{self, Fault};
+use crate::{fault::Fault, files};
 
 /// Differences that are listed, at most.
 const LISTED: usize = 20;
@@ -34,8 +34,8 @@ pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<
     let again = Campaign { keep: None, ..campaign.clone() };
     let outcome = again.run(&backwards, |done| {
         let stem = done.result.name.file_stem();
-        let before = input::read(&recording(first, &stem))?;
-        let output = input::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
+        let before = files::read(&recording(first, &stem))?;
+        let output = files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
         let difference = difference(&before, done.recording).or_else(|| {
             let again = output_text(done.output);
             line_difference(&output, &again)

@@ -15,19 +15,14 @@ use hrdsl_runtime::{
     campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare, tally},
     report,
     results::Results,
-    testgen::{Generated, generate},
+    testgen::{GeneratedSuite, generate},
 };
 use serde::Serialize;
 
 use super::generate::{chosen, describe, save};
 use crate::{
-    color,
-    exit::Exit,
-    input::{self, Fault},
-    installing::Installing,
-    quantity,
-    results_folder::ResultsFolder,
-    terminal,
+    color, exit::Exit, fault::Fault, files, input, installing::Installing, quantity,
+    results_folder::ResultsFolder, terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
@@ -133,14 +128,14 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     };
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
-    let sources = system.coverage.iter().filter_map(|f| Some((f.clone(), input::read(&dir.join(f)).ok()?)));
+    let sources = system.coverage.iter().filter_map(|f| Some((f.clone(), files::read(&dir.join(f)).ok()?)));
     let sources = sources.collect::<BTreeMap<_, _>>();
     let results = tally(program, args.seed, &generated, outcome, &sources, rerun(args, &out));
     publish(&results, &campaign, folder)?;
     summarise(&results, &campaign, &out, begun.elapsed())?;
     let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
     if let Some(differences) = differences {
-        input::print(&differences.text)?;
+        terminal::print(&differences.text)?;
     }
     Ok(if interrupted {
         Exit::Interrupted
@@ -159,7 +154,7 @@ fn prepared<'p>(
     out: &Path,
     folder: &ResultsFolder,
 ) -> Result<Campaign<'p>, Fault> {
-    let dir = input::folder(&args.file);
+    let dir = files::folder(&args.file);
     let console = Installing::default();
     let env = prepare(&system.run, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
     let wanted = args.isolation.map(|how| match how {
@@ -257,7 +252,7 @@ fn absolute(path: PathBuf) -> Result<PathBuf, Fault> {
 }
 
 /// Generates the suites, unless tests were given.
-fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<Generated>, Fault> {
+fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<GeneratedSuite>, Fault> {
     if !args.tests.is_empty() {
         return Ok(Vec::new());
     }
@@ -271,14 +266,14 @@ fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<Gene
         }
         let generated = generate(program, suite, args.count, args.seed)?;
         save(&to.join("tests"), program, &generated)?;
-        input::print(&describe(&generated))?;
+        terminal::print(&describe(&generated))?;
         all.push(generated);
     }
     Ok(all)
 }
 
 /// The tests to run, in order.
-fn selected(args: &Args, program: &Program, generated: &[Generated]) -> Result<Vec<Test>, Fault> {
+fn selected(args: &Args, program: &Program, generated: &[GeneratedSuite]) -> Result<Vec<Test>, Fault> {
     let mut tests: Vec<Test> = if args.tests.is_empty() {
         generated.iter().flat_map(|g| g.tests.clone()).collect()
     } else {
@@ -386,10 +381,10 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
         gaps: &campaign.cells.gaps,
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     };
-    input::write(&to.join("run.json"), &input::json(&info)?)?;
-    input::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;
-    input::write(&to.join("junit.xml"), &report::junit(results))?;
-    input::write(&to.join("report.html"), &report::html(results))?;
+    files::write(&to.join("run.json"), &files::json(&info)?)?;
+    files::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;
+    files::write(&to.join("junit.xml"), &report::junit(results))?;
+    files::write(&to.join("report.html"), &report::html(results))?;
     folder.publish(&REPORTS)
 }
 
@@ -412,5 +407,5 @@ fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Durat
         String::new()
     };
     let page = out.join("report.html");
-    input::print(&format!("{summary}{ran}{again}report: {}\n", terminal::shown(&page)))
+    terminal::print(&format!("{summary}{ran}{again}report: {}\n", terminal::shown(&page)))
 }

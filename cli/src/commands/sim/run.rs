@@ -7,10 +7,10 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::{Campaign, CampaignOutcome, Done, Output};
+use hrdsl_runtime::campaign::{Campaign, CampaignOutcome, FinishedRun, Output};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::input::{self, Fault};
+use crate::{fault::Fault, files};
 
 /// What has come in so far.
 #[derive(Default)]
@@ -56,12 +56,12 @@ pub fn recording(to: &Path, stem: &str) -> std::path::PathBuf {
     to.join("traces").join(format!("{stem}.jsonl"))
 }
 
-fn write(done: &Done<'_>, to: &Path) -> Result<(), Fault> {
+fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), Fault> {
     let stem = done.result.name.file_stem();
-    input::write(&recording(to, &stem), done.recording)?;
+    files::write(&recording(to, &stem), done.recording)?;
     let text = output_text(done.output);
     if !text.is_empty() {
-        input::write(&to.join("output").join(format!("{stem}.txt")), &text)?;
+        files::write(&to.join("output").join(format!("{stem}.txt")), &text)?;
     }
     Ok(())
 }

@@ -29,6 +29,8 @@ pub(crate) struct GoalEntry {
     pub arity: usize,
     /// If their types are declared.
     pub fields: Option<Fields>,
+    /// Its declaration's name, or that of the first plan for it.
+    pub place: Span,
 }
 
 /// The names of one agent.
@@ -134,10 +136,7 @@ impl<'a> Checker<'a> {
                 self.declare_belief(index, (name, params, annotations), on.as_ref(), member.span);
             }
         }
-        let mut goals: Map<String, GoalEntry> = Map::default();
-        for (name, arity) in achieved(agent) {
-            goals.insert(name, GoalEntry { arity, fields: None });
-        }
+        let mut goals = achieved(agent);
         if goals.len() > MAX_NAMES {
             let message = format!("there are more than {MAX_NAMES} goals in `{}`", agent.name.text);
             self.report(super::too_many(message, agent.name.span));
@@ -183,7 +182,7 @@ impl<'a> Checker<'a> {
             let params = self.flat(&fields);
             self.belief_fields[index].push(fields);
             let (name, annotations) = (name.text.clone(), marks);
-            let belief = Belief { name, params, annotations, percept, negates: None, span };
+            let belief = Belief { name, params, annotations, percept, negates: None, origin: span };
             self.s.agents[index].beliefs.push(belief);
         }
     }
@@ -224,7 +223,9 @@ impl<'a> Checker<'a> {
                 continue;
             }
             match self.goal_tables[index].get_mut(&name.text) {
-                Some(entry) => *entry = GoalEntry { arity: fields.len(), fields: Some(fields) },
+                Some(entry) => {
+                    *entry = GoalEntry { arity: fields.len(), fields: Some(fields), place: name.span }
+                }
                 None if super::unread::in_agent(agent) => {}
                 None => {
                     let goals: Vec<String> = self.goal_tables[index].keys().cloned().collect();
@@ -388,7 +389,7 @@ impl<'a> Checker<'a> {
         }
         let negation = Belief { name, percept: None, negates: Some(belief), ..plain.clone() };
         let (issues, table) = (&mut self.issues, &mut self.beliefs[index]);
-        let id = Self::declare_as(issues, table, Noun::Belief, &negation.name, negation.span)?;
+        let id = Self::declare_as(issues, table, Noun::Belief, &negation.name, negation.origin)?;
         let fields = self.belief_fields(agent, belief);
         self.belief_fields[index].push(fields);
         self.s.agents[index].beliefs.push(negation);
@@ -398,6 +399,8 @@ impl<'a> Checker<'a> {
     pub(super) fn belief(&mut self, scope: &Scope, name: &ast::Name) -> Option<BeliefId> {
         let table = &self.beliefs[usize::from(scope.id.0)];
         if let Some(id) = table.get(&name.text) {
+            let place = table.span(id);
+            self.refer(name, place);
             return Some(BeliefId(id));
         }
         let names: Vec<String> = table.names().filter(|n| !n.starts_with('~')).map(str::to_owned).collect();
@@ -440,6 +443,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         let (got, arity) = (call.args.as_ref().map_or(0, Vec::len), entry.arity);
+        let place = entry.place;
         if got != arity {
             let issue = match &entry.fields {
                 Some(fields) => {
@@ -451,6 +455,7 @@ impl<'a> Checker<'a> {
             self.report(issue);
             return None;
         }
+        self.refer(name, Some(place));
         Some(GoalId(u16::try_from(index).unwrap_or(u16::MAX)))
     }
 
@@ -465,8 +470,9 @@ impl<'a> Checker<'a> {
 
     /// What each message's content is to each agent.
     fn resolve_contents(&mut self) {
+        let all = self.s.contents.iter().zip(&self.s.speech);
         let contents: Vec<(String, bool, usize)> =
-            self.s.contents.iter().map(|c| (c.name.clone(), c.is_goal, c.arity)).collect();
+            all.map(|(c, speech)| (c.name.clone(), speech.is_goal, speech.arity)).collect();
         let all = || (0u16..).map(AgentId).take(self.agent_decls.len());
         let agents: Vec<AgentId> = all().collect();
         for (at, (name, is_goal, arity)) in contents.into_iter().enumerate() {
@@ -490,7 +496,7 @@ impl<'a> Checker<'a> {
 }
 
 /// The goals with a plan `+!g`, by the first plan for each.
-fn achieved(agent: &ast::Agent) -> Map<String, usize> {
+fn achieved(agent: &ast::Agent) -> Map<String, GoalEntry> {
     let mut goals = Map::default();
     for member in &agent.members {
         if let Member::Plan(plan) = &member.kind
@@ -498,7 +504,8 @@ fn achieved(agent: &ast::Agent) -> Map<String, usize> {
         {
             let call = &plan.trigger.literal.call;
             let arity = call.args.as_ref().map_or(0, Vec::len);
-            goals.entry(call.name.text.clone()).or_insert(arity);
+            let entry = GoalEntry { arity, fields: None, place: call.name.span };
+            goals.entry(call.name.text.clone()).or_insert(entry);
         }
     }
     goals

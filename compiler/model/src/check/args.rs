@@ -1,10 +1,11 @@
 //! Arguments and event patterns.
 
+use hrdsl_ir::Unit;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use super::{Checker, Env, given::Given, item::Part, layout::Fields};
-use crate::{EventId, EventPattern, Expr, Type, Value, noun::Noun, report::types, types::Layout};
+use crate::{ArgPattern, EventId, EventPattern, Expr, Type, Value, noun::Noun, report::types, types::Layout};
 
 impl Checker<'_> {
     /// The arguments of a call, each of its parameter's type, as single values. Without parentheses there are none.
@@ -45,7 +46,7 @@ impl Checker<'_> {
         let event = self.event(Noun::EventOrStimulus, &call.name, None)?;
         let fields = self.fields_of(event);
         let Some(args) = &call.args else {
-            return Some(EventPattern { event, args: vec![None; self.arity_of(event)] });
+            return Some(EventPattern { event, args: vec![ArgPattern::Any; self.arity_of(event)] });
         };
         if args.len() != fields.len() {
             self.wrong_arity(Noun::Event, call, &fields);
@@ -55,7 +56,8 @@ impl Checker<'_> {
         for (arg, (_, layout)) in args.iter().zip(fields.iter()) {
             self.spread(arg, layout, env, &|_, _| false, &mut parts);
         }
-        let patterns = parts.into_iter().map(|part| self.pattern_part(part, env)).collect();
+        let pattern = |part| self.pattern_part(part, env).map_or(ArgPattern::Any, ArgPattern::Is);
+        let patterns = parts.into_iter().map(pattern).collect();
         Some(EventPattern { event, args: patterns })
     }
 
@@ -84,8 +86,9 @@ impl Checker<'_> {
             match self.given(&call.name.text) {
                 Some(Given::Events(events)) if call.args.is_none() => {
                     all.extend(events.iter().map(|p| (p.clone(), call.name.span)));
+                    self.refer_given(&call.name);
                 }
-                Some(Given::Unknown) => {}
+                Some(Given::Unknown) => self.refer_given(&call.name),
                 Some(
                     Given::Events(_) | Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_),
                 )
@@ -107,7 +110,7 @@ impl Checker<'_> {
     /// A constant that must not be less than another of its type; says so at `span`.
     pub(super) fn ordered(&mut self, lo: &Expr, hi: &Expr, span: Span) -> bool {
         let (Some(a), Some(b)) = (lo.constant(), hi.constant()) else { return true };
-        match (a.number(), b.number()) {
+        match (a.as_f64(), b.as_f64()) {
             (Some(x), Some(y)) if x > y => {
                 self.report(types::empty_range(a, b, span));
                 false
@@ -128,8 +131,7 @@ impl Checker<'_> {
     pub(super) fn finite_layout(&mut self, layout: &Layout, what: &str, span: Span) -> bool {
         let mut leaves = Vec::new();
         self.leaves("", layout, &mut leaves);
-        leaves.iter().all(|(_, ty)| ty.is_finite())
-            || self.finite(Type::Float(crate::Dim::NUMBER), what, span)
+        leaves.iter().all(|(_, ty)| ty.is_finite()) || self.finite(Type::Float(Unit::None), what, span)
     }
 
     /// The arguments of a call with their types, taken apart as the parameters are.

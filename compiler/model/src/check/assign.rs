@@ -1,9 +1,9 @@
 //! Assignments of edges: what may be assigned, and clocks.
 
-use hrdsl_syntax::ast::{self, Access, BinaryOp, Name};
+use hrdsl_syntax::ast::{self, Access, Name};
 
 use super::{Checker, Env, automaton::Scope, clock::is_clock};
-use crate::{Expr, Leaf, Place, Type, Update, noun::Noun, report::automata, types::Layout};
+use crate::{BinaryOp, Expr, Leaf, Place, Type, Update, noun::Noun, report::automata, types::Layout};
 
 impl Checker<'_> {
     /// `target = value`: one update for each single value.
@@ -19,6 +19,7 @@ impl Checker<'_> {
         if is_clock(target, env) {
             return updates.extend(self.set_clock((target, access), op, value, scope, env));
         }
+        self.refer(target, env.place_of(&target.text));
         let slot = env.find(&target.text).map(|l| l.leaf);
         if env.layout(&target.text) == Some(&Layout::Unknown) {
             return;
@@ -59,18 +60,16 @@ impl Checker<'_> {
 
     fn type_of(&self, scope: &Scope, leaf: Leaf) -> Type {
         match leaf {
-            Leaf::Own(i) => self.s.automata[scope.index].vars[usize::from(i)].ty,
-            Leaf::Shared(i) => self.s.shared[usize::from(i)].ty,
+            Leaf::Own(i) => self.s.automata[scope.index].vars[usize::from(i)].ty(),
+            Leaf::Shared(i) => self.s.shared[usize::from(i)].ty(),
             Leaf::Local(_) | Leaf::Signal(_) => Type::Bool,
         }
     }
 }
 
 fn set((place, value): (Place, Expr)) -> Option<Update> {
-    match place.leaf {
+    match place.slot {
         Leaf::Local(_) | Leaf::Signal(_) => None,
-        Leaf::Own(_) | Leaf::Shared(_) if !place.indices.is_empty() => Some(Update::Element(place, value)),
-        Leaf::Own(i) => Some(Update::Own(i, value)),
-        Leaf::Shared(i) => Some(Update::Shared(i, value)),
+        Leaf::Own(_) | Leaf::Shared(_) => Some(Update::Assign { place, value }),
     }
 }

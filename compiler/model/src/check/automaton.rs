@@ -32,7 +32,7 @@ fn emissions(steps: &[StimulusStep]) -> usize {
     let of = |step: &StimulusStep| match step {
         StimulusStep::Emit { .. } => 1,
         StimulusStep::If { then, otherwise, .. } => emissions(then) + emissions(otherwise),
-        StimulusStep::Hold(_) | StimulusStep::Act(_) => 0,
+        StimulusStep::Hold { .. } | StimulusStep::Act(_) => 0,
     };
     steps.iter().map(of).sum()
 }
@@ -100,7 +100,11 @@ impl Checker<'_> {
                 self.s.automata[index].edges.extend(edge);
             }
         }
-        self.automaton_scopes.insert(index, scope.env.own.clone());
+        let mut own = scope.env.own.clone();
+        let locations = scope.locations.entries();
+        Rc::make_mut(&mut own).locations =
+            locations.filter_map(|(name, id)| Some((name.to_owned(), scope.locations.span(id)?))).collect();
+        self.automaton_scopes.insert(index, own);
         self.say_impure();
         self.unread_members = false;
         self.made(&self.s.automata[index], automaton.name.span).into_iter().for_each(|i| self.report(i));
@@ -147,7 +151,7 @@ impl Checker<'_> {
     fn clock(&mut self, index: usize, clock: &Name, scope: &mut Scope) {
         self.check_free(&scope.env, Noun::Clock, clock);
         if scope.vars.get(&clock.text).is_none() && scope.clocks.insert(&clock.text, clock.span).is_ok() {
-            Rc::make_mut(&mut scope.env.own).add_clock(&clock.text);
+            Rc::make_mut(&mut scope.env.own).add_clock(&clock.text, clock.span);
             self.s.automata[index].clocks.push(clock.text.clone());
         }
     }
@@ -158,9 +162,10 @@ impl Checker<'_> {
         if scope.clocks.get(&var.name.text).is_some() {
             return;
         }
+        let place = var.name.span;
         for var in vars {
-            if let Ok(i) = scope.vars.insert(&var.name, var.span) {
-                Rc::make_mut(&mut scope.env.own).add_variable(Leaf::Own(i), &var);
+            if let Ok(i) = scope.vars.insert(&var.name, place) {
+                Rc::make_mut(&mut scope.env.own).add_variable(Leaf::Own(i), &var, place);
                 self.s.automata[index].vars.push(var);
             }
         }
@@ -191,7 +196,7 @@ impl Checker<'_> {
                 kind: *kind,
                 invariant: bounds,
                 holds: data.into_iter().reduce(super::edge::and),
-                span: member.span,
+                origin: member.span,
             });
         }
         match initial {
@@ -207,6 +212,7 @@ impl Checker<'_> {
         for automaton in automata {
             let player = self.players.get(&automaton.text).map(|id| self.player_ids[usize::from(id)]);
             if let Some(PlayerRef::Automaton(id)) = player {
+                self.refer(automaton, self.players.span_of(&automaton.text));
                 if Self::declare(&mut self.issues, &mut seen, Noun::Automaton, automaton).is_some() {
                     ids.push(id);
                 }
@@ -216,7 +222,7 @@ impl Checker<'_> {
             self.unknown(Noun::Automaton, automaton, &names, None);
         }
         if Self::declare(&mut self.issues, &mut self.networks, Noun::Network, name).is_some() {
-            self.s.networks.push(Network { name: name.text.clone(), automata: ids, span });
+            self.s.networks.push(Network { name: name.text.clone(), automata: ids, origin: span });
         }
     }
 }

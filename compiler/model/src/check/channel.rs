@@ -10,9 +10,10 @@ use super::{
     table::Table,
 };
 use crate::{
-    Channel, ChannelId, ChannelKind, EventId, Expr, Party, PlayerRef, Sync,
+    Channel, ChannelId, ChannelKind, ChannelPlaces, EventId, Expr, Party, PlayerRef, Sync,
     noun::Noun,
     report::{automata, names::duplicate},
+    types::finite_var,
 };
 
 /// What an edge takes or gives.
@@ -35,14 +36,15 @@ impl Checker<'_> {
         for one in &channel.names {
             let name = &one.name;
             let fields = self.channel_params(&one.params);
+            let mut parties = Vec::new();
             let kind = match &channel.kind {
                 ast::ChannelKind::HandShake => ChannelKind::HandShake,
                 ast::ChannelKind::Broadcast => ChannelKind::Broadcast,
-                ast::ChannelKind::Joint(parties) => {
+                ast::ChannelKind::Joint(of) => {
                     if let Some(param) = one.params.first() {
                         self.report(automata::joint_params(&name.text, param.name.span));
                     }
-                    ChannelKind::Joint(self.parties(name, parties))
+                    ChannelKind::Joint(self.parties(name, of, &mut parties))
                 }
             };
             if let Some(event) = self.events.get(&name.text) {
@@ -53,11 +55,12 @@ impl Checker<'_> {
             if Self::declare(&mut self.issues, &mut self.channels, Noun::Channel, name).is_none() {
                 continue;
             }
-            let params = self.flat(&fields);
+            let params = self.flat(&fields).iter().map(|p| finite_var(&p.name, p.ty)).collect();
             self.channel_fields.push(fields);
             let span = if channel.names.len() == 1 { whole } else { name.span };
-            let (text, urgent, place) = (name.text.clone(), channel.urgent, name.span);
-            self.s.channels.push(Channel { name: text, kind, urgent, params, place, span });
+            let (text, urgent) = (name.text.clone(), channel.urgent);
+            self.s.channels.push(Channel { name: text, kind, urgent, params, origin: span });
+            self.s.places.channels.push(ChannelPlaces { name: name.span, parties });
         }
     }
 
@@ -72,7 +75,8 @@ impl Checker<'_> {
         fields
     }
 
-    fn parties(&mut self, channel: &Name, parties: &[ast::Party]) -> Vec<Party> {
+    /// The automata of a joint channel; `places` gets where they are named.
+    fn parties(&mut self, channel: &Name, parties: &[ast::Party], places: &mut Vec<Span>) -> Vec<Party> {
         let (mut resolved, mut seen) = (Vec::new(), Table::default());
         for party in parties {
             let name = &party.automaton;
@@ -83,8 +87,10 @@ impl Checker<'_> {
                 self.vague_channels.insert(channel.text.clone());
                 continue;
             };
+            self.refer(name, self.players.span_of(&name.text));
             if Self::declare(&mut self.issues, &mut seen, Noun::Automaton, name).is_some() {
-                resolved.push(Party { automaton, optional: party.optional, span: name.span });
+                resolved.push(Party { automaton, optional: party.optional });
+                places.push(name.span);
             }
         }
         resolved
@@ -94,6 +100,7 @@ impl Checker<'_> {
     pub(super) fn medium(&mut self, scope: &Scope, name: &Name, local: Option<Noun>) -> Option<Medium> {
         let given = self.given(&name.text).is_some();
         if let Some(id) = self.channels.get(&name.text).filter(|_| !given) {
+            self.refer(name, self.channels.span(id));
             return Some(Medium::Channel(ChannelId(id)));
         }
         let known = given || self.events.get(&name.text).is_some();
@@ -142,7 +149,8 @@ impl Checker<'_> {
             ChannelKind::HandShake | ChannelKind::Broadcast => true,
         };
         if !party && !vague {
-            let (automaton, place) = (&self.s.automata[scope.index].name, of.place);
+            let place = self.s.places.channels[usize::from(channel.0)].name;
+            let automaton = &self.s.automata[scope.index].name;
             self.report(automata::not_a_party(automaton, &of.name, call.name.span, place));
         }
         Some(Sync::Join { channel })
@@ -163,10 +171,11 @@ impl Checker<'_> {
     /// The edges of an urgent channel have no clock guards, but those that accept a broadcast.
     pub(super) fn check_urgent(&mut self, sync: &Sync, clock_guard: Option<Span>) {
         let Some((channel, span)) = sync.channel().zip(clock_guard) else { return };
+        let place = self.s.places.channels[usize::from(channel.0)].name;
         let channel = &self.s.channels[usize::from(channel.0)];
         let hears = matches!(sync, Sync::Accept { .. }) && channel.kind == ChannelKind::Broadcast;
         if channel.urgent && !hears {
-            self.report(automata::urgent_guard(&channel.name, span, channel.place));
+            self.report(automata::urgent_guard(&channel.name, span, place));
         }
     }
 

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Access, BinaryOp, ExprKind as Syntax, Name, TypeExpr, UnaryOp};
+use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name, TypeExpr};
 
 use super::{
     Checker, Env,
@@ -13,7 +13,7 @@ use super::{
     lookup::names_in,
 };
 use crate::{
-    ClockConstraint, ClockId, ClockOp, Dim, Kind, SharedClock, Time, Update, Value, VarPlace,
+    BinaryOp, ClockConstraint, ClockId, ClockOp, Dim, Kind, Time, UnaryOp, Update, Value, VarPlace,
     noun::Noun,
     report::{automata, types},
 };
@@ -85,12 +85,13 @@ impl Checker<'_> {
             if Self::declare_as(issues, table, Noun::Clock, &name, var.name.span).is_none() {
                 return true;
             }
-            Rc::make_mut(&mut self.shared_scope).add_clock(&name);
-            self.s.clocks.push(SharedClock { name, place });
+            Rc::make_mut(&mut self.shared_scope).add_clock(&name, var.name.span);
+            self.s.clocks.push(name);
+            self.s.places.clocks.push(place);
         }
         if !counts.is_empty() {
             let scope = Rc::make_mut(&mut self.shared_scope);
-            scope.add_clock(&var.name.text);
+            scope.add_clock(&var.name.text, var.name.span);
             scope.clock_arrays.insert(var.name.text.clone(), counts);
         }
         true
@@ -126,6 +127,7 @@ impl Checker<'_> {
         scope: &Scope,
         env: &mut Env,
     ) -> Option<ClockId> {
+        self.refer(name, env.place_of(&name.text));
         let sizes = env.shared.clock_arrays.get(&name.text).cloned().unwrap_or_default();
         if sizes.len() != indices.len() {
             self.report(automata::clock_indices(&name.text, sizes.len(), name.span));
@@ -176,7 +178,7 @@ impl Checker<'_> {
     }
 
     /// A time in nanoseconds.
-    fn time_of(&mut self, time: Linear, sign: f64, span: Span) -> Option<Time> {
+    pub(super) fn time_of(&mut self, time: Linear, sign: f64, span: Span) -> Option<Time> {
         match time.time(sign) {
             Ok(time) => Some(time),
             Err(why) => {

@@ -1,10 +1,10 @@
 //! Operators on values of several parts.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp};
+use hrdsl_syntax::ast::{self};
 
 use super::{Checker, Env, item::Item};
-use crate::{Dim, Expr, ExprKind, Function, Kind, noun::Noun, report::types};
+use crate::{BinaryOp, Dim, Expr, ExprKind, Kind, NumberFunction, noun::Noun, report::types};
 
 impl Checker<'_> {
     /// An operator of which one side at least has several parts.
@@ -113,6 +113,6 @@ impl Checker<'_> {
             Some(ty) => ty,
         };
         let floats = parts.into_iter().map(|part| self.fit(part, ty, env)).collect();
-        self.applied(Function::Norm, floats, ty, span)
+        self.applied(NumberFunction::Norm, floats, ty, span)
     }
 }

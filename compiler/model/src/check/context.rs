@@ -1,7 +1,7 @@
 //! Formulas: contexts of plans, bodies of rules, conditions of steps. They are read from the left; what they bind has a
 //! value after them.
 
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, UnaryOp};
+use hrdsl_syntax::ast::{self, ExprKind as Syntax};
 
 use super::{
     Checker, Env,
@@ -10,7 +10,7 @@ use super::{
     terms::{Due, literal_of},
 };
 use crate::{
-    Arg, Context, Dim, Kind,
+    Arg, BinaryOp, Context, Dim, Kind, UnaryOp,
     noun::Noun,
     report::{agents, names},
 };

@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{
-    self, BinaryOp, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, Sort, UnaryOp,
-};
+use hrdsl_syntax::ast::{self, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, Sort};
 
 use super::{
     Checker, Env,
@@ -13,7 +11,7 @@ use super::{
     table::Table,
 };
 use crate::{
-    Bin, Condition, CoverPoint, Cross, CrossBin, EventPattern, PointId, Value,
+    Bin, BinaryOp, Condition, CoverPoint, Cross, CrossBin, EventPattern, PointId, UnaryOp, Value,
     noun::Noun,
     report::{coverage::overlap, types},
 };
@@ -30,7 +28,7 @@ impl Checker<'_> {
                 _ if template(item).is_some() => {}
                 ItemKind::Cover(cover) => {
                     let resolved = self.point_of(cover);
-                    self.add_point(&cover.name, resolved, span);
+                    self.add_point(&cover.name, cover, resolved, span);
                 }
                 ItemKind::Instance(instance) if instance.sort == Sort::Cover => {
                     let Some((template, given)) = self.instance(instance, &Env::constants()) else {
@@ -39,7 +37,7 @@ impl Checker<'_> {
                     let ItemKind::Cover(cover) = template.kind else { continue };
                     let place = Some((&instance.name, instance.span));
                     let resolved = self.as_instance(Some(given), place, |c| c.point_of(cover));
-                    self.add_point(&instance.name, resolved, span);
+                    self.add_point(&instance.name, cover, resolved, span);
                 }
                 _ => {}
             }
@@ -70,10 +68,17 @@ impl Checker<'_> {
         }
     }
 
-    fn add_point(&mut self, name: &Name, (count, bins): (Vec<EventPattern>, Vec<Bin>), span: Span) {
+    fn add_point(
+        &mut self,
+        name: &Name,
+        syntax: &ast::Cover,
+        (count, bins): (Vec<EventPattern>, Vec<Bin>),
+        span: Span,
+    ) {
         self.not_a_template(Sort::Cover, name);
         if Self::declare(&mut self.issues, &mut self.points, Noun::Point, name).is_some() {
-            self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, span });
+            self.s.places.bins.push(syntax.bins.iter().map(|bin| bin.name.span).collect());
+            self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, origin: span });
         }
     }
 
@@ -169,8 +174,15 @@ impl Checker<'_> {
 
     fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId], whole: bool) -> Option<Condition> {
         match self.given(&point.text) {
-            Some(Given::Unknown) => return None,
-            Some(Given::Point(id)) if points.contains(id) => return self.bin_of(*id, bin),
+            Some(Given::Unknown) => {
+                self.refer_given(point);
+                return None;
+            }
+            Some(Given::Point(id)) if points.contains(id) => {
+                let id = *id;
+                self.refer_given(point);
+                return self.bin_of(id, bin);
+            }
             Some(
                 Given::Point(_) | Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..),
             )
@@ -188,6 +200,7 @@ impl Checker<'_> {
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };
+        self.refer(point, self.points.span(id.0));
         self.bin_of(id, bin)
     }
 
@@ -198,6 +211,8 @@ impl Checker<'_> {
             self.unknown(Noun::Bin, bin, &bins, Some(Noun::Bin));
             return None;
         };
+        let place = self.s.places.bins.get(usize::from(id.0)).and_then(|bins| bins.get(at)).copied();
+        self.refer(bin, place);
         Some(Condition::In { point: id, bin: u16::try_from(at).unwrap_or(u16::MAX) })
     }
 }

@@ -62,7 +62,7 @@ impl Checker<'_> {
         let due = self.parts_of(layout);
         let fits = match (&item, layout) {
             (Item::One(e), Layout::Scalar(ty)) => {
-                let e = self.fit(e.clone(), ty.kind(), env);
+                let e = self.fit(e.clone(), Kind::of(*ty), env);
                 self.in_range(&e, *ty);
                 return Item::One(e);
             }
@@ -255,7 +255,7 @@ impl Checker<'_> {
                     && env.find(&name.text).is_none()
                     && env.layout(&name.text).is_none()
                 {
-                    env.push_local(&name.text, Noun::Variable, Kind::Unknown);
+                    env.push_local(&name.text, name.span, Noun::Variable, Kind::Unknown);
                     env.broken.push(name.text.clone());
                 }
             }

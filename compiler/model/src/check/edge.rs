@@ -7,11 +7,11 @@ use hrdsl_syntax::ast::{
 
 use super::{Checker, Env, automaton::Scope, channel::Medium, is_variable_name, item::Part};
 use crate::{
-    ClockConstraint, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, Param, ReceiveArg, StimulusStep,
-    Sync, Type,
+    ArgPattern, ClockConstraint, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, ReceiveArg,
+    StimulusStep, Sync, Type, Var,
     noun::Noun,
     report::{automata, types},
-    types::Layout,
+    types::{Layout, finite_var},
 };
 
 impl Checker<'_> {
@@ -51,7 +51,7 @@ impl Checker<'_> {
         };
         self.check_urgent(&sync, timed);
         let guard = data.into_iter().reduce(and);
-        Some(Edge { from: from?, to: to?, selects, clock_guard, guard, sync, updates, span })
+        Some(Edge { from: from?, to: to?, selects, clock_guard, guard, sync, updates, origin: span })
     }
 
     /// A conjunction taken apart: the bounds on clocks, the rest, and where the first bound is.
@@ -76,6 +76,7 @@ impl Checker<'_> {
 
     fn location(&mut self, scope: &Scope, name: &Name) -> Option<LocationId> {
         if let Some(id) = scope.locations.get(&name.text) {
+            self.refer(name, scope.locations.span(id));
             return Some(LocationId(id));
         }
         let all: Vec<String> = scope.locations.names().map(str::to_owned).collect();
@@ -84,16 +85,16 @@ impl Checker<'_> {
         None
     }
 
-    fn selects(&mut self, selects: &[SyntaxParam], env: &mut Env) -> Vec<Param> {
+    fn selects(&mut self, selects: &[SyntaxParam], env: &mut Env) -> Vec<Var> {
         let mut resolved = Vec::new();
         for select in selects {
             let ty = self.ty(&select.ty).filter(|ty| self.finite(*ty, "a select", select.name.span));
             self.check_free(env, Noun::Variable, &select.name);
             match ty {
-                Some(ty) => env.push_typed(&select.name.text, Noun::Variable, ty),
-                None => env.push_local(&select.name.text, Noun::Variable, Kind::Unknown),
+                Some(ty) => env.push_typed(&select.name.text, select.name.span, Noun::Variable, ty),
+                None => env.push_local(&select.name.text, select.name.span, Noun::Variable, Kind::Unknown),
             };
-            resolved.push(Param { name: select.name.text.clone(), ty: ty.unwrap_or(Type::Bool) });
+            resolved.push(finite_var(&select.name.text, ty.unwrap_or(Type::Bool)));
         }
         resolved
     }
@@ -128,7 +129,7 @@ impl Checker<'_> {
         equal: &mut Vec<Expr>,
     ) -> Option<Vec<ReceiveArg>> {
         let Some(args) = &call.args else {
-            return Some(vec![ReceiveArg::Any; self.flat(fields).len()]);
+            return Some(vec![ReceiveArg::Match(ArgPattern::Any); self.flat(fields).len()]);
         };
         if args.len() != fields.len() {
             self.wrong_arity(noun, call, fields);
@@ -155,7 +156,7 @@ impl Checker<'_> {
 
     fn received_part(&mut self, part: Part<'_>, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
         match part {
-            Part::Any => ReceiveArg::Any,
+            Part::Any => ReceiveArg::Match(ArgPattern::Any),
             Part::Syntax(arg, ty) => self.received(arg, ty, env, equal),
             Part::Done(e, ty) => self.compared(e, ty, env, equal),
             // The same name a second time: the parts are compared.
@@ -165,7 +166,8 @@ impl Checker<'_> {
             }
             Part::Variable(name, ty) => {
                 self.finite(ty, "what an automaton binds", name.span);
-                env.push_typed(&name.text, Noun::Variable, ty);
+                self.define_here(&name, Kind::of(ty));
+                env.push_typed(&name.text, name.span, Noun::Variable, ty);
                 ReceiveArg::Bind
             }
         }
@@ -173,7 +175,7 @@ impl Checker<'_> {
 
     fn received(&mut self, arg: &ast::Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
         if arg.kind == Syntax::Any {
-            return ReceiveArg::Any;
+            return ReceiveArg::Match(ArgPattern::Any);
         }
         if let Syntax::Path(path) = &arg.kind
             && let [name] = path.names.as_slice()
@@ -183,7 +185,8 @@ impl Checker<'_> {
             && !is_variable_name(&name.text)
         {
             self.finite(ty, "what an automaton binds", name.span);
-            env.push_typed(&name.text, Noun::Variable, ty);
+            self.define_here(&name, Kind::of(ty));
+            env.push_typed(&name.text, name.span, Noun::Variable, ty);
             return ReceiveArg::Bind;
         }
         let value = self.expr_for(arg, ty, env);
@@ -194,14 +197,14 @@ impl Checker<'_> {
     fn compared(&mut self, value: Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
         let span = value.span;
         if let Some(value) = value.constant() {
-            return ReceiveArg::Is(value);
+            return ReceiveArg::Match(ArgPattern::Is(value));
         }
         if value.ty == Kind::Unknown {
-            return ReceiveArg::Any;
+            return ReceiveArg::Match(ArgPattern::Any);
         }
         self.finite(ty, "what an automaton compares", span);
-        let bound = env.push_local("", Noun::Variable, ty.kind());
-        let leaf = Expr { kind: ExprKind::Leaf(Leaf::Local(bound)), ty: ty.kind(), span };
+        let bound = env.push_local("", span, Noun::Variable, Kind::of(ty));
+        let leaf = Expr { kind: ExprKind::Leaf(Leaf::Local(bound)), ty: Kind::of(ty), span };
         let kind = ExprKind::Binary(BinaryOp::Eq, Box::new(leaf), Box::new(value));
         equal.push(Expr { kind, ty: Kind::Bool, span });
         ReceiveArg::Bind
@@ -244,7 +247,7 @@ impl Checker<'_> {
 /// The parts of a conjunction, in order.
 pub(super) fn conjuncts(e: &ast::Expr) -> Vec<&ast::Expr> {
     match &e.kind {
-        Syntax::Binary { op: BinaryOp::And, left, right } => {
+        Syntax::Binary { op: ast::BinaryOp::And, left, right } => {
             let mut parts = conjuncts(left);
             parts.extend(conjuncts(right));
             parts
@@ -272,7 +275,7 @@ fn sampled(steps: &[StimulusStep], params: usize) -> bool {
             let inside = sampled(then, params) || sampled(otherwise, params);
             inside || reads_sample(condition) && (emits(then) || emits(otherwise))
         }
-        StimulusStep::Hold(_) | StimulusStep::Act(_) => false,
+        StimulusStep::Hold { .. } | StimulusStep::Act(_) => false,
     })
 }
 
@@ -280,6 +283,6 @@ fn emits(steps: &[StimulusStep]) -> bool {
     steps.iter().any(|step| match step {
         StimulusStep::Emit { .. } => true,
         StimulusStep::If { then, otherwise, .. } => emits(then) || emits(otherwise),
-        StimulusStep::Hold(_) | StimulusStep::Act(_) => false,
+        StimulusStep::Hold { .. } | StimulusStep::Act(_) => false,
     })
 }

@@ -20,6 +20,8 @@ pub(crate) struct Local {
     pub range: Option<(i64, i64)>,
     /// It has a value here.
     pub bound: bool,
+    /// Its name, or that of what it is a part of, where it is declared.
+    pub place: Span,
 }
 
 /// Names that many expressions see: the variables and clocks of an automaton, or the shared variables. The numbers of
@@ -34,6 +36,8 @@ pub(crate) struct Scope {
     /// As in [`Env::layouts`].
     pub layouts: Map<String, Layout>,
     pub functions: Map<String, Callable>,
+    /// Of an automaton: where its locations are declared.
+    pub locations: Map<String, Span>,
 }
 
 /// What a call of a function of automata needs to know.
@@ -60,21 +64,22 @@ pub(crate) enum Elements {
 }
 
 impl Scope {
-    pub fn add_variable(&mut self, leaf: Leaf, var: &Var) {
+    pub fn add_variable(&mut self, leaf: Leaf, var: &Var, place: Span) {
         let local = Local {
             name: var.name.clone(),
             noun: Noun::Variable,
             leaf: Some(leaf),
-            ty: var.ty.kind(),
-            range: var.ty.range(),
+            ty: Kind::of(var.ty()),
+            range: var.ty().range(),
             bound: true,
+            place,
         };
         self.names.insert(var.name.clone(), local);
     }
 
-    pub fn add_clock(&mut self, name: &str) {
+    pub fn add_clock(&mut self, name: &str, place: Span) {
         let (noun, ty) = (Noun::Clock, Kind::Unknown);
-        let clock = Local { name: name.to_owned(), noun, leaf: None, ty, range: None, bound: true };
+        let clock = Local { name: name.to_owned(), noun, leaf: None, ty, range: None, bound: true, place };
         self.clocks.insert(name.to_owned(), clock);
     }
 }
@@ -123,6 +128,12 @@ impl Env {
             .or_else(|| self.shared.clocks.get(name))
     }
 
+    /// Where a name is declared that is a local's, or stands for several.
+    pub fn place_of(&self, name: &str) -> Option<Span> {
+        let part = |l: &&Local| l.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['.', '[']));
+        self.find(name).or_else(|| self.all().find(part)).map(|l| l.place)
+    }
+
     /// What a leaf stands for.
     pub fn of_leaf(&self, leaf: Leaf) -> Option<&Local> {
         match leaf {
@@ -164,16 +175,16 @@ impl Env {
     }
 
     /// Adds a local without looking whether the name is free.
-    pub fn push_local(&mut self, name: &str, noun: Noun, ty: Kind) -> u16 {
+    pub fn push_local(&mut self, name: &str, place: Span, noun: Noun, ty: Kind) -> u16 {
         let at = self.next_local();
         let leaf = Some(Leaf::Local(at));
-        self.locals.push(Local { name: name.to_owned(), noun, leaf, ty, range: None, bound: true });
+        self.locals.push(Local { name: name.to_owned(), noun, leaf, ty, range: None, bound: true, place });
         at
     }
 
     /// The same for one whose type is declared.
-    pub fn push_typed(&mut self, name: &str, noun: Noun, ty: Type) -> u16 {
-        let at = self.push_local(name, noun, ty.kind());
+    pub fn push_typed(&mut self, name: &str, place: Span, noun: Noun, ty: Type) -> u16 {
+        let at = self.push_local(name, place, noun, Kind::of(ty));
         if let Some(local) = self.locals.last_mut() {
             local.range = ty.range();
         }
@@ -206,8 +217,8 @@ impl Checker<'_> {
         self.check_free(env, noun, name);
         let mut leaves = Vec::new();
         self.leaves(&name.text, layout, &mut leaves);
-        for (name, ty) in leaves {
-            env.push_typed(&name, noun, ty);
+        for (part, ty) in leaves {
+            env.push_typed(&part, name.span, noun, ty);
         }
         if !matches!(layout, Layout::Scalar(_)) {
             env.declare_layout(&name.text, layout.clone());

@@ -5,14 +5,17 @@ use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
 
 use super::{Checker, Env, is_variable_name, item::Item};
 use crate::{
-    Dim, Expr, ExprKind, Function, Kind, Type, Unit, Value,
+    Dim, EvalError, Expr, ExprKind, Kind, NumberFunction, Text, Type, Unit, Value,
     noun::Noun,
     report::{names, types},
-    value,
 };
 
-pub(super) const FUNCTIONS: [(&str, Function); 4] =
-    [("abs", Function::Abs), ("min", Function::Min), ("max", Function::Max), ("norm", Function::Norm)];
+pub(super) const FUNCTIONS: [(&str, NumberFunction); 4] = [
+    ("abs", NumberFunction::Abs),
+    ("min", NumberFunction::Min),
+    ("max", NumberFunction::Max),
+    ("norm", NumberFunction::Norm),
+];
 
 /// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
 pub(super) const MAX_TIME: f64 = 1e9;
@@ -75,9 +78,7 @@ impl<'a> Checker<'a> {
                 let item = self.item(of, env);
                 return self.field(item, name);
             }
-            Syntax::Text(text) => {
-                Expr::value(Value::Text(crate::Text(Symbol::intern(text))), Kind::Text, span)
-            }
+            Syntax::Text(text) => Expr::value(Value::Text(Text::new(text)), Kind::Text, span),
             Syntax::List { items, rest } => self.list(items, rest.as_deref(), Kind::Unknown, span, env),
             Syntax::Unify { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Internal(_) => {
                 self.no_value_here(e, env);
@@ -88,13 +89,15 @@ impl<'a> Checker<'a> {
     }
 
     /// A value of an enumeration by its bare name, where one of this enumeration is due.
-    fn symbol_of(&self, e: &ast::Expr, of: Enumeration) -> Option<Expr> {
+    fn symbol_of(&mut self, e: &ast::Expr, of: Enumeration) -> Option<Expr> {
         let Syntax::Path(path) = &e.kind else { return None };
         let [name] = path.names.as_slice() else { return None };
         if self.given(&name.text).is_some() {
             return None;
         }
-        of.symbol(&name.text).map(|symbol| symbol_value(of, symbol, e.span))
+        let symbol = of.symbol(&name.text)?;
+        self.refer_value(of, name);
+        Some(symbol_value(of, symbol, e.span))
     }
 
     /// An expression that must be of this kind.
@@ -157,7 +160,7 @@ impl<'a> Checker<'a> {
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
     pub(super) fn expr_for(&mut self, e: &ast::Expr, ty: Type, env: &mut Env) -> Expr {
-        let e = self.expr_of(e, ty.kind(), env);
+        let e = self.expr_of(e, Kind::of(ty), env);
         self.in_range(&e, ty);
         e
     }
@@ -175,7 +178,7 @@ impl<'a> Checker<'a> {
                 self.report(types::out_of_range(value, lo, hi, span));
             }
             (Type::List(of), Value::List(list)) => {
-                list.values().iter().for_each(|v| self.value_in_range(*v, of.element(), span));
+                list.iter().for_each(|v| self.value_in_range(v, of.element(), span));
             }
             (_, _) => {}
         }
@@ -192,7 +195,7 @@ impl<'a> Checker<'a> {
 
     /// A constant quantity, in SI units.
     pub(super) fn quantity_of(&mut self, e: &ast::Expr, dim: Dim) -> Option<f64> {
-        self.constant(e, Kind::Float(dim), &mut Env::constants()).and_then(Value::number)
+        self.constant(e, Kind::Float(dim), &mut Env::constants()).and_then(Value::as_f64)
     }
 
     /// A constant time in seconds, not negative; or more than zero.
@@ -211,10 +214,10 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant amount of data, in bytes: at least one.
-    pub(super) fn amount_of_data(&mut self, e: &ast::Expr, what: &str) -> Option<f64> {
+    pub(super) fn amount_of_data(&mut self, e: &ast::Expr, what: &str) -> Option<u64> {
         let bytes = self.quantity_of(e, Dim::DATA)?;
         if (1.0..=MAX_DATA).contains(&bytes) {
-            return Some(bytes);
+            return Some(bytes as u64);
         }
         let rule = if bytes < 1.0 { "at least 1 B".to_owned() } else { format!("at most {MAX_DATA} B") };
         self.report(types::must_be(what, &rule, e.span));
@@ -293,15 +296,15 @@ impl<'a> Checker<'a> {
             return Item::One(value);
         }
         if let ([_], Some(id)) = (callee.names.as_slice(), self.record_names.get(&name.text)) {
-            self.used_types.insert(name.text.clone());
+            self.refer(name, self.record_names.span(id));
             return self.record(id, name, args, span, env);
         }
         let plain = FUNCTIONS.iter().find(|(n, _)| *n == name.text && callee.names.len() == 1);
         let Some((text, f)) = plain else { return Item::One(self.measured(callee, args, span, env)) };
-        if *f == Function::Norm {
+        if *f == NumberFunction::Norm {
             return Item::One(self.norm(args, span, env));
         }
-        let want = if *f == Function::Abs { 1 } else { 2 };
+        let want = if *f == NumberFunction::Abs { 1 } else { 2 };
         let args: Vec<Expr> = args.iter().map(|a| self.expr(a, env)).collect();
         if args.len() != want {
             self.report(types::counts(Noun::Function, text, want, args.len(), span));
@@ -336,9 +339,9 @@ impl<'a> Checker<'a> {
         Item::Record(id, parts, span)
     }
 
-    pub(super) fn applied(&mut self, f: Function, args: Vec<Expr>, ty: Kind, span: Span) -> Expr {
+    pub(super) fn applied(&mut self, f: NumberFunction, args: Vec<Expr>, ty: Kind, span: Span) -> Expr {
         let values: Option<Vec<Value>> = args.iter().map(Expr::constant).collect();
-        let folded = values.map(|v| value::call(f, &v));
+        let folded = values.map(|v| hrdsl_ir::expr::call(f, &v));
         self.folded(folded, Expr { kind: ExprKind::Call(f, args), ty, span })
     }
 
@@ -369,7 +372,7 @@ impl<'a> Checker<'a> {
             return Item::error(span);
         }
         let ty = if op == UnaryOp::Not { Kind::Bool } else { operand.ty };
-        let folded = operand.constant().map(|v| value::unary(op, v));
+        let folded = operand.constant().map(|v| hrdsl_ir::expr::unary(op, v));
         Item::One(self.folded(folded, Expr { kind: ExprKind::Unary(op, Box::new(operand)), ty, span }))
     }
 
@@ -414,7 +417,7 @@ impl<'a> Checker<'a> {
         }
         let ty = if logical { Some(Kind::Bool) } else { self.result(op, &l, &r) };
         let Some(ty) = ty else { return Expr::error(span) };
-        let folded = l.constant().zip(r.constant()).map(|(a, b)| value::binary(op, a, b));
+        let folded = l.constant().zip(r.constant()).map(|(a, b)| hrdsl_ir::expr::binary(op, a, b));
         self.folded(folded, Expr { kind: ExprKind::Binary(op, Box::new(l), Box::new(r)), ty, span })
     }
 
@@ -513,11 +516,11 @@ impl<'a> Checker<'a> {
     }
 
     /// The constant, if the operands were.
-    fn folded(&mut self, value: Option<Result<Value, value::FoldError>>, e: Expr) -> Expr {
+    fn folded(&mut self, value: Option<Result<Value, EvalError>>, e: Expr) -> Expr {
         match value {
             None => e,
             Some(Ok(Value::Float(x))) if !x.is_finite() => {
-                self.report(types::fold(value::FoldError::Overflow, e.span));
+                self.report(types::fold(EvalError::Overflow, e.span));
                 Expr::error(e.span)
             }
             Some(Ok(value)) => Expr::value(value, e.ty, e.span),
@@ -536,7 +539,7 @@ pub(super) fn symbol_value(of: Enumeration, symbol: Symbol, span: Span) -> Expr 
 /// A whole number where a float is due.
 fn as_float(e: Expr) -> Expr {
     let (ty, span) = (Kind::Float(Dim::NUMBER), e.span);
-    match e.constant().and_then(Value::number) {
+    match e.constant().and_then(Value::as_f64) {
         Some(x) => Expr::value(Value::Float(x), ty, span),
         None => {
             let one = Expr::value(Value::Float(1.0), ty, span);

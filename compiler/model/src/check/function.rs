@@ -15,10 +15,11 @@ use super::{
     statement::Body,
 };
 use crate::{
-    AutomatonId, Expr, ExprKind, FunctionId, Leaf, Param, Routine, Statement, Type, Update,
+    AutomatonId, Effects, Expr, ExprKind, Function, FunctionId, FunctionPlaces, Kind, Leaf, Statement, Type,
+    Update, leaves,
     noun::Noun,
     report::{functions, names, types},
-    types::Layout,
+    types::{Layout, finite_var},
 };
 
 /// What is known of functions while they are checked.
@@ -30,8 +31,6 @@ pub(super) struct Functions {
     calls: BTreeMap<u16, Vec<(FunctionId, Span)>>,
     /// Calls in places where nothing may change.
     only_read: Vec<(FunctionId, Span)>,
-    /// Where the names of called functions are declared.
-    pub used: BTreeSet<Span>,
     /// By the place of their names: the functions that all automata know, and those of automata.
     pub declared: BTreeMap<Span, (Name, Span)>,
 }
@@ -108,22 +107,21 @@ impl Checker<'_> {
             self.report(super::too_many(format!("there are more than {id} functions"), name.span));
             return None;
         }
-        let typed = |(name, layout): &(String, Layout)| Param {
-            name: name.clone(),
-            ty: if let Layout::Scalar(ty) = layout { *ty } else { Type::Bool },
+        let typed = |(name, layout): &(String, Layout)| {
+            finite_var(name, if let Layout::Scalar(ty) = layout { *ty } else { Type::Bool })
         };
-        self.s.functions.push(Routine {
+        self.s.functions.push(Function {
             name: name.text.clone(),
             owner,
             params: params.iter().map(typed).collect(),
             locals: Vec::new(),
-            result: result.map(|ty| ty.unwrap_or(Type::Bool)),
+            result: result.map(|ty| finite_var(&name.text, ty.unwrap_or(Type::Bool))),
+            pure: true,
             body: Vec::new(),
-            reads: Vec::new(),
-            assigns: Vec::new(),
-            place: name.span,
-            span,
+            origin: span,
         });
+        self.s.effects.push(Effects::default());
+        self.s.places.functions.push(FunctionPlaces { name: name.span, locals: Vec::new() });
         Some(Callable { id: FunctionId(id), params: params.into(), result, span: name.span })
     }
 
@@ -184,7 +182,8 @@ impl Checker<'_> {
                 Layout::Scalar(_) => self.add_local(&mut env, &param.name, Noun::Parameter, layout),
                 Layout::Unknown | Layout::Record(_) | Layout::Array(..) => {
                     // Its place among the locals stays.
-                    env.push_local(&param.name.text, Noun::Parameter, crate::Kind::Unknown);
+                    let (name, kind) = (&param.name, Kind::Unknown);
+                    env.push_local(&name.text, name.span, Noun::Parameter, kind);
                 }
             }
         }
@@ -203,8 +202,10 @@ impl Checker<'_> {
             self.report(super::too_many(message, function.name.span));
         }
         let routine = &mut self.s.functions[usize::from(id.0)];
-        routine.locals = body.locals;
+        let (locals, places) = body.locals.into_iter().unzip();
+        routine.locals = locals;
         routine.body = statements;
+        self.s.places.functions[usize::from(id.0)].locals = places;
     }
 
     // ── calls ──
@@ -220,14 +221,15 @@ impl Checker<'_> {
         let callable = env.function(&name.text)?.clone();
         let values = self.function_args(&callable, name, args, span, env);
         let Some(result) = callable.result else {
-            self.functions.used.insert(callable.span);
+            self.refer(name, Some(callable.span));
             self.report(functions::has_no_value(&name.text, span));
             return Some(Expr::error(span));
         };
+        self.refer(name, Some(callable.span));
         self.called(&callable, span, env);
         Some(match (result, values) {
             (Some(ty), Some(args)) => {
-                Expr { kind: ExprKind::Apply(callable.id, args, ty), ty: ty.kind(), span }
+                Expr { kind: ExprKind::Apply(callable.id, args, ty), ty: Kind::of(ty), span }
             }
             (Some(_), None) | (None, _) => Expr::error(span),
         })
@@ -238,6 +240,7 @@ impl Checker<'_> {
         let callable = env.function(&call.name.text)?.clone();
         let args = call.args.as_deref().unwrap_or_default();
         let args = self.function_args(&callable, &call.name, args, call.span, env);
+        self.refer(&call.name, Some(callable.span));
         self.called(&callable, call.span, env);
         Some((callable.id, args?))
     }
@@ -263,7 +266,7 @@ impl Checker<'_> {
         env.effects = true;
         let called = self.called_function(call, env);
         env.effects = false;
-        updates.extend(called.map(|(id, args)| Update::Call(id, args)));
+        updates.extend(called.map(|(id, args)| Update::Call { function: id, args }));
         true
     }
 
@@ -296,7 +299,6 @@ impl Checker<'_> {
     }
 
     fn called(&mut self, callable: &Callable, span: Span, env: &Env) {
-        self.functions.used.insert(callable.span);
         if let Some(open) = self.functions.open {
             self.functions.calls.entry(open.0).or_default().push((callable.id, span));
         }
@@ -323,13 +325,15 @@ impl Checker<'_> {
         for id in self.in_order_of_calls(start, end) {
             let (mut reads, mut assigns) = direct(&self.s.functions[id]);
             for (called, _) in self.calls_of(id) {
-                let of = &self.s.functions[usize::from(called.0)];
+                let of = &self.s.effects[usize::from(called.0)];
                 reads.extend(of.reads.iter().copied().map(Ordered));
                 assigns.extend(of.assigns.iter().copied().map(Ordered));
             }
-            let routine = &mut self.s.functions[id];
-            routine.reads = reads.into_iter().map(|l| l.0).collect();
-            routine.assigns = assigns.into_iter().map(|l| l.0).collect();
+            self.s.functions[id].pure = assigns.is_empty();
+            self.s.effects[id] = Effects {
+                reads: reads.into_iter().map(|l| l.0).collect(),
+                assigns: assigns.into_iter().map(|l| l.0).collect(),
+            };
         }
         self.functions.calls.clear();
     }
@@ -386,8 +390,11 @@ impl Checker<'_> {
     /// Says so of functions that change something where a value is only looked at.
     pub(super) fn say_impure(&mut self) {
         for (id, span) in std::mem::take(&mut self.functions.only_read) {
-            let Some(routine) = self.s.functions.get(usize::from(id.0)) else { continue };
-            let Some(first) = routine.assigns.first() else { continue };
+            let id = usize::from(id.0);
+            let (Some(routine), Some(effects)) = (self.s.functions.get(id), self.s.effects.get(id)) else {
+                continue;
+            };
+            let Some(first) = effects.assigns.first() else { continue };
             let var = match (first, routine.owner) {
                 (Leaf::Own(i), Some(owner)) => {
                     self.s.automata.get(usize::from(owner.0)).and_then(|a| a.vars.get(usize::from(*i)))
@@ -430,7 +437,7 @@ impl Ord for Ordered {
 }
 
 /// The variables outside that a body itself reads and assigns.
-fn direct(routine: &Routine) -> (BTreeSet<Ordered>, BTreeSet<Ordered>) {
+fn direct(routine: &Function) -> (BTreeSet<Ordered>, BTreeSet<Ordered>) {
     let (mut reads, mut assigns) = (BTreeSet::new(), BTreeSet::new());
     let outside = |l: Leaf| matches!(l, Leaf::Own(_) | Leaf::Shared(_));
     let mut all = Vec::new();
@@ -444,9 +451,9 @@ fn direct(routine: &Routine) -> (BTreeSet<Ordered>, BTreeSet<Ordered>) {
             });
         };
         statement.expressions().into_iter().for_each(&mut read);
-        if let Statement::Assign(place, _) = statement {
+        if let Statement::Assign { place, .. } = statement {
             place.indices.iter().for_each(|i| read(&i.at));
-            assigns.extend(place.leaves().into_iter().filter(|l| outside(*l)).map(Ordered));
+            assigns.extend(leaves(place).into_iter().filter(|l| outside(*l)).map(Ordered));
         }
     }
     (reads, assigns)

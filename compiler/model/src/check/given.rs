@@ -2,12 +2,12 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use hrdsl_source::{Code, Diagnostic, Span, Symbol};
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
+use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
 
 use super::{Checker, Env, item::Item, table::Map};
 use crate::{
-    ActorId, EventPattern, Expr, PointId, Type, Value,
+    ActorId, BinaryOp, EventPattern, Expr, Kind, List, PointId, Text, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
@@ -27,7 +27,15 @@ pub(crate) enum Given {
     Unknown,
 }
 
-pub(crate) type Givens = Map<String, Given>;
+/// A parameter with what it stands for.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundParam {
+    pub given: Given,
+    /// The parameter's name, where it is declared.
+    pub place: Span,
+}
+
+pub(crate) type Givens = Map<String, BoundParam>;
 
 impl Given {
     /// Whether it is what a parameter of this kind stands for.
@@ -38,6 +46,7 @@ impl Given {
             Given::Events(_) => kind == Noun::Event,
             Given::Actor(_) => kind == Noun::Actor,
             Given::Point(_) => kind == Noun::Point,
+            Given::Thing(Noun::Arm | Noun::Gripper, _) if kind == Noun::Device => true,
             Given::Thing(of, _) => *of == kind,
         }
     }
@@ -126,6 +135,7 @@ pub(super) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)> {
         | ItemKind::Assume(_)
         | ItemKind::Suite(_)
         | ItemKind::Part(_)
+        | ItemKind::Device(_)
         | ItemKind::World(_)
         | ItemKind::System(_)
         | ItemKind::Test(_)
@@ -165,13 +175,19 @@ impl<'a> Checker<'a> {
 
     /// What a name stands for in the instance that is being checked.
     pub(super) fn given(&self, name: &str) -> Option<&Given> {
-        self.given.as_ref()?.get(name)
+        self.given.as_ref()?.get(name).map(|bound| &bound.given)
+    }
+
+    /// A name is that of a parameter of the template.
+    pub(super) fn refer_given(&mut self, name: &Name) {
+        let place = self.given.as_ref().and_then(|given| given.get(&name.text)).map(|bound| bound.place);
+        self.refer(name, place);
     }
 
     /// The parameters that stand for something of this kind, or may do so.
     pub(super) fn given_names(&self, kind: Noun) -> Vec<String> {
         let given = self.given.iter().flat_map(|given| given.iter());
-        given.filter(|(_, g)| g.is(kind)).map(|(name, _)| name.clone()).collect()
+        given.filter(|(_, bound)| bound.given.is(kind)).map(|(name, _)| name.clone()).collect()
     }
 
     /// A name that is never bound by a pattern: a constant, a value of an enumeration, a parameter of the template.
@@ -205,7 +221,7 @@ impl<'a> Checker<'a> {
             self.unknown(Noun::Template, &instance.of, &all, None);
             return None;
         };
-        self.used_templates.insert((instance.sort, template.name.text.clone()));
+        self.refer(&instance.of, Some(template.name.span));
         let given = self.bind(template.name, template.params, &instance.args, instance.span, env, true)?;
         Some((template, given))
     }
@@ -227,7 +243,7 @@ impl<'a> Checker<'a> {
         }
         let mut given = Givens::default();
         for (param, arg) in params.iter().zip(args) {
-            let bound = match kind_of_param(param) {
+            let value = match kind_of_param(param) {
                 Some(kind) => self.given_thing(kind, arg, env, whole),
                 None => {
                     let layout = self.inside(&given, |c| c.layout(&param.ty));
@@ -237,6 +253,7 @@ impl<'a> Checker<'a> {
                     }
                 }
             };
+            let bound = BoundParam { given: value, place: param.name.span };
             given.insert(param.name.text.clone(), bound);
         }
         Some(Rc::new(given))
@@ -327,7 +344,7 @@ impl<'a> Checker<'a> {
     fn placeholders(&mut self, params: &[ast::Param], trial: Trial) -> Rc<Givens> {
         let mut given = Givens::default();
         for (index, param) in params.iter().enumerate() {
-            let bound = if kind_of_param(param).is_some() {
+            let value = if kind_of_param(param).is_some() {
                 Given::Unknown
             } else {
                 match self.inside(&given, |c| c.layout(&param.ty)) {
@@ -337,6 +354,7 @@ impl<'a> Checker<'a> {
                     None => Given::Unknown,
                 }
             };
+            let bound = BoundParam { given: value, place: param.name.span };
             if given.insert(param.name.text.clone(), bound).is_some() {
                 self.report(names::duplicate(Noun::Parameter, &param.name.text, param.name.span, None));
             }
@@ -355,10 +373,10 @@ impl<'a> Checker<'a> {
                     let value = if great { values.last() } else { values.first() };
                     value.map_or(Value::Bool(false), |v| Value::Symbol(*v))
                 }
-                Type::Text => Value::Text(crate::Text(Symbol::intern(if great { "b" } else { "a" }))),
-                Type::List(_) => Value::List(crate::Elements::new(&[])),
+                Type::Text => Value::Text(Text::new(if great { "b" } else { "a" })),
+                Type::List(_) => Value::List(List::EMPTY),
             };
-            Item::One(Expr::value(value, ty.kind(), span))
+            Item::One(Expr::value(value, Kind::of(ty), span))
         };
         match layout {
             Layout::Scalar(ty) => one(*ty),

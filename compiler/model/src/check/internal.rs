@@ -1,6 +1,6 @@
 //! Internal actions: their arguments, by the table.
 
-use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax, UnaryOp};
+use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use super::{
     Checker, Env,
@@ -10,7 +10,7 @@ use super::{
     terms::{Due, literal_of},
 };
 use crate::{
-    Arg, Context, Dim, Expr, GoalId, Internal, Kind, ListFunction, StepKind,
+    Arg, Context, Dim, Expr, GoalId, Internal, Kind, ListFunction, StepKind, UnaryOp,
     noun::Noun,
     report::{agents, names, types},
 };
@@ -273,12 +273,14 @@ impl Checker<'_> {
             (Op::AskAll, [to, template, what, out, within @ ..]) => {
                 self.ask_all(scope, (to, template, what, out), within.first(), env)
             }
-            (Op::Print, args) => Some(StepKind::Print(args.iter().map(|a| self.expr(a, env)).collect())),
+            (Op::Print, args) => {
+                Some(StepKind::Print { args: args.iter().map(|a| self.expr(a, env)).collect() })
+            }
             (Op::Control(what), [goal]) => {
                 let goal = self.goal_term(scope, goal, env, false)?;
-                Some(StepKind::Control(what, Some(goal)))
+                Some(StepKind::Control { what, goal: Some(goal) })
             }
-            (Op::Control(what), []) => Some(StepKind::Control(what, None)),
+            (Op::Control(what), []) => Some(StepKind::Control { what, goal: None }),
             (Op::Abolish, [belief]) => self.abolish(scope, belief, env),
             (Op::Fail, []) => Some(StepKind::Fail),
             (_, _) => None,

@@ -2,11 +2,11 @@
 //! knows single values alone.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, Name};
+use hrdsl_syntax::ast::{self, Name};
 
 use super::{Checker, Env, layout::MAX_PARTS};
 use crate::{
-    Expr, ExprKind, Kind, Type, Value,
+    BinaryOp, Expr, ExprKind, Kind, Type, Value,
     noun::Noun,
     report::{names, types},
     types::Layout,
@@ -189,7 +189,7 @@ impl Checker<'_> {
     /// What is due, as a message says it.
     pub(super) fn shown_layout(&self, layout: &Layout) -> String {
         match layout {
-            Layout::Scalar(ty) => ty.kind().to_string(),
+            Layout::Scalar(ty) => Kind::of(*ty).to_string(),
             Layout::Unknown => Kind::Unknown.to_string(),
             Layout::Record(id) => format!("a `{}`", self.records[usize::from(*id)].name.text),
             Layout::Array(_, n) => format!("an array of {n}"),
@@ -272,6 +272,10 @@ impl Checker<'_> {
             Item::Array(..) | Item::Tuple(..) => item.axes().iter().map(|a| (*a).to_owned()).collect(),
             Item::One(_) => Vec::new(),
         };
+        if let Item::Record(id, ..) = &item {
+            let record = self.records[usize::from(*id)].name.span;
+            self.refer_within(name, record, "field");
+        }
         let at = fields.iter().position(|f| *f == name.text);
         match at.zip(item.parts()).and_then(|(at, parts)| parts.get(at)) {
             Some(part) => part.clone().at(span),

@@ -1,5 +1,6 @@
 //! Declared types: enumerations, records, arrays, and what a type expression means.
 
+use hrdsl_ir::ListOf;
 use std::rc::Rc;
 
 use hrdsl_source::{Enumeration, Span};
@@ -7,9 +8,10 @@ use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
 
 use super::{Checker, Env, table::Table};
 use crate::{
-    Enum, Kind, Of, Param, Type, Value,
+    Enum, Kind, Param, Type, Value,
     noun::Noun,
     report::{automata, names, types},
+    type_named, type_names,
     types::Layout,
 };
 
@@ -84,7 +86,7 @@ impl<'a> Checker<'a> {
         let first = self.enums.get(&name.text).and_then(|id| self.enums.span(id));
         let first =
             first.or_else(|| self.record_names.get(&name.text).and_then(|id| self.record_names.span(id)));
-        let taken = first.is_some() || Type::named(&name.text).is_some();
+        let taken = first.is_some() || type_named(&name.text).is_some();
         if taken {
             self.report(names::duplicate(Noun::Type, &name.text, name.span, first));
         }
@@ -179,7 +181,7 @@ impl<'a> Checker<'a> {
             TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
             TypeExpr::Array(..) => self.array_type(ty)?,
             TypeExpr::List(of) => match self.layout(of)? {
-                Layout::Scalar(of) => Layout::Scalar(Type::List(Of::<Type>::new(of))),
+                Layout::Scalar(of) => Layout::Scalar(Type::List(ListOf::new(of))),
                 Layout::Unknown => return None,
                 other @ (Layout::Record(_) | Layout::Array(..)) => {
                     let got = self.shown_layout(&other);
@@ -251,16 +253,15 @@ impl<'a> Checker<'a> {
         if name.text == "agent" {
             return Some(Layout::Scalar(Type::Enum(self.agent_names)));
         }
-        if let Some(ty) = Type::named(&name.text) {
+        if let Some(ty) = type_named(&name.text) {
             return Some(Layout::Scalar(ty));
         }
-        if self.enums.get(&name.text).is_some() || self.record_names.get(&name.text).is_some() {
-            self.used_types.insert(name.text.clone());
-        }
         if let Some(id) = self.enums.get(&name.text) {
+            self.refer(name, self.enums.span(id));
             return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }
         if let Some(id) = self.record_names.get(&name.text) {
+            self.refer(name, self.record_names.span(id));
             self.resolve_record(usize::from(id), self.open_records);
             if self.records[usize::from(id)].state == RecordState::Open {
                 self.report(types::record_cycle(&name.text, name.span));
@@ -289,7 +290,7 @@ impl<'a> Checker<'a> {
 
     pub(super) fn type_names(&self) -> Vec<String> {
         let own = self.enums.names().chain(self.record_names.names()).map(str::to_owned);
-        Type::names().chain(["agent"]).map(str::to_owned).chain(own).collect()
+        type_names().chain(["agent"]).map(str::to_owned).chain(own).collect()
     }
 
     fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
@@ -306,7 +307,7 @@ impl<'a> Checker<'a> {
 }
 
 /// Where a type is written.
-pub(super) fn type_span(ty: &TypeExpr) -> Span {
+pub(crate) fn type_span(ty: &TypeExpr) -> Span {
     match ty {
         TypeExpr::Named(name) => name.span,
         TypeExpr::Range(lo, hi) => lo.span.to(hi.span),

@@ -1,10 +1,9 @@
 //! Times that variables have a part in, as sums: a constant, and whole numbers with constant factors.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 
 use super::expr::MAX_TIME;
-use crate::{Expr, ExprKind, Kind, Time, Value};
+use crate::{BinaryOp, Expr, ExprKind, Kind, Time, TimeTerm, UnaryOp, Value};
 
 /// `constant + Σ factor · value`, in SI units; each value is a whole number.
 #[derive(Clone, Debug, Default)]
@@ -75,7 +74,7 @@ impl Linear {
             if (exact - exact.round()).abs() > 1e-4_f64.max(exact * 1e-15) {
                 return Err(BadTime::Fraction);
             }
-            time.terms.push((nanos(factor)?, value));
+            time.terms.push(TimeTerm { factor: nanos(factor)?, value });
         }
         Ok(time)
     }
@@ -91,7 +90,7 @@ fn times(a: &Expr, b: &Expr) -> Expr {
 /// # Errors
 /// The part that is none; `None` if it has a diagnostic already.
 pub(super) fn linear(e: &Expr) -> Result<Linear, Option<Span>> {
-    if let (Some(n), true) = (e.constant().and_then(Value::number), e.ty.is_number()) {
+    if let (Some(n), true) = (e.constant().and_then(Value::as_f64), e.ty.is_number()) {
         return Ok(Linear::constant(n));
     }
     match e.ty {
@@ -108,7 +107,7 @@ pub(super) fn linear(e: &Expr) -> Result<Linear, Option<Span>> {
             Ok(sum)
         }
         ExprKind::Binary(BinaryOp::Mul, a, b) => Ok(linear(a)?.product(linear(b)?)),
-        ExprKind::Binary(BinaryOp::Div, a, b) => match b.constant().and_then(Value::number) {
+        ExprKind::Binary(BinaryOp::Div, a, b) => match b.constant().and_then(Value::as_f64) {
             Some(by) if by != 0.0 => Ok(linear(a)?.scaled(1.0 / by)),
             Some(_) | None => Err(Some(e.span)),
         },
@@ -139,12 +138,13 @@ mod tests {
     #[test]
     fn factors_are_whole_nanoseconds() {
         let time = |x| linear(&op(BinaryOp::Mul, var(), float(x))).unwrap().time(1.0);
-        assert_eq!(time(0.1).unwrap().terms, [(100_000_000, var())]);
-        assert_eq!(time(1e-9).unwrap().terms, [(1, var())]);
+        let one = |factor| [TimeTerm { factor, value: var() }];
+        assert_eq!(time(0.1).unwrap().terms, one(100_000_000));
+        assert_eq!(time(1e-9).unwrap().terms, one(1));
         assert_eq!(time(0.5e-9), Err(BadTime::Fraction));
         assert_eq!(time(1.0 / 3.0), Err(BadTime::Fraction));
         assert_eq!(time(2e9), Err(BadTime::TooLong));
-        assert_eq!(time(123_456.789).unwrap().terms[0].0, 123_456_789_000_000);
+        assert_eq!(time(123_456.789).unwrap().terms[0].factor, 123_456_789_000_000);
     }
 
     #[test]
@@ -152,7 +152,10 @@ mod tests {
         let sum = op(BinaryOp::Add, op(BinaryOp::Mul, float(2.0), var()), float(3.0));
         let half = op(BinaryOp::Div, sum, Expr::value(Value::Int(2), Kind::Int, Span::default()));
         let time = linear(&half).unwrap().time(-1.0).unwrap();
-        assert_eq!((time.nanos, time.terms), (-1_500_000_000, vec![(-1_000_000_000, var())]));
+        assert_eq!(
+            (time.nanos, time.terms),
+            (-1_500_000_000, vec![TimeTerm { factor: -1_000_000_000, value: var() }])
+        );
         assert!(linear(&op(BinaryOp::Div, float(1.0), var())).is_err());
         assert!(linear(&op(BinaryOp::Rem, float(1.0), float(2.0))).is_err());
     }

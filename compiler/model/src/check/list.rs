@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax};
 
 use super::{Checker, Env};
 use crate::{
-    Dim, Elements, Expr, ExprKind, Kind, Value,
+    Dim, Expr, ExprKind, Kind, List, Value,
     report::{agents, types},
 };
 
@@ -70,14 +70,14 @@ impl Checker<'_> {
         if let Some(rest) = &rest {
             constants = match (constants, rest.constant()) {
                 (Some(mut all), Some(Value::List(more))) => {
-                    all.extend(more.values());
+                    all.extend(more.iter());
                     Some(all)
                 }
                 (Some(_) | None, _) => None,
             };
         }
         match constants {
-            Some(all) => Expr::value(Value::List(Elements::new(&all)), ty, span),
+            Some(all) => Expr::value(Value::List(List::of(&all)), ty, span),
             None => Expr { kind: ExprKind::List(values, rest.map(Box::new)), ty, span },
         }
     }

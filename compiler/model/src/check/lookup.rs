@@ -33,7 +33,8 @@ impl<'a> Checker<'a> {
         let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
         if let ([value, parts @ ..], Some(of)) = (fields, self.enums.get(&first.text)) {
             let of = self.s.enums[usize::from(of)].of;
-            self.used_types.insert(of.name().to_owned());
+            self.refer(first, self.enums.span_of(&first.text));
+            self.refer_value(of, value);
             let symbol = Item::One(self.symbol_named(of, value, first.span.to(value.span)));
             return parts.iter().fold(symbol, |item, part| self.field(item, part));
         }
@@ -60,6 +61,7 @@ impl<'a> Checker<'a> {
             return Some(Item::error(name.span));
         }
         if let Some(local) = env.find(&name.text) {
+            self.refer(name, Some(local.place));
             return Some(Item::One(match local.leaf {
                 Some(leaf) if local.bound => {
                     Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span }
@@ -79,7 +81,11 @@ impl<'a> Checker<'a> {
             if !self.all_bound(&name.text, &layout, env) {
                 return Some(Item::One(self.without_value(name, env)));
             }
+            self.refer(name, env.place_of(&name.text));
             return Some(self.assembled(&name.text, &layout, env, name.span));
+        }
+        if self.given(&name.text).is_some() {
+            self.refer_given(name);
         }
         match self.given(&name.text) {
             Some(Given::Value(item)) => {
@@ -89,15 +95,17 @@ impl<'a> Checker<'a> {
             Some(Given::Unknown) => return Some(Item::error(name.span)),
             Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
-        if let Some(constant) = self.consts.get_mut(name.text.as_str()) {
-            constant.used = true;
+        if let Some(constant) = self.consts.get(name.text.as_str()) {
+            let place = constant.name.span;
+            self.refer(name, Some(place));
             return Some(self.const_value(name));
         }
         match self.values.get(name.text.as_str()).map(Vec::as_slice) {
             Some([of]) => {
-                self.used_types.insert(of.name().to_owned());
+                let of = *of;
+                self.refer_value(of, name);
                 let symbol = Symbol::intern(&name.text);
-                return Some(Item::One(symbol_value(*of, symbol, name.span)));
+                return Some(Item::One(symbol_value(of, symbol, name.span)));
             }
             Some(several) => {
                 let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
@@ -114,9 +122,20 @@ impl<'a> Checker<'a> {
         self.signal_named(name, env).map(Item::One)
     }
 
+    /// A name is that of a value of an enumeration, which is used by it.
+    pub(super) fn refer_value(&mut self, of: Enumeration, name: &Name) {
+        let Some(whole) = self.s.enums.iter().find(|e| e.of == of).map(|e| e.span) else { return };
+        let value = self.s.names.named_in(whole, "value", &name.text);
+        self.refer(name, value);
+        let enumeration = self.s.names.named_in(whole, "enumeration", of.name());
+        self.refer(name, enumeration);
+    }
+
     /// A plan's variable by its full name, of which `P.x` may be one.
     pub(super) fn variable(&mut self, name: &Name, env: &Env) -> Expr {
-        match env.find(&name.text).filter(|l| l.bound).and_then(|l| Some((l.leaf?, l.ty))) {
+        let local = env.find(&name.text).filter(|l| l.bound);
+        self.refer(name, local.map(|l| l.place));
+        match local.and_then(|l| Some((l.leaf?, l.ty))) {
             Some((leaf, ty)) => Expr { kind: ExprKind::Leaf(leaf), ty, span: name.span },
             None => self.without_value(name, env),
         }
@@ -173,7 +192,9 @@ impl<'a> Checker<'a> {
         let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
         let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));
         let given = self.given.iter().flat_map(|given| given.iter());
-        names.extend(given.filter(|(_, g)| matches!(g, Given::Value(_))).map(|(n, _)| n.clone()));
+        names.extend(
+            given.filter(|(_, bound)| matches!(bound.given, Given::Value(_))).map(|(n, _)| n.clone()),
+        );
         names.extend(self.signal_names(env));
         if env.plan {
             names.extend(self.near(self.agent_names.values().iter().map(|s| s.name())));
@@ -241,6 +262,8 @@ impl<'a> Checker<'a> {
             if !item.is_constant() {
                 item = Item::error(item.span());
             }
+            let ty = self.shown(&item);
+            self.s.names.infer(name.span, ty);
             if let Some(entry) = self.consts.get_mut(name.text.as_str()) {
                 entry.state = ConstState::Done(item);
             }

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 
 use super::{Checker, Env, expr::FUNCTIONS, given::Given};
 use crate::{
-    ArmId, BodyRef, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    ArmId, Axis, BodyRef, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
     nearest::nearest,
     noun::Noun,
     report::{names, types},
@@ -18,6 +18,7 @@ impl Checker<'_> {
     pub(super) fn signal_named(&mut self, name: &Name, env: &Env) -> Option<Expr> {
         let prefix = env.world.as_ref()?;
         let id = self.in_world.signals.get(&format!("{prefix}{}", name.text))?;
+        self.refer(name, self.in_world.signals.span(id));
         Some(self.signal(id, name.span))
     }
 
@@ -26,7 +27,7 @@ impl Checker<'_> {
         if ty.is_some_and(|s| self.in_world.broken.contains(&s.name)) {
             return Expr::error(span);
         }
-        let ty = ty.map_or(Kind::Unknown, |s| s.ty.kind());
+        let ty = ty.map_or(Kind::Unknown, |s| Kind::of(s.ty));
         Expr { kind: ExprKind::Leaf(Leaf::Signal(SignalId(id))), ty, span }
     }
 
@@ -74,7 +75,10 @@ impl Checker<'_> {
         }
         let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
         match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
-            Some(axis) => term(Term::Coordinate(body, axis as u8), Kind::Float(Dim::LENGTH), path.span),
+            Some(axis) => {
+                let axis = [Axis::X, Axis::Y, Axis::Z][axis];
+                term(Term::Coordinate(body, axis), Kind::Float(Dim::LENGTH), path.span)
+            }
             None => Expr::error(path.span),
         }
     }
@@ -175,6 +179,7 @@ impl Checker<'_> {
     pub(super) fn body_ref(&mut self, names: &[Name], prefix: &str) -> Option<BodyRef> {
         let full = self.full_name(names, prefix)?;
         if let Some(body) = self.in_world.body_ref(&full) {
+            self.refer_in_world(names, &full);
             return Some(body);
         }
         self.world_name(Noun::Body, names, prefix);
@@ -203,6 +208,7 @@ impl Checker<'_> {
     pub(super) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
         let full = self.full_name(names, prefix)?;
         if let Some(id) = self.in_world.get(noun, &full) {
+            self.refer_in_world(names, &full);
             return Some(id);
         }
         if let Some(Given::Thing(is, given)) = self.given(&names[0].text) {
@@ -241,7 +247,7 @@ impl Checker<'_> {
     }
 
     /// The full name of something of the world, which a parameter may stand for; `None` if that is not known.
-    fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
+    pub(super) fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
         match self.given(&names[0].text) {
             Some(Given::Unknown) => None,
             Some(Given::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
@@ -249,6 +255,19 @@ impl Checker<'_> {
             Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Point(_)) | None => {
                 Some(format!("{prefix}{}", text(names)))
             }
+        }
+    }
+
+    /// The names of a path in the world: each is that of an instance of a part or of something in it.
+    pub(super) fn refer_in_world(&mut self, names: &[Name], full: &str) {
+        if self.given(&names[0].text).is_some() {
+            return self.refer_given(&names[0]);
+        }
+        let mut whole = full;
+        for name in names.iter().rev() {
+            self.refer(name, self.in_world.place_of(whole));
+            let Some((outer, _)) = whole.rsplit_once('.') else { break };
+            whole = outer;
         }
     }
 

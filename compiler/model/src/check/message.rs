@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     AgentId, Arg, BeliefId, Content, ContentId, Expr, ExprKind, GoalId, Kind, Param, Performative, PlayerRef,
-    StepKind, Value,
+    Speech, StepKind, Value,
     noun::Noun,
     report::{
         agents::{self, bad_message},
@@ -329,10 +329,11 @@ impl Checker<'_> {
     fn content(&mut self, literal: &ast::Literal, is_goal: bool, arity: usize) -> Option<ContentId> {
         let sign = if literal.negated { "~" } else { "" };
         let name = format!("{sign}{}", literal.call.name.text);
-        let same = |c: &Content| (c.name.as_str(), c.is_goal, c.arity) == (name.as_str(), is_goal, arity);
-        let at = self.s.contents.iter().position(same).unwrap_or_else(|| {
-            let (of, uses) = (Vec::new(), BTreeSet::new());
-            self.s.contents.push(Content { name: name.clone(), is_goal, arity, of, uses });
+        let mut known = self.s.contents.iter().zip(&self.s.speech);
+        let same = |(c, s): (&Content, &Speech)| (&c.name, s.is_goal, s.arity) == (&name, is_goal, arity);
+        let at = known.position(same).unwrap_or_else(|| {
+            self.s.contents.push(Content { name: name.clone(), of: Vec::new() });
+            self.s.speech.push(Speech { is_goal, arity, uses: BTreeSet::new() });
             self.s.contents.len() - 1
         });
         let id = u16::try_from(at).ok().filter(|id| *id < u16::MAX);
@@ -344,8 +345,8 @@ impl Checker<'_> {
     }
 
     fn used(&mut self, scope: &Scope, about: &About, how: Option<Performative>) {
-        if let Some(content) = self.s.contents.get_mut(usize::from(about.id.0)) {
-            content.uses.insert((how, scope.id));
+        if let Some(speech) = self.s.speech.get_mut(usize::from(about.id.0)) {
+            speech.uses.insert((how, scope.id));
         }
     }
 

@@ -9,6 +9,7 @@ mod clock;
 mod combine;
 mod context;
 mod coverage;
+mod device;
 mod due;
 mod edge;
 mod env;
@@ -44,6 +45,10 @@ mod vocabulary;
 mod world;
 mod world_parts;
 
+use crate::DefinedType;
+use crate::Definition;
+use crate::Kind;
+use crate::Resolutions;
 use std::{
     collections::{BTreeMap, BTreeSet},
     rc::Rc,
@@ -53,7 +58,7 @@ use hrdsl_source::{Code, Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 
 use crate::{
-    ActorId, EventId, PlayerRef, PointId, Role, Scenario,
+    ActorId, ArgPattern, EventId, PlayerRef, PointId, Role, Scenario,
     noun::Noun,
     report::{
         names::{duplicate, unknown, wrong_kind},
@@ -64,6 +69,7 @@ use env::Env;
 use given::{Given, Givens, Template};
 pub use internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
 use item::Item;
+pub(crate) use layout::type_span;
 use layout::{Fields, RecordEntry};
 pub(crate) use linear::BadTime;
 use table::{MAX_NAMES, Map, Refused, Table};
@@ -73,7 +79,7 @@ use table::{MAX_NAMES, Map, Refused, Table};
 /// # Steps
 /// 1. [`Checker::vocabulary`]: actors, types, constants, events, stimuli, shared variables, templates, the names of
 ///    agents and automata, and channels
-/// 2. [`Checker::world`]: bodies with their parts, signals, rules
+/// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
 /// 5. [`Checker::queries`], [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
@@ -101,9 +107,11 @@ pub fn resolve_part(
     items.extend(&scenario.items);
     let mut checker = Checker::new(items, from_modules);
     checker.missing_modules = missing;
+    checker.s.names = Resolutions::of_items(&checker.items);
     checker.unread_items = checker.items.iter().any(|i| unread::in_item(&i.kind));
     checker.s.name = scenario.scenario.as_ref().map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
+    checker.devices();
     checker.world();
     checker.stimuli();
     checker.agents();
@@ -144,8 +152,6 @@ struct ConstEntry<'a> {
     name: &'a Name,
     value: &'a ast::Expr,
     state: ConstState,
-    /// Something reads it.
-    used: bool,
 }
 
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
@@ -180,9 +186,6 @@ pub(crate) struct Checker<'a> {
     open_records: usize,
     /// By sort and name.
     templates: Map<(Sort, &'a str), Template<'a>>,
-    used_templates: BTreeSet<(Sort, String)>,
-    /// Enumerations and records.
-    used_types: BTreeSet<String>,
     /// Instances that could not be made: nothing is said about their names.
     broken_instances: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
@@ -278,8 +281,6 @@ impl<'a> Checker<'a> {
             open_records: 0,
             templates: Map::default(),
             without_world: Vec::new(),
-            used_templates: BTreeSet::new(),
-            used_types: BTreeSet::new(),
             broken_instances: BTreeSet::new(),
             given: None,
             by_itself: false,
@@ -328,6 +329,33 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// A name means what is declared there.
+    fn refer(&mut self, name: &Name, place: Option<Span>) {
+        if let Some(place) = place {
+            self.s.names.refer(name.span, place);
+        }
+    }
+
+    /// A name is that of a part of the declaration whose name stands there: a field, a parameter.
+    fn refer_within(&mut self, name: &Name, place: Span, noun: &str) {
+        let whole = self.s.names.defined_at(place).map(|definition| definition.whole);
+        let part = whole.and_then(|whole| self.s.names.named_in(whole, noun, &name.text));
+        self.refer(name, part);
+    }
+
+    /// A variable that is declared where it first stands.
+    fn define_here(&mut self, name: &Name, ty: Kind) {
+        let inferred = |ty: Kind| DefinedType::Inferred(ty.to_string());
+        self.s.names.define(Definition {
+            noun: "variable",
+            name: name.text.clone(),
+            place: name.span,
+            whole: name.span,
+            ty: if ty == Kind::Unknown { DefinedType::None } else { inferred(ty) },
+            doc: String::new(),
+        });
+    }
+
     fn report(&mut self, issue: Diagnostic) {
         self.issues.push(issue);
     }
@@ -342,12 +370,22 @@ impl<'a> Checker<'a> {
 
     fn actor(&mut self, name: &Name) -> Option<ActorId> {
         match self.given(&name.text) {
-            Some(Given::Actor(id)) => return Some(*id),
-            Some(Given::Unknown) => return Some(NOBODY),
+            Some(Given::Actor(id)) => {
+                let id = *id;
+                self.refer_given(name);
+                return Some(id);
+            }
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return Some(NOBODY);
+            }
             Some(Given::Value(_) | Given::Events(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
         match self.actors.get(&name.text) {
-            Some(id) => Some(ActorId(id)),
+            Some(id) => {
+                self.refer(name, self.actors.span(id));
+                Some(ActorId(id))
+            }
             None => {
                 let names = self.near(self.actors.names());
                 self.unknown(Noun::Actor, name, &names, None);
@@ -361,14 +399,19 @@ impl<'a> Checker<'a> {
         match self.given(&name.text) {
             Some(Given::Events(patterns)) => {
                 if let [only] = patterns.as_slice()
-                    && only.args.iter().all(Option::is_none)
+                    && only.args.iter().all(|a| *a == ArgPattern::Any)
                 {
-                    return Some(only.event);
+                    let event = only.event;
+                    self.refer_given(name);
+                    return Some(event);
                 }
                 self.report(types::several_events(&name.text, name.span));
                 return None;
             }
-            Some(Given::Unknown) => return None,
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return None;
+            }
             Some(Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
         }
         let fits = |c: &Self, id: u16| {
@@ -376,6 +419,7 @@ impl<'a> Checker<'a> {
             noun == Noun::EventOrStimulus || is == (noun == Noun::Stimulus)
         };
         if let Some(id) = self.events.get(&name.text).filter(|id| fits(self, *id)) {
+            self.refer(name, self.events.span(id));
             return Some(EventId(id));
         }
         let mut names = self.near(self.events.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n));
@@ -389,11 +433,19 @@ impl<'a> Checker<'a> {
     /// A coverage point.
     fn point_named(&mut self, name: &Name) -> Option<PointId> {
         match self.given(&name.text) {
-            Some(Given::Point(id)) => return Some(*id),
-            Some(Given::Unknown) => return None,
+            Some(Given::Point(id)) => {
+                let id = *id;
+                self.refer_given(name);
+                return Some(id);
+            }
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return None;
+            }
             Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..)) | None => {}
         }
         let found = self.points.get(&name.text).map(PointId);
+        self.refer(name, self.points.span_of(&name.text));
         if found.is_none() {
             let mut all = self.near(self.points.names());
             all.extend(self.given_names(Noun::Point));

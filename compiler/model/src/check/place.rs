@@ -1,6 +1,6 @@
 //! Elements of arrays of variables that are chosen at run time: an index outside of its array is a fault of the model.
 
-use hrdsl_syntax::ast::{self, Access, BinaryOp, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name};
 
 use hrdsl_source::Span;
 
@@ -10,7 +10,7 @@ use super::{
     item::Item,
 };
 use crate::{
-    Expr, ExprKind, Index, Kind, Leaf, Place, Type, Value,
+    BinaryOp, Expr, ExprKind, Index, Kind, Leaf, Place, Type, Value, leaves,
     report::{automata, types},
     types::Layout,
 };
@@ -172,7 +172,7 @@ impl Checker<'_> {
         match layout {
             Layout::Scalar(_) => match env.find(name).and_then(|l| Some((l.leaf?, l.ty))) {
                 Some((leaf, ty)) => {
-                    let place = Place { leaf, indices: indices.to_vec() };
+                    let place = Place { slot: leaf, indices: indices.to_vec() };
                     Item::One(Expr { kind: ExprKind::Element(Box::new(place)), ty, span })
                 }
                 None => Item::error(span),
@@ -207,7 +207,7 @@ impl Checker<'_> {
         self.leaves(&reached.name, &reached.layout, &mut leaves);
         let place = |name: &str| {
             let leaf = env.find(name).and_then(|l| l.leaf)?;
-            Some(Place { leaf, indices: reached.indices.clone() })
+            Some(Place { slot: leaf, indices: reached.indices.clone() })
         };
         let places: Vec<Place> = leaves.iter().filter_map(|(name, _)| place(name)).collect();
         let values = match (op, places.as_slice(), &reached.layout) {
@@ -242,17 +242,17 @@ impl Checker<'_> {
         target: &Name,
         env: &mut Env,
     ) -> Expr {
-        if !ty.kind().is_number() {
-            self.report(types::mismatch(Kind::Int, ty.kind(), None, target.span));
+        if !Kind::of(ty).is_number() {
+            self.report(types::mismatch(Kind::Int, Kind::of(ty), None, target.span));
         }
         let by = self.expr_of(value, Kind::Int, env);
         let span = target.span.to(value.span);
         let kind = if place.indices.is_empty() {
-            ExprKind::Leaf(place.leaf)
+            ExprKind::Leaf(place.slot)
         } else {
             ExprKind::Element(Box::new(place.clone()))
         };
-        let old = Expr { kind, ty: ty.kind(), span: target.span };
+        let old = Expr { kind, ty: Kind::of(ty), span: target.span };
         Expr { kind: ExprKind::Binary(op, Box::new(old), Box::new(by)), ty: Kind::Int, span }
     }
 
@@ -270,7 +270,7 @@ impl Checker<'_> {
                 return false;
             }
             if places.len() > 1 {
-                set.extend(place.leaves());
+                set.extend(leaves(place));
             }
         }
         true

@@ -1,20 +1,17 @@
 //! Where the names of a scenario stand, and which declarations it uses: read off the AST once all is resolved. Without
 //! errors the elements of the scenario are those of the AST, in the same order, those of an instance the template's.
 
-use std::collections::BTreeMap;
-
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
 };
 
 use super::{Checker, Declared, given::template};
-use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, Var, VarPlace};
+use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, VarPlace};
 
 impl Checker<'_> {
     #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(super) fn places(&mut self) {
-        let shared = parts(&self.s.shared);
         for (item, span) in self.each_item() {
             match item {
                 ItemKind::Event(event) => {
@@ -22,26 +19,27 @@ impl Checker<'_> {
                 }
                 ItemKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
                 ItemKind::Var(var) => {
-                    let parts = shared.get(&var.name.span).copied().unwrap_or(0);
+                    let name = var.name.text.as_str();
+                    let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
                     let place = VarPlace { name: var.name.span, whole: span };
                     self.s.places.shared.extend(std::iter::repeat_n(place, parts));
                 }
                 ItemKind::Network { name, .. } => self.s.places.networks.push(name.span),
                 ItemKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
                 ItemKind::Const { name, .. } => {
-                    let used = self.consts.get(name.text.as_str()).is_none_or(|c| c.used);
+                    let used = self.s.names.is_used(name.span);
                     self.declared("the constant", name, span, used);
                 }
                 ItemKind::Enum { name, .. } => {
-                    let used = self.used_types.contains(name.text.as_str());
+                    let used = self.s.names.is_used(name.span);
                     self.declared("the enumeration", name, span, used);
                 }
                 ItemKind::Record { name, .. } => {
-                    let used = self.used_types.contains(name.text.as_str());
+                    let used = self.s.names.is_used(name.span);
                     self.declared("the record", name, span, used);
                 }
                 ItemKind::Part(part) => {
-                    let used = self.in_world.used.contains(&part.name.text);
+                    let used = self.s.names.is_used(part.name.span);
                     self.declared("the part", &part.name, span, used);
                 }
                 ItemKind::Agent(_)
@@ -49,8 +47,8 @@ impl Checker<'_> {
                 | ItemKind::Require(_)
                 | ItemKind::Cover(_)
                 | ItemKind::Cross(_) => {
-                    if let Some((sort, template)) = template(item) {
-                        let used = self.used_templates.contains(&(sort, template.name.text.clone()));
+                    if let Some((_, template)) = template(item) {
+                        let used = self.s.names.is_used(template.name.span);
                         self.declared("the template", template.name, span, used);
                     }
                 }
@@ -62,6 +60,7 @@ impl Checker<'_> {
                 | ItemKind::Instance(_)
                 | ItemKind::Actor { .. }
                 | ItemKind::Assume(_)
+                | ItemKind::Device(_)
                 | ItemKind::World(_)
                 | ItemKind::System(_)
                 | ItemKind::Test(_)
@@ -69,7 +68,7 @@ impl Checker<'_> {
             }
         }
         for (name, span) in std::mem::take(&mut self.functions.declared).into_values() {
-            let used = self.functions.used.contains(&name.span);
+            let used = self.s.names.is_used(name.span);
             self.declared("the function", &name, span, used);
         }
         let agents = self.agent_decls.iter();
@@ -113,12 +112,11 @@ fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
 
 fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> AutomatonPlaces {
     let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
-    let vars = parts(&of.vars);
     for member in &automaton.members {
         match &member.kind {
             Member::Clock(clocks) => places.clocks.extend(clocks.iter().map(|c| c.span)),
             Member::Var(var) => {
-                let parts = vars.get(&var.name.span).copied().unwrap_or(0);
+                let parts = of.vars.iter().filter(|v| whole_name(&v.name) == var.name.text).count();
                 let place = VarPlace { name: var.name.span, whole: member.span };
                 places.vars.extend(std::iter::repeat_n(place, parts));
             }
@@ -130,11 +128,9 @@ fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> A
     places
 }
 
-/// How many variables each declaration makes: one for each single value.
-fn parts(vars: &[Var]) -> BTreeMap<Span, usize> {
-    let mut parts = BTreeMap::new();
-    vars.iter().for_each(|v| *parts.entry(v.span).or_default() += 1);
-    parts
+/// The variable that a single value is a part of: `to` of `to.x`, `a` of `a[0]`.
+fn whole_name(part: &str) -> &str {
+    part.split(['.', '[']).next().unwrap_or(part)
 }
 
 fn awaits(suite: &ast::Suite) -> Vec<Span> {

@@ -5,13 +5,13 @@ use hrdsl_syntax::ast::{self, Call, TriggerKind};
 
 use super::{Checker, Env, NOBODY, agent::Scope, table::MAX_NAMES};
 use crate::{
-    ActorId, Annotation, Arg, BeliefId, Context, EventId, Plan, Role, TriggerOn,
+    ActorId, Annotation, Arg, BeliefId, Context, EventId, Plan, Role, Trigger, TriggerOn,
     noun::Noun,
     report::{agents, names, roles},
 };
 
 /// A trigger: what it is on, its arguments and annotations.
-type Trigger = (TriggerOn, Vec<Arg>, Vec<(Annotation, Arg)>);
+type Matched = (TriggerOn, Vec<Arg>, Vec<(Annotation, Arg)>);
 
 impl Checker<'_> {
     pub(super) fn plan(&mut self, scope: &mut Scope, plan: &ast::Plan, span: Span) -> Option<Plan> {
@@ -28,9 +28,10 @@ impl Checker<'_> {
             self.report(super::too_many(message, plan.trigger.span));
         }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
-        let (trigger, args, annotations) = trigger?;
-        let (head, name) = (plan.trigger.span, plan.trigger.literal.call.name.span);
-        Some(Plan { label, atomic, trigger, args, annotations, context, body, vars, span, head, name })
+        let (on, args, annotations) = trigger?;
+        let (origin, name) = (plan.trigger.span, plan.trigger.literal.call.name.span);
+        let trigger = Trigger { on, args, annotations, origin, name };
+        Some(Plan { label, atomic, trigger, context, body, vars, origin: span })
     }
 
     fn label(&mut self, scope: &mut Scope, plan: &ast::Plan) -> (String, bool) {
@@ -51,12 +52,12 @@ impl Checker<'_> {
         (label.name.text.clone(), atomic)
     }
 
-    fn trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Trigger> {
+    fn trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
         let literal = &trigger.literal;
         let make: fn(BeliefId) -> TriggerOn = match trigger.kind {
-            TriggerKind::Added => TriggerOn::Added,
-            TriggerKind::Removed => TriggerOn::Removed,
-            TriggerKind::Test => TriggerOn::Test,
+            TriggerKind::Added => TriggerOn::BeliefAdded,
+            TriggerKind::Removed => TriggerOn::BeliefRemoved,
+            TriggerKind::Test => TriggerOn::TestAdded,
             TriggerKind::TestFailed => TriggerOn::TestFailed,
             TriggerKind::Achieve | TriggerKind::Failed => return self.goal_trigger(scope, trigger, env),
             TriggerKind::On => return self.event_trigger(scope, literal, env),
@@ -65,7 +66,7 @@ impl Checker<'_> {
         Some((make(literal.belief), literal.args, literal.annotations))
     }
 
-    fn goal_trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Trigger> {
+    fn goal_trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
         let literal = &trigger.literal;
         self.not_negated(literal, "a goal");
         let goal = self.goal(scope, &literal.call);
@@ -74,11 +75,11 @@ impl Checker<'_> {
         let annotations = self.matched_annotations(&literal.annotations, Some(&[]), env, true);
         let goal = goal?;
         let achieve = trigger.kind == TriggerKind::Achieve;
-        let on = if achieve { TriggerOn::Achieve(goal) } else { TriggerOn::Failed(goal) };
+        let on = if achieve { TriggerOn::GoalAdded(goal) } else { TriggerOn::GoalFailed(goal) };
         Some((on, args, annotations))
     }
 
-    fn event_trigger(&mut self, scope: &Scope, literal: &ast::Literal, env: &mut Env) -> Option<Trigger> {
+    fn event_trigger(&mut self, scope: &Scope, literal: &ast::Literal, env: &mut Env) -> Option<Matched> {
         let call = &literal.call;
         self.not_negated(literal, "an event");
         if let Some(first) = literal.annotations.first() {

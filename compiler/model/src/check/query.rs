@@ -8,11 +8,12 @@ use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, Unar
 use super::{
     Checker, Env,
     env::{Local, Scope},
+    linear::{Linear, linear},
     table::Map,
 };
 use crate::{
-    Ask, ClockBound, ClockId, ClockOp, Dim, Expr, ExprKind, Formula, Kind, Leaf, Linear, LocationId, Measure,
-    NetworkId, PlayerRef, Query, Value,
+    Ask, ClockConstraint, ClockId, ClockOp, Dim, ExprKind, Formula, Kind, Leaf, LocationId, Measure,
+    NetworkId, PlayerRef, Query,
     noun::Noun,
     report::{names, queries},
 };
@@ -53,6 +54,7 @@ impl Checker<'_> {
 
     fn query(&mut self, query: &ast::Query, span: Span) -> Option<Query> {
         let network = self.networks.get(&query.network.text).map(NetworkId);
+        self.refer(&query.network, self.networks.span_of(&query.network.text));
         let Some(network) = network else {
             let all: Vec<String> = self.networks.names().map(str::to_owned).collect();
             self.unknown(Noun::Network, &query.network, &all, None);
@@ -184,6 +186,15 @@ impl Checker<'_> {
         matches!(id, Some(PlayerRef::Automaton(_))) && self.enums.get(&name.text).is_none()
     }
 
+    /// A name is that of a location, variable or clock of an automaton.
+    fn refer_member(&mut self, automaton: &Name, member: &Name) {
+        let Some(at) = self.s.automata.iter().position(|a| a.name == automaton.text) else { return };
+        let Some(scope) = self.automaton_scopes.get(&at).cloned() else { return };
+        let known = Env { own: scope.clone(), ..Env::default() };
+        let place = known.place_of(&member.text).or_else(|| scope.locations.get(&member.text).copied());
+        self.refer(member, place);
+    }
+
     /// Whether the automaton is in the network and has something of this name, and one thing only.
     fn has_member(&mut self, automaton: &Name, member: &Name, net: &Net) -> bool {
         if !net.automata.contains(&automaton.text) {
@@ -199,6 +210,8 @@ impl Checker<'_> {
             return false;
         }
         let known = variable || location || net.clocks.contains_key(&name);
+        self.refer(automaton, self.players.span_of(&automaton.text));
+        self.refer_member(automaton, member);
         if !known && !self.unread_items {
             let all = net.members_of(&automaton.text);
             let near = all.iter().map(String::as_str);
@@ -323,9 +336,14 @@ impl Checker<'_> {
             if time.kind == ExprKind::Error {
                 return Some(nothing());
             }
-            if linear(&time, factor, &mut bound).is_none() {
-                self.report(queries::not_linear(e.span));
-                return Some(nothing());
+            match linear(&time) {
+                Ok(sum) => bound.add(sum, factor),
+                Err(at) => {
+                    if at.is_some() {
+                        self.report(queries::not_linear(e.span));
+                    }
+                    return Some(nothing());
+                }
             }
         }
         let (clock, minus, flipped) = match (sum.plus.as_slice(), sum.minus.as_slice()) {
@@ -337,13 +355,12 @@ impl Checker<'_> {
                 return Some(nothing());
             }
         };
-        if flipped {
-            bound.seconds = -bound.seconds;
-            bound.terms.iter_mut().for_each(|(factor, _)| *factor = -*factor);
-        }
+        let Some(bound) = self.time_of(bound, if flipped { -1.0 } else { 1.0 }, span) else {
+            return Some(nothing());
+        };
         let one = |op: &ClockOp| {
             let op = if flipped { mirrored(*op) } else { *op };
-            Formula::Clock(ClockBound { clock, minus, op, bound: bound.clone() })
+            Formula::Clock(ClockConstraint { clock, minus, op, bound: bound.clone() })
         };
         Some(match ops {
             [only] => one(only),
@@ -443,46 +460,6 @@ fn mirrored(op: ClockOp) -> ClockOp {
         ClockOp::Eq => ClockOp::Eq,
         ClockOp::Ge => ClockOp::Le,
         ClockOp::Gt => ClockOp::Lt,
-    }
-}
-
-/// Adds `factor · e`, a time, to a sum. `None`: it is no sum of constants and multiples of integers.
-fn linear(e: &Expr, factor: f64, sum: &mut Linear) -> Option<()> {
-    if let Some(t) = e.constant().and_then(Value::number) {
-        sum.seconds += factor * t;
-        return Some(());
-    }
-    match &e.kind {
-        ExprKind::Unary(UnaryOp::Neg, a) => linear(a, -factor, sum),
-        ExprKind::Binary(BinaryOp::Add, a, b) => {
-            linear(a, factor, sum)?;
-            linear(b, factor, sum)
-        }
-        ExprKind::Binary(BinaryOp::Sub, a, b) => {
-            linear(a, factor, sum)?;
-            linear(b, -factor, sum)
-        }
-        ExprKind::Binary(BinaryOp::Mul, a, b) => match (a.constant().and_then(Value::number), &b.ty) {
-            (Some(t), Kind::Int) => {
-                sum.terms.push((factor * t, (**b).clone()));
-                Some(())
-            }
-            (Some(t), _) => linear(b, factor * t, sum),
-            (None, _) => {
-                let t = b.constant().and_then(Value::number)?;
-                if a.ty == Kind::Int {
-                    sum.terms.push((factor * t, (**a).clone()));
-                    Some(())
-                } else {
-                    linear(a, factor * t, sum)
-                }
-            }
-        },
-        ExprKind::Binary(BinaryOp::Div, a, b) => {
-            let t = b.constant().and_then(Value::number)?;
-            linear(a, factor / t, sum)
-        }
-        _ => None,
     }
 }
 

@@ -1,9 +1,7 @@
 //! In which range a whole number lies, whatever the values of the variables in it.
 
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
-
 use super::Env;
-use crate::{Expr, ExprKind, Function, Kind, Value};
+use crate::{BinaryOp, Expr, ExprKind, Kind, NumberFunction, UnaryOp, Value};
 
 /// The smallest and largest value that is possible; `None` if that is not known.
 pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
@@ -20,7 +18,7 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
         | ExprKind::Error => None,
         ExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),
         // The elements of an array are of one type.
-        ExprKind::Element(place) => env.of_leaf(place.leaf).and_then(|l| l.range),
+        ExprKind::Element(place) => env.of_leaf(place.slot).and_then(|l| l.range),
         ExprKind::Apply(_, _, ty) => ty.range(),
         ExprKind::Unary(UnaryOp::Neg, a) => {
             let (lo, hi) = of(a, env)?;
@@ -35,14 +33,17 @@ pub(super) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
         ExprKind::Call(f, args) => {
             let ranges: Vec<(i64, i64)> = args.iter().map(|a| of(a, env)).collect::<Option<_>>()?;
             match (f, ranges.as_slice()) {
-                (Function::Min, [a, b]) => Some((a.0.min(b.0), a.1.min(b.1))),
-                (Function::Max, [a, b]) => Some((a.0.max(b.0), a.1.max(b.1))),
-                (Function::Abs, [(lo, hi)]) => {
+                (NumberFunction::Min, [a, b]) => Some((a.0.min(b.0), a.1.min(b.1))),
+                (NumberFunction::Max, [a, b]) => Some((a.0.max(b.0), a.1.max(b.1))),
+                (NumberFunction::Abs, [(lo, hi)]) => {
                     let (low, high) = (lo.checked_abs()?, hi.checked_abs()?);
                     let least = if *lo <= 0 && *hi >= 0 { 0 } else { low.min(high) };
                     Some((least, low.max(high)))
                 }
-                (Function::Min | Function::Max | Function::Abs | Function::Norm, _) => None,
+                (
+                    NumberFunction::Min | NumberFunction::Max | NumberFunction::Abs | NumberFunction::Norm,
+                    _,
+                ) => None,
             }
         }
     }

@@ -122,8 +122,8 @@ impl Checker<'_> {
             }
         }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
-        let (span, head) = (clause.span, head.span);
-        Some(Found { rule: Rule { belief: belief?, args, body, vars, span, head }, modes })
+        let (origin, head) = (clause.span, head.span);
+        Some(Found { rule: Rule { belief: belief?, args, body, vars, head, origin }, modes })
     }
 
     /// What the body gives the head's variables must be of the belief's types.
@@ -141,7 +141,7 @@ impl Checker<'_> {
         for (arg, param) in args.iter().zip(&params) {
             let Arg::Var(var) = arg else { continue };
             let Some(local) = env.locals.get(usize::from(*var)).filter(|l| l.bound) else { continue };
-            let (got, want): (Kind, Kind) = (local.ty, param.ty.kind());
+            let (got, want): (Kind, Kind) = (local.ty, Kind::of(param.ty));
             let numbers = got.is_bare() && want.is_bare();
             if heads.contains_key(var) && !numbers && got.with(want).is_none() {
                 self.report(types::other_before(&local.name, &want.to_string(), &got.to_string(), span));

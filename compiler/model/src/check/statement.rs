@@ -1,11 +1,12 @@
 //! The statements of functions.
 
-use hrdsl_syntax::ast::{self, Access, BinaryOp, Name, StatementKind as Syntax};
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Access, Name, StatementKind as Syntax};
 
 use super::{Checker, Env, place::type_of};
 use crate::{
-    Expr, ExprKind, Kind, Leaf, Place, Statement, Type, Value, Var, noun::Noun, report::functions,
-    types::Layout,
+    BinaryOp, Expr, ExprKind, Kind, Leaf, Place, Statement, Type, Value, Var, noun::Noun, report::functions,
+    types::Layout, types::starting_var,
 };
 
 /// The range of a loop's variable where nothing is known of its ends.
@@ -17,7 +18,7 @@ pub(super) struct Body<'n> {
     /// As in [`Callable`](super::env::Callable).
     result: Option<Option<Type>>,
     /// INVARIANT: the locals of the environment are the parameters, then these.
-    pub locals: Vec<Var>,
+    pub locals: Vec<(Var, Span)>,
     /// The places of the variables of loops.
     loops: Vec<u16>,
     /// A statement may be executed more than once.
@@ -46,7 +47,7 @@ pub(super) fn returns(statements: &[Statement]) -> bool {
         Statement::Return(_) => true,
         Statement::If { then, otherwise, .. } => returns(then) && returns(otherwise),
         Statement::While { condition, .. } => condition.constant() == Some(Value::Bool(true)),
-        Statement::Assign(..) | Statement::Call(..) | Statement::For { .. } => false,
+        Statement::Assign { .. } | Statement::Call { .. } | Statement::For { .. } => false,
     })
 }
 
@@ -81,7 +82,7 @@ impl Checker<'_> {
                 self.assign_in_function((target, access), *op, value, env, body, out);
             }
             Syntax::Call(call) => match self.called_function(call, env) {
-                Some((id, args)) => out.push(Statement::Call(id, args)),
+                Some((id, args)) => out.push(Statement::Call { function: id, args: args }),
                 None if env.function(&call.name.text).is_some() => {}
                 None => self.no_such_statement(call, env),
             },
@@ -133,12 +134,12 @@ impl Checker<'_> {
         let mut values = values.into_iter();
         for ((name, ty), i) in leaves.into_iter().zip(first..) {
             let init = super::vocabulary::nearest_to_zero(ty);
-            body.locals.push(Var { name, ty, init, span });
+            body.locals.push((starting_var(&name, ty, init), span));
             let value = values.next().filter(|_| given);
             // In a loop it starts anew each time.
-            let again = body.again.then(|| Expr::value(init, ty.kind(), span));
+            let again = body.again.then(|| Expr::value(init, Kind::of(ty), span));
             if let Some(value) = value.or(again) {
-                out.push(Statement::Assign(Place { leaf: Leaf::Local(i), indices: Vec::new() }, value));
+                out.push(Statement::Assign { place: Place::slot(Leaf::Local(i)), value });
             }
         }
     }
@@ -181,7 +182,9 @@ impl Checker<'_> {
             return;
         }
         let assigned = self.assigned(target, (layout, access), op, value, env);
-        out.extend(assigned.into_iter().map(|(place, value)| Statement::Assign(place, value)));
+        out.extend(
+            assigned.into_iter().map(|(place, value)| Statement::Assign { place: place, value: value }),
+        );
     }
 
     /// A call of what is no function.
@@ -219,8 +222,8 @@ impl Checker<'_> {
         let ty = Type::Int { lo: least, hi: most.max(least) };
         let local = env.next_local();
         self.check_free(env, Noun::Variable, name);
-        env.push_typed(&name.text, Noun::Variable, ty);
-        body.locals.push(Var { name: name.text.clone(), ty, init: Value::Int(least), span: name.span });
+        env.push_typed(&name.text, name.span, Noun::Variable, ty);
+        body.locals.push((starting_var(&name.text, ty, Value::Int(least)), name.span));
         body.loops.push(local);
         let again = std::mem::replace(&mut body.again, true);
         let inner = self.block(inner, env, body);
@@ -228,7 +231,7 @@ impl Checker<'_> {
         if let Some(l) = env.locals.get_mut(usize::from(local)) {
             l.name.clear();
         }
-        Some(Statement::For { local, lo, hi: hi?, body: inner })
+        Some(Statement::For { slot: Leaf::Local(local), lo, hi: hi?, body: inner })
     }
 
     /// `return e`

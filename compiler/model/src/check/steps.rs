@@ -12,7 +12,7 @@ use crate::{Context, Dim, Expr, GoalId, Kind, Step, StepKind, Value, noun::Noun,
 
 impl Checker<'_> {
     pub(super) fn plan_body(&mut self, scope: &Scope, steps: &[ast::Step], env: &mut Env) -> Vec<Step> {
-        let step = |s: &ast::Step| Some(Step { kind: self.step(scope, s, env)?, span: s.span });
+        let step = |s: &ast::Step| Some(Step { kind: self.step(scope, s, env)?, origin: s.span });
         steps.iter().filter_map(step).collect()
     }
 
@@ -22,11 +22,11 @@ impl Checker<'_> {
             Syntax::Achieve { call, within } => {
                 let (goal, args) = self.adopt(scope, call, env);
                 let within = within.as_ref().map(|e| self.duration(e, "the time for the goal", env));
-                StepKind::Achieve(goal?, args, within)
+                StepKind::Achieve { goal: goal?, args: args, within: within }
             }
             Syntax::Spawn(call) => {
                 let (goal, args) = self.adopt(scope, call, env);
-                StepKind::Spawn(goal?, args)
+                StepKind::Spawn { goal: goal?, args: args }
             }
             Syntax::Query(literal) => StepKind::Query(self.literal(scope, literal, env, (true, true))?),
             Syntax::Test(formula) => StepKind::Test(self.context(scope, formula, env)),
@@ -44,7 +44,7 @@ impl Checker<'_> {
                 let within = within.as_ref().map(|e| self.duration(e, "the time to wait", env));
                 StepKind::Await { events: patterns, within }
             }
-            Syntax::Wait(time) => StepKind::Wait(self.expr_of(time, Kind::Float(Dim::TIME), env)),
+            Syntax::Wait(time) => StepKind::Wait { seconds: self.expr_of(time, Kind::Float(Dim::TIME), env) },
             Syntax::Internal(call) => self.internal_step(scope, call, env)?,
             Syntax::If { condition, then, otherwise } => {
                 self.if_step(scope, condition, (then, otherwise), step.span, env)
@@ -111,7 +111,7 @@ impl Checker<'_> {
     /// A time; one that is known must be positive.
     pub(super) fn duration(&mut self, e: &ast::Expr, what: &str, env: &mut Env) -> Expr {
         let time = self.expr_of(e, Kind::Float(Dim::TIME), env);
-        if let Some(t) = time.constant().and_then(Value::number) {
+        if let Some(t) = time.constant().and_then(Value::as_f64) {
             if t <= 0.0 {
                 self.report(types::must_be(what, "more than 0 s", e.span));
             } else if t > MAX_TIME {
@@ -127,7 +127,8 @@ impl Checker<'_> {
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
         self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
         let fields = self.fields_of(event);
-        Some(StepKind::Do(event, self.args(self.noun_of(event), call, &fields, env)))
+        let args = self.args(self.noun_of(event), call, &fields, env);
+        Some(StepKind::Do { event, args })
     }
 
     fn adopt(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> (Option<GoalId>, Vec<Expr>) {

@@ -1,16 +1,16 @@
 //! The bodies of stimuli: samples, emitted events, and what is done to the world.
 
+use hrdsl_ir::Unit;
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, SampleRange, StimulusStepKind as Step};
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name, SampleRange, StimulusStepKind as Step};
 
 use super::{Checker, Env, NOBODY, measure::text};
 use crate::{
-    ActorId, BodyRef, Dim, EventId, Expr, GripperId, Kind, Motion, Sample, Stimulus, StimulusStep, Type,
-    Value,
+    ActorId, BinaryOp, BodyRef, Dim, EventId, Expr, GripperId, Kind, Motion, Point, Sample, Stimulus,
+    StimulusStep, Type, Value, WorldAction,
     noun::Noun,
     report::{names, roles, types, world},
     types::Layout,
-    world::{Action, Point},
 };
 
 const ACTIONS: [&str; 4] = ["move_to", "look_at", "grasp", "let_go"];
@@ -57,8 +57,8 @@ impl Checker<'_> {
                 }
                 Step::Emit(call) => resolved.extend(self.emit(call, by, env)),
                 Step::Hold(time) => {
-                    let time = self.expr_of(time, Kind::Float(Dim::TIME), env);
-                    resolved.push(StimulusStep::Hold(time));
+                    let seconds = self.expr_of(time, Kind::Float(Dim::TIME), env);
+                    resolved.push(StimulusStep::Hold { seconds });
                 }
                 Step::Act { path, args } => {
                     resolved.extend(self.act(path, args, step.span, env).map(StimulusStep::Act));
@@ -85,18 +85,23 @@ impl Checker<'_> {
                 let (lo, hi) = (numbers.iter().min().copied(), numbers.iter().max().copied());
                 Type::Int { lo: lo.unwrap_or(0), hi: hi.unwrap_or(0) }
             }
-            Kind::Float(dim) => Type::Float(dim),
+            Kind::Float(dim) => Type::Float(dim.unit()),
             Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
-                Type::Float(Dim::NUMBER)
+                Type::Float(Unit::None)
             }
         };
         if lo.ty == Kind::Unknown {
             // Its range has a diagnostic; nothing follows from its type.
             self.check_free(env, Noun::Sample, name);
-            env.push_local(&name.text, Noun::Sample, Kind::Unknown);
+            env.push_local(&name.text, name.span, Noun::Sample, Kind::Unknown);
         } else {
             self.add_local(env, name, Noun::Sample, &Layout::Scalar(ty));
+            // Its dimension may have no unit of its own.
+            if let Some(local) = env.locals.last_mut() {
+                local.ty = lo.ty;
+            }
         }
+        self.s.names.infer(name.span, lo.ty.to_string());
         samples.push(Sample { name: name.text.clone(), ty, lo, hi });
     }
 
@@ -162,7 +167,13 @@ impl Checker<'_> {
         Some(StimulusStep::Emit { event, args: self.args(Noun::Event, call, &fields, env) })
     }
 
-    fn act(&mut self, path: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Option<Action> {
+    fn act(
+        &mut self,
+        path: &ast::Path,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut Env,
+    ) -> Option<WorldAction> {
         let (action, of) = path.names.split_last()?;
         let chosen = self.choice(Noun::Action, action, &ACTIONS)?;
         if of.is_empty() {
@@ -182,7 +193,7 @@ impl Checker<'_> {
                 let body = self.movable(of);
                 let to = self.point(&args[0], env);
                 let over = self.expr_of(&args[1], Kind::Float(Dim::TIME), env);
-                Some(Action::Move { body: body?, to: to?, over })
+                Some(WorldAction::Move { body: body?, to: to?, over })
             }
             1 => {
                 let body = self.movable(of);
@@ -190,10 +201,10 @@ impl Checker<'_> {
                 let offset = self.expr_of(&args[1], Kind::Float(Dim::LENGTH), env);
                 let distance = self.expr_of(&args[2], Kind::Float(Dim::LENGTH), env);
                 let angle = self.expr_of(&args[3], Kind::Float(Dim::ANGLE), env);
-                Some(Action::Look { body: body?, at: at?, offset, distance, angle })
+                Some(WorldAction::Look { body: body?, at: at?, offset, distance, angle })
             }
-            2 => self.world_name(Noun::Gripper, of, "").map(|g| Action::Grasp(GripperId(g))),
-            _ => self.world_name(Noun::Gripper, of, "").map(|g| Action::LetGo(GripperId(g))),
+            2 => self.world_name(Noun::Gripper, of, "").map(|g| WorldAction::Grasp { gripper: GripperId(g) }),
+            _ => self.world_name(Noun::Gripper, of, "").map(|g| WorldAction::LetGo { gripper: GripperId(g) }),
         }
     }
 
@@ -231,10 +242,11 @@ impl Checker<'_> {
             {
                 let of = self.body_arg(left, "");
                 let offset = self.offset(right, *op == BinaryOp::Sub, env);
-                Some(Point { of: Some(of?), offset: Some(offset?) })
+                Some(Point { of: Some(of?), offset: offset? })
             }
             Syntax::Path(path) if self.is_body(e, env) => {
-                Some(Point { of: Some(self.body_ref(&path.names, "")?), offset: None })
+                let zero = || Expr::value(Value::Float(0.0), Kind::Float(Dim::LENGTH), path.span);
+                Some(Point { of: Some(self.body_ref(&path.names, "")?), offset: [zero(), zero(), zero()] })
             }
             Syntax::Tuple(_)
             | Syntax::Path(_)
@@ -242,7 +254,7 @@ impl Checker<'_> {
             | Syntax::Field { .. }
             | Syntax::Binary { .. }
             | Syntax::Unary { .. }
-            | Syntax::If { .. } => Some(Point { of: None, offset: Some(self.offset(e, false, env)?) }),
+            | Syntax::If { .. } => Some(Point { of: None, offset: self.offset(e, false, env)? }),
             Syntax::Error => None,
             Syntax::Bool(_)
             | Syntax::Int(_)
@@ -269,9 +281,9 @@ impl Checker<'_> {
         env.find(first).is_none() && env.layout(first).is_none() && !self.consts.contains_key(first.as_str())
     }
 
-    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut Env) -> Option<Box<[Expr; 3]>> {
+    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut Env) -> Option<[Expr; 3]> {
         let known = self.issues.len();
-        let lengths = Layout::Array(Box::new(Layout::Scalar(Type::Float(Dim::LENGTH))), 3);
+        let lengths = Layout::Array(Box::new(Layout::Scalar(Type::Float(Unit::Metre))), 3);
         let mut parts = Vec::new();
         self.item_for(e, &lengths, env).flatten(&mut parts);
         if negative {
@@ -286,7 +298,7 @@ impl Checker<'_> {
         {
             issue.help = not_a_point(e.span).help;
         }
-        <[Expr; 3]>::try_from(parts).ok().map(Box::new)
+        <[Expr; 3]>::try_from(parts).ok()
     }
 }
 

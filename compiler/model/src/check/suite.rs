@@ -1,5 +1,6 @@
 //! Suites: how tests are made.
 
+use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
@@ -84,16 +85,23 @@ impl Checker<'_> {
                 }
                 let (stimuli, awaits) = (said.stimuli, said.awaits);
                 let (length, pause) = (said.length.unwrap_or((5, 20)), said.pause.unwrap_or((0.0, 10.0)));
-                Method::Random { stimuli, awaits, length, pause }
+                Method::Random {
+                    stimuli,
+                    awaits,
+                    length_lo: length.0,
+                    length_hi: length.1,
+                    pause_lo: nanos(pause.0),
+                    pause_hi: nanos(pause.1),
+                }
             }
         };
         Some(Suite {
             name: suite.name.text.clone(),
             method,
             tests: said.tests.unwrap_or(100),
-            horizon: said.horizon.unwrap_or(300.0),
-            patience: said.patience.unwrap_or(60.0),
-            span,
+            horizon: nanos(said.horizon.unwrap_or(300.0)),
+            patience: nanos(said.patience.unwrap_or(60.0)),
+            origin: span,
         })
     }
 
@@ -108,6 +116,7 @@ impl Checker<'_> {
                 self.unknown(Noun::Player, name, &all, None);
                 continue;
             };
+            self.refer(name, self.players.span(id));
             let player = self.player_ids[usize::from(id)];
             let actor = match player {
                 PlayerRef::Agent(a) => Some(self.s.agents[usize::from(a.0)].actor),
@@ -138,6 +147,7 @@ impl Checker<'_> {
 
     fn suite_network(&mut self, name: &Name) -> Option<NetworkId> {
         let found = self.networks.get(&name.text).map(NetworkId);
+        self.refer(name, self.networks.span_of(&name.text));
         if found.is_none() {
             let all: Vec<String> = self.networks.names().map(str::to_owned).collect();
             self.unknown(Noun::Network, name, &all, None);
@@ -230,6 +240,7 @@ impl Checker<'_> {
             Member::Patience(e) => said.patience = self.time(e, "the patience", true),
             Member::ReachBins(name) => match self.crosses.get(&name.text) {
                 Some(id) => {
+                    self.refer(name, self.crosses.span(id));
                     said.goals.push(SearchGoal::Bins(CrossId(id)));
                     said.reached.push(ModelGoal::Bins(CrossId(id)));
                 }
@@ -264,6 +275,7 @@ impl Checker<'_> {
                 self.unknown(Noun::Requirement, name, &all, None);
                 continue;
             }
+            self.refer(name, self.requirement_names.span_of(&name.text));
             // One with a diagnostic is in no list.
             let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
             if reads_signals(&self.s.requirements[at].pattern) {
@@ -287,6 +299,7 @@ impl Checker<'_> {
             self.unknown(Noun::Query, name, &all, None);
             return None;
         }
+        self.refer(name, self.queries.span_of(&name.text));
         let at = self.s.queries.iter().position(|q| q.name == name.text)?;
         match &self.s.queries[at].ask {
             Ask::Possibly(f) if f.asks_deadlock() => {
@@ -360,6 +373,7 @@ impl Checker<'_> {
             self.unknown(Noun::Agent, agent, &all, None);
             return None;
         };
+        self.refer(agent, self.players.span_of(&agent.text));
         // A player whose name is wrong may be the one that is missing.
         if !players.contains(&PlayerRef::Agent(id)) && !self.unknown_player {
             let message = format!("`{}` does not play in this suite", agent.text);
@@ -371,6 +385,8 @@ impl Checker<'_> {
             self.unknown(Noun::Belief, belief, &all, None);
             return None;
         };
+        let place = table.span(belief_id.0);
+        self.refer(belief, place);
         let params = self.s.agents[usize::from(id.0)].beliefs[usize::from(belief_id.0)].params.clone();
         if let Some(param) = params.iter().find(|p| !p.ty.is_finite()) {
             let message =
@@ -390,6 +406,9 @@ impl Checker<'_> {
                     self.unknown(Noun::Parameter, per, &all, Some(Noun::Parameter));
                     return None;
                 };
+                if let Some(place) = place {
+                    self.refer_within(per, place, "parameter");
+                }
                 ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
             }
         };
@@ -407,7 +426,7 @@ impl Checker<'_> {
             self.report(super::too_many(message, formula.span));
         }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
-        Some(ChoiceCondition { context, vars, span: formula.span })
+        Some(ChoiceCondition { context, vars, origin: formula.span })
     }
 
     /// A stimulus that a test can do.
@@ -447,7 +466,7 @@ impl Checker<'_> {
             return None;
         };
         self.ordered(&lo, &hi, range.span);
-        let (lo, hi) = (lo.constant()?.number()?, hi.constant()?.number()?);
+        let (lo, hi) = (lo.constant()?.as_f64()?, hi.constant()?.as_f64()?);
         if lo < 0.0 {
             self.report(types::must_be("a pause", "at least 0 s", range.span));
         }

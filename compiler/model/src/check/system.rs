@@ -1,5 +1,6 @@
 //! The system under test.
 
+use hrdsl_ir::value::{SECOND, nanos};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, SystemMemberKind as Member};
 
@@ -33,24 +34,24 @@ impl Checker<'_> {
         let actor = actor.unwrap_or(ActorId(0));
         let mut resolved = System {
             actor,
-            run: String::new(),
+            run: Vec::new(),
             coverage: Vec::new(),
-            limit: 300.0,
-            budget: 10.0,
+            limit: 300 * SECOND,
+            budget: 10 * SECOND,
             cpu: None,
             wall: None,
             memory: None,
             output: None,
             env: Vec::new(),
             online: false,
-            span,
+            origin: span,
         };
         let mut runs = false;
         for member in &system.members {
             match &member.kind {
                 Member::Run(text) => {
                     runs = true;
-                    resolved.run.clone_from(&text.text);
+                    resolved.run = words(&text.text);
                     if text.text.trim().is_empty() {
                         self.report(names::missing(
                             text.span,
@@ -60,10 +61,14 @@ impl Checker<'_> {
                     }
                 }
                 Member::Coverage(files) => resolved.coverage.extend(files.iter().map(|f| f.text.clone())),
-                Member::Limit(e) => resolved.limit = self.time(e, "the limit", true).unwrap_or(300.0),
-                Member::Budget(e) => resolved.budget = self.time(e, "the budget", true).unwrap_or(10.0),
-                Member::Cpu(e) => resolved.cpu = self.time(e, "the processor time", true),
-                Member::Wall(e) => resolved.wall = self.time(e, "the wall time", true),
+                Member::Limit(e) => {
+                    resolved.limit = self.time(e, "the limit", true).map_or(resolved.limit, nanos);
+                }
+                Member::Budget(e) => {
+                    resolved.budget = self.time(e, "the budget", true).map_or(resolved.budget, nanos);
+                }
+                Member::Cpu(e) => resolved.cpu = self.time(e, "the processor time", true).map(nanos),
+                Member::Wall(e) => resolved.wall = self.time(e, "the wall time", true).map(nanos),
                 Member::Memory(e) => resolved.memory = self.amount_of_data(e, "the memory"),
                 Member::Output(e) => resolved.output = self.amount_of_data(e, "the output"),
                 Member::Env(names) => resolved.env.extend(names.iter().map(|n| n.text.clone())),
@@ -76,5 +81,35 @@ impl Checker<'_> {
             self.report(names::missing(system.actor.span, message, "add `run \"python3 robot.py\"`"));
         }
         resolved
+    }
+}
+
+/// Splits a command at white space; quotes, single or double, keep words together.
+fn words(command: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word: Option<String> = None;
+    let mut quote: Option<char> = None;
+    for c in command.chars() {
+        match quote {
+            Some(q) if c == q => quote = None,
+            Some(_) => word.get_or_insert_default().push(c),
+            None if c == '"' || c == '\'' => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            None if c.is_whitespace() => words.extend(word.take()),
+            None => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn commands_split_at_white_space_outside_of_quotes() {
+        assert_eq!(super::words(" python3  robot.py "), ["python3", "robot.py"]);
+        assert_eq!(super::words(r#"sh -c "a b" '' x'y z'"#), ["sh", "-c", "a b", "", "xy z"]);
     }
 }

@@ -20,7 +20,7 @@ pub(super) enum Due {
 impl Due {
     pub fn kind(self) -> Kind {
         match self {
-            Due::Type(ty) => ty.kind(),
+            Due::Type(ty) => Kind::of(ty),
             Due::Kind(kind) => kind,
         }
     }
@@ -203,10 +203,12 @@ impl Checker<'_> {
             Some(_) => {}
             None if binds => match due {
                 Due::Type(ty) => {
-                    env.push_typed(&name.text, Noun::Variable, ty);
+                    env.push_typed(&name.text, name.span, Noun::Variable, ty);
+                    self.define_here(name, kind);
                 }
                 Due::Kind(_) => {
-                    env.push_local(&name.text, Noun::Variable, kind);
+                    env.push_local(&name.text, name.span, Noun::Variable, kind);
+                    self.define_here(name, kind);
                 }
             },
             None => {}
@@ -240,7 +242,7 @@ impl Checker<'_> {
         }
         let declared = belief.map(|b| self.annotations_of(scope, b));
         let annotations = self.matched_annotations(&literal.annotations, declared.as_deref(), env, binds);
-        Some(Literal { belief: belief?, args, annotations, span: literal.span })
+        Some(Literal { belief: belief?, args, annotations, origin: literal.span })
     }
 
     /// A belief that is made: its arguments have values.

@@ -1,5 +1,10 @@
 //! Tests: written by hand or by a generator, in the scenario's vocabulary.
 
+use hrdsl_ir::{
+    coverage::BinName,
+    test::{Provenance, TestMethod},
+    value::nanos,
+};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ItemKind, Name, TestMemberKind as Member, Text};
 
@@ -7,7 +12,7 @@ use super::{Checker, Env, measure::text, table::Table};
 use crate::{
     Kind, Test, TestStep, Value,
     noun::Noun,
-    report::{names, tests::bad_test, types},
+    report::{names, scenario_tests::bad_test, types},
 };
 
 impl Checker<'_> {
@@ -40,11 +45,17 @@ impl Checker<'_> {
 
     fn test(&mut self, test: &ast::Test, span: Span, table: &mut Table) {
         let full = text(&test.name.names);
-        let suite = test.name.names.split_last().map_or_else(String::new, |(_, before)| text(before));
-        let method = "hand".to_owned();
-        let (because, predicts, steps) = (Vec::new(), Vec::new(), Vec::new());
-        let mut resolved =
-            Test { name: full.clone(), suite, seed: 0, method, because, predicts, steps, span };
+        // Its full name starts with the scenario's, whether that is written or not.
+        let prefix = format!("{}.", self.s.name);
+        let short = full.strip_prefix(&prefix).unwrap_or(&full);
+        let suite = short.rsplit_once('.').map_or("", |(suite, _)| suite).to_owned();
+        let mut resolved = Test {
+            name: format!("{prefix}{short}"),
+            seed: 0,
+            provenance: Provenance { suite, ..Provenance::default() },
+            steps: Vec::new(),
+            origin: span,
+        };
         for member in &test.members {
             self.test_member(&member.kind, &mut resolved);
         }
@@ -58,24 +69,25 @@ impl Checker<'_> {
         match member {
             Member::Seed(e) => test.seed = self.seed(e),
             Member::Method(name) => {
-                if self.choice(Noun::Method, name, &["agents", "search", "random", "hand"]).is_some() {
-                    test.method.clone_from(&name.text);
+                let words = TestMethod::ALL.map(TestMethod::word);
+                if let Some(at) = self.choice(Noun::Method, name, &words) {
+                    test.provenance.method = TestMethod::ALL[at];
                 }
             }
-            Member::Because(text) => test.because.push(text.text.clone()),
+            Member::Because(text) => test.provenance.because.push(text.text.clone()),
             Member::Predicts(text) => {
                 self.predicted(text);
-                test.predicts.push(text.text.clone());
+                test.provenance.predicts.extend(BinName::parse(&text.text));
             }
             Member::Do { call, with } => test.steps.extend(self.test_do(call, with)),
             Member::Await { events, within } => {
                 let events = self.patterns(events);
-                let within = self.time(within, "the time to wait", true).unwrap_or(1.0);
+                let within = nanos(self.time(within, "the time to wait", true).unwrap_or(1.0));
                 test.steps.push(TestStep::Await { events, within });
             }
             Member::Wait(e) => {
-                let time = self.time(e, "the time to wait", false).unwrap_or(0.0);
-                test.steps.push(TestStep::Wait(time));
+                let time = nanos(self.time(e, "the time to wait", false).unwrap_or(0.0));
+                test.steps.push(TestStep::Wait { time });
             }
             Member::Error => {}
         }
@@ -127,8 +139,9 @@ impl Checker<'_> {
         call: &Call,
         with: &[(Name, ast::Expr)],
     ) -> Option<Vec<Value>> {
-        let stimulus = self.s.events[usize::from(event.0)].stimulus.clone().unwrap_or_default();
-        let all: Vec<String> = stimulus.samples.iter().map(|s| s.name.clone()).collect();
+        let stimulus = self.s.events[usize::from(event.0)].stimulus.as_ref();
+        let declared = stimulus.map_or_else(Vec::new, |s| s.samples.clone());
+        let all: Vec<String> = declared.iter().map(|s| s.name.clone()).collect();
         let mut values: Vec<Option<Value>> = vec![None; all.len()];
         let mut misspelt = false;
         for (name, value) in with {
@@ -137,10 +150,14 @@ impl Checker<'_> {
                 misspelt = true;
                 continue;
             };
+            if let Some(place) = self.events.span(event.0) {
+                self.refer_within(name, place, "sample");
+            }
             if values[at].is_some() {
                 self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));
             }
-            let e = self.expr_for(value, stimulus.samples[at].ty, &mut Env::constants());
+            let e = self.expr_of(value, declared[at].lo.ty, &mut Env::constants());
+            self.in_range(&e, declared[at].ty);
             if e.constant().is_none() && e.ty != Kind::Unknown {
                 self.report(types::not_constant(e.span));
             }

@@ -1,7 +1,8 @@
 //! What could not be read may have declared the name that is missed: one bad declaration costs that one alone.
 
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, ItemKind, WorldMember, WorldMemberKind,
+    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, DeviceMemberKind, ItemKind, WorldMember,
+    WorldMemberKind,
 };
 
 use crate::noun::Noun;
@@ -13,6 +14,7 @@ pub(super) fn in_item(item: &ItemKind) -> bool {
         ItemKind::Error => true,
         ItemKind::World(world) => broken(&world.members),
         ItemKind::Part(part) => broken(&part.members),
+        ItemKind::Device(device) => device.members.iter().any(|m| m.kind == DeviceMemberKind::Error),
         ItemKind::Use(_)
         | ItemKind::Allow(_)
         | ItemKind::Enum { .. }
@@ -68,6 +70,9 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Motion
         | Noun::Shape
         | Noun::Action
+        | Noun::DeviceKind
+        | Noun::DeviceMeasure
+        | Noun::Primitive
         | Noun::Coordinate => false,
         // Declared in one piece with the place that uses them.
         Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
@@ -100,6 +105,8 @@ pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
         | Noun::Joint
         | Noun::Arm
         | Noun::Gripper
+        | Noun::Device
+        | Noun::Command
         | Noun::Current
         | Noun::Signal => items,
     }

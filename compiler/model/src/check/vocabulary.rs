@@ -16,7 +16,7 @@ use crate::{
     Stimulus, Type, Value, Var,
     noun::Noun,
     report::{names, roles, types},
-    types::Layout,
+    types::{Layout, starting_var},
 };
 
 impl<'a> Checker<'a> {
@@ -102,7 +102,7 @@ impl<'a> Checker<'a> {
             Some(_) | None => Role::Environment,
         };
         if Self::declare(&mut self.issues, &mut self.actors, Noun::Actor, name).is_some() {
-            self.s.actors.push(Actor { name: name.text.clone(), role, span: name.span });
+            self.s.actors.push(Actor { name: name.text.clone(), role, origin: name.span });
         }
     }
 
@@ -111,7 +111,7 @@ impl<'a> Checker<'a> {
             let issue = names::duplicate(Noun::Constant, &name.text, name.span, Some(first.name.span));
             return self.report(issue);
         }
-        self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen, used: false });
+        self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen });
     }
 
     fn declare_part(&mut self, part: &'a ast::Part) {
@@ -167,10 +167,17 @@ impl<'a> Checker<'a> {
         if Self::declare(&mut self.issues, &mut self.events, noun, name).is_some() {
             // Without its actor, which has a diagnostic, the event still is a name.
             let from = from.unwrap_or(NOBODY);
-            let body = stimulus.map(|_| Stimulus::default());
+            let body = stimulus.map(|_| Stimulus { samples: Vec::new(), steps: Vec::new() });
             let params = self.flat(&fields);
             self.event_fields.push(fields);
-            self.s.events.push(Event { name: name.text.clone(), params, from, to, stimulus: body, span });
+            self.s.events.push(Event {
+                name: name.text.clone(),
+                params,
+                from,
+                to,
+                stimulus: body,
+                origin: span,
+            });
             self.bodies.push(stimulus);
         }
     }
@@ -201,7 +208,7 @@ impl<'a> Checker<'a> {
             initial_beliefs: Vec::new(),
             initial_goals: Vec::new(),
             plans: Vec::new(),
-            span,
+            origin: span,
         });
     }
 
@@ -234,7 +241,7 @@ impl<'a> Checker<'a> {
             locations: Vec::new(),
             initial: LocationId(0),
             edges: Vec::new(),
-            span,
+            origin: span,
         });
     }
 
@@ -248,13 +255,14 @@ impl<'a> Checker<'a> {
             return;
         }
         let (layout, vars) = self.var(var);
+        let place = var.name.span;
         for var in vars {
             // The parts of one variable have names that no other can have.
             let (issues, table) = (&mut self.issues, &mut self.shared);
-            let Some(i) = Self::declare_as(issues, table, Noun::Variable, &var.name, var.span) else {
+            let Some(i) = Self::declare_as(issues, table, Noun::Variable, &var.name, place) else {
                 return;
             };
-            Rc::make_mut(&mut self.shared_scope).add_variable(Leaf::Shared(i), &var);
+            Rc::make_mut(&mut self.shared_scope).add_variable(Leaf::Shared(i), &var, place);
             self.s.shared.push(var);
         }
         if !matches!(layout, Layout::Scalar(_)) {
@@ -283,7 +291,7 @@ impl<'a> Checker<'a> {
         let mut values = values.into_iter();
         let vars = leaves.into_iter().map(|(name, ty)| {
             let init = values.next().and_then(|e: Expr| e.constant());
-            Var { name, ty, init: init.unwrap_or(nearest_to_zero(ty)), span }
+            starting_var(&name, ty, init.unwrap_or(nearest_to_zero(ty)))
         });
         (layout, vars.collect())
     }

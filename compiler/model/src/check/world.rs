@@ -10,10 +10,10 @@ use super::{
     world_parts::{Placed, WorldNames},
 };
 use crate::{
-    ActorId, BodyId, Dim, GripperId, JointId, Kind, Motion, Value,
+    ActorId, BodyId, Current, Dim, GripperId, JointId, Kind, Motion, Shape, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
-    world::{Arm, Body, Current, Frame, Gripper, Joint, Rule, RuleOn, Shape, Signal, World},
+    world::{Arm, Body, Frame, Gripper, Joint, RuleOn, Signal, World, WorldRule},
 };
 
 const LENGTH: Kind = Kind::Float(Dim::LENGTH);
@@ -81,7 +81,7 @@ impl<'a> Checker<'a> {
             .filter_map(|i| if let ItemKind::Part(part) = &i.kind { Some(part) } else { None })
             .collect();
         for part in own {
-            if self.in_world.used.contains(&part.name.text) {
+            if self.s.names.is_used(part.name.span) {
                 continue;
             }
             let kept_names = std::mem::take(&mut self.in_world);
@@ -190,7 +190,7 @@ impl<'a> Checker<'a> {
             body.sizes.iter().map(|e| self.more_than_zero(e, Dim::LENGTH, "a size")).collect();
         let size = |i: usize| sizes[i];
         Some(match chosen {
-            0 => Shape::Box([size(0)?, size(1)?, size(2)?]),
+            0 => Shape::Box { size: [size(0)?, size(1)?, size(2)?] },
             1 => Shape::Sphere { radius: size(0)? },
             2 => Shape::Capsule { radius: size(0)?, length: size(1)? },
             _ => Shape::Cylinder { radius: size(0)?, length: size(1)? },
@@ -351,9 +351,6 @@ impl<'a> Checker<'a> {
 
     fn rules(&mut self, p: &Placed<'a>) {
         let Member::Rule(rule) = &p.member.kind else { return };
-        let gripper = |c: &mut Self, path: &ast::Path| {
-            c.world_name(Noun::Gripper, &path.names, &p.prefix).map_or(GripperId(0), GripperId)
-        };
         let on = match &rule.on {
             SyntaxRuleOn::Event(call) => {
                 let mut patterns = self.patterns(std::slice::from_ref(call)).into_iter();
@@ -363,8 +360,7 @@ impl<'a> Checker<'a> {
                 }
                 first.map(RuleOn::Event)
             }
-            SyntaxRuleOn::Closes(path) => Some(RuleOn::Closes(gripper(self, path))),
-            SyntaxRuleOn::Opens(path) => Some(RuleOn::Opens(gripper(self, path))),
+            SyntaxRuleOn::Commanded { command, device } => self.commanded(command, device, &p.prefix),
         };
         let mut env = Env::measured(&p.prefix);
         let guard = rule.when.as_ref().map(|e| self.expr_of(e, Kind::Bool, &mut env));
@@ -372,7 +368,7 @@ impl<'a> Checker<'a> {
         let fields = self.fields_of(event);
         let args = self.args(Noun::Event, &rule.emit, &fields, &mut env);
         if let Some(on) = on {
-            self.world_mut().rules.push(Rule { on, guard, event, args, span: p.member.span });
+            self.world_mut().rules.push(WorldRule { on, guard, event, args, span: p.member.span });
         }
     }
 }

@@ -29,8 +29,6 @@ pub(crate) struct WorldNames {
     pub grippers: Table,
     pub currents: Table,
     pub signals: Table,
-    /// The parts that have been used.
-    pub used: BTreeSet<String>,
     /// Instances of unknown parts: nothing is said about what they have.
     pub broken: BTreeSet<String>,
     /// How many members there are so far.
@@ -50,6 +48,11 @@ impl WorldNames {
         ]
     }
 
+    /// Where a full name is declared, whatever it is of.
+    pub fn place_of(&self, full: &str) -> Option<Span> {
+        self.tables().into_iter().find_map(|(_, table)| table.span_of(full))
+    }
+
     pub fn get(&self, noun: Noun, full: &str) -> Option<u16> {
         self.tables().into_iter().find(|(n, _)| *n == noun).and_then(|(_, t)| t.get(full))
     }
@@ -67,9 +70,14 @@ impl WorldNames {
         self.instances.get(full).is_some()
     }
 
-    /// The names of this kind directly below a prefix. Where a body is meant, a current body will do.
+    /// The names of this kind directly below a prefix. Where a body is meant, a current body will do;
+    /// where a device is, whatever is one.
     pub fn below(&self, noun: Noun, prefix: &str) -> Vec<String> {
-        let fits = |n: Noun| n == noun || noun == Noun::Body && n == Noun::Current;
+        let fits = |n: Noun| match noun {
+            Noun::Body if n == Noun::Current => true,
+            Noun::Device => matches!(n, Noun::Arm | Noun::Gripper),
+            other => n == other,
+        };
         let tables = self.tables().into_iter().filter(|(n, _)| fits(*n));
         let names = tables.flat_map(|(_, t)| t.names().filter_map(|n| n.strip_prefix(prefix)));
         names.filter(|n| !n.contains('.')).map(str::to_owned).collect()
@@ -212,7 +220,8 @@ impl<'a> Checker<'a> {
             self.report(bad_world(of.span, message, "put the parts side by side in the world"));
             return None;
         }
-        self.in_world.used.insert(of.text.clone());
+        let part = *part;
+        self.refer(of, Some(part.name.span));
         Some(part)
     }
 
@@ -237,7 +246,7 @@ impl<'a> Checker<'a> {
         {
             let mut vector = [0.0; 3];
             for (slot, part) in vector.iter_mut().zip(parts) {
-                *slot = self.constant(part, want, &mut Env::constants())?.number()?;
+                *slot = self.constant(part, want, &mut Env::constants())?.as_f64()?;
             }
             return Some(vector);
         }
@@ -258,7 +267,7 @@ impl<'a> Checker<'a> {
             if value.constant().is_none() && value.ty != Kind::Unknown {
                 self.report(types::not_constant(value.span));
             }
-            *slot = value.constant()?.number()?;
+            *slot = value.constant()?.as_f64()?;
         }
         Some(vector)
     }

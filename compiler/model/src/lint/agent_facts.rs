@@ -2,8 +2,9 @@
 
 use crate::{
     Agent, AgentId, Arg, Belief, BeliefId, ChoiceCondition, ChoiceKind, Context, GoalId, Performative, Plan,
-    Scenario, Step, StepKind, TriggerOn, each_step, nearest::nearest,
+    Scenario, Step, StepKind, TriggerOn, nearest::nearest,
 };
+use hrdsl_ir::bdi::each_step;
 use hrdsl_source::{Diagnostic, Span};
 
 use super::{
@@ -73,7 +74,7 @@ pub(crate) fn literals(context: &Context) -> Vec<Literal<'_>> {
         match context {
             Context::True | Context::Test(_) | Context::Unify(..) => {}
             Context::Belief(b) => {
-                let (belief, args, span) = (b.belief, b.args.as_slice(), b.span);
+                let (belief, args, span) = (b.belief, b.args.as_slice(), b.origin);
                 all.push(Literal { belief, args, span, negated });
             }
             Context::Internal(action, _) => {
@@ -111,13 +112,13 @@ pub(crate) fn change(step: &Step) -> Option<Change<'_>> {
         StepKind::Add(a) => Some(Change::Adds(a.belief, of_exprs(&a.args))),
         StepKind::Replace(a) => Some(Change::Replaces(a.belief, of_exprs(&a.args))),
         StepKind::Remove(l) | StepKind::Abolish(l) => Some(Change::Removes(l.belief, of_args(&l.args))),
-        StepKind::Do(..)
-        | StepKind::Achieve(..)
-        | StepKind::Spawn(..)
+        StepKind::Do { .. }
+        | StepKind::Achieve { .. }
+        | StepKind::Spawn { .. }
         | StepKind::Query(..)
         | StepKind::Test(_)
         | StepKind::Await { .. }
-        | StepKind::Wait(_)
+        | StepKind::Wait { .. }
         | StepKind::If { .. }
         | StepKind::While { .. }
         | StepKind::For { .. }
@@ -125,8 +126,8 @@ pub(crate) fn change(step: &Step) -> Option<Change<'_>> {
         | StepKind::Send { .. }
         | StepKind::Ask { .. }
         | StepKind::AskAll { .. }
-        | StepKind::Print(_)
-        | StepKind::Control(..)
+        | StepKind::Print { .. }
+        | StepKind::Control { .. }
         | StepKind::Fail => None,
     }
 }
@@ -264,7 +265,7 @@ impl<'a> AgentFacts<'a> {
         // By belief: the plans that speak of it, which may run once it is known.
         let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); known.len()];
         for (number, plan) in self.agent.plans.iter().enumerate() {
-            let trigger = plan.trigger.belief();
+            let trigger = plan.trigger.on.belief();
             let needed = literals(&plan.context).into_iter().map(|l| l.belief).chain(trigger);
             needed.for_each(|b| waiting[usize::from(b.0)].push(number));
         }
@@ -372,11 +373,11 @@ impl<'a> AgentFacts<'a> {
 
     /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
     pub fn is_unadopted(&self, plan: &Plan) -> bool {
-        match plan.trigger {
-            TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => !self.is_adopted(goal),
-            TriggerOn::Added(_)
-            | TriggerOn::Removed(_)
-            | TriggerOn::Test(_)
+        match plan.trigger.on {
+            TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => !self.is_adopted(goal),
+            TriggerOn::BeliefAdded(_)
+            | TriggerOn::BeliefRemoved(_)
+            | TriggerOn::TestAdded(_)
             | TriggerOn::TestFailed(_)
             | TriggerOn::Perceived(_) => false,
         }
@@ -384,10 +385,10 @@ impl<'a> AgentFacts<'a> {
 
     /// What happens to a belief that a plan waits for never happens.
     pub fn is_dead_trigger(&self, plan: &Plan) -> bool {
-        let args = of_args(&plan.args);
-        match plan.trigger {
-            TriggerOn::Added(b) => !self.may_come_about(b, &args),
-            TriggerOn::Removed(b) => {
+        let args = of_args(&plan.trigger.args);
+        match plan.trigger.on {
+            TriggerOn::BeliefAdded(b) => !self.may_come_about(b, &args),
+            TriggerOn::BeliefRemoved(b) => {
                 let changes = self.index.changes_of(b);
                 let goes = !self.work(changes.len())
                     || changes.iter().any(|c| match c {
@@ -397,13 +398,13 @@ impl<'a> AgentFacts<'a> {
                     });
                 (!goes && !self.is_foreign(b) && !self.is_untold(b)) || !self.may_come_about(b, &args)
             }
-            TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+            TriggerOn::TestAdded(b) | TriggerOn::TestFailed(b) => {
                 let queries = &self.index.queries[usize::from(b.0)];
                 let asked = !self.work(queries.len())
                     || queries.iter().any(|(_, _, q)| may_unify(&args, &of_args(&q.args), true));
                 !self.is_asked(b) && !asked
             }
-            TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => false,
+            TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) | TriggerOn::Perceived(_) => false,
         }
     }
 
@@ -432,11 +433,11 @@ impl<'a> AgentFacts<'a> {
 
 /// Whether the plan can run with these beliefs alone, as far as its trigger and the literals of its context say.
 fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
-    let trigger = match plan.trigger {
-        TriggerOn::Added(b) | TriggerOn::Removed(b) => is_known(b),
-        TriggerOn::Achieve(_)
-        | TriggerOn::Failed(_)
-        | TriggerOn::Test(_)
+    let trigger = match plan.trigger.on {
+        TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) => is_known(b),
+        TriggerOn::GoalAdded(_)
+        | TriggerOn::GoalFailed(_)
+        | TriggerOn::TestAdded(_)
         | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => true,
     };

@@ -67,14 +67,14 @@ pub(crate) struct AgentIndex<'a> {
 /// The indices of all agents.
 pub(crate) fn indices(scenario: &Scenario) -> Vec<AgentIndex<'_>> {
     let mut all: Vec<AgentIndex<'_>> = scenario.agents.iter().map(AgentIndex::of).collect();
-    for content in &scenario.contents {
+    for (content, speech) in scenario.contents.iter().zip(&scenario.speech) {
         for (index, of) in all.iter_mut().zip(&content.of) {
             let about = match of {
                 Some(Subject::Belief(b)) => index.about_belief.get_mut(usize::from(b.0)),
                 Some(Subject::Goal(g)) => index.about_goal.get_mut(usize::from(g.0)),
                 None => None,
             };
-            about.into_iter().for_each(|about| about.extend(content.uses.iter().copied()));
+            about.into_iter().for_each(|about| about.extend(speech.uses.iter().copied()));
         }
     }
     for suite in &scenario.suites {
@@ -122,7 +122,7 @@ impl<'a> AgentIndex<'a> {
         };
         for (number, plan) in agent.plans.iter().enumerate() {
             index.size += 1;
-            index.plans.entry(plan.trigger).or_default().push(number);
+            index.plans.entry(plan.trigger.on).or_default().push(number);
             for (at, block) in plan.body.iter().enumerate() {
                 for step in all_steps(std::slice::from_ref(block)) {
                     index.size += 1;
@@ -144,16 +144,16 @@ impl<'a> AgentIndex<'a> {
     fn step(&mut self, plan: usize, at: usize, kind: &'a StepKind) {
         match kind {
             StepKind::Query(l) => self.queries[usize::from(l.belief.0)].push((plan, at, l)),
-            StepKind::Achieve(g, ..) => self.adopted[usize::from(g.0)].push((plan, at)),
-            StepKind::Spawn(g, _) => self.spawned[usize::from(g.0)].push(plan),
-            StepKind::Do(..)
+            StepKind::Achieve { goal: g, .. } => self.adopted[usize::from(g.0)].push((plan, at)),
+            StepKind::Spawn { goal: g, .. } => self.spawned[usize::from(g.0)].push(plan),
+            StepKind::Do { .. }
             | StepKind::Test(_)
             | StepKind::Add(_)
             | StepKind::Remove(_)
             | StepKind::Replace(_)
             | StepKind::Abolish(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_)
+            | StepKind::Wait { .. }
             | StepKind::If { .. }
             | StepKind::While { .. }
             | StepKind::For { .. }
@@ -161,8 +161,8 @@ impl<'a> AgentIndex<'a> {
             | StepKind::Send { .. }
             | StepKind::Ask { .. }
             | StepKind::AskAll { .. }
-            | StepKind::Print(_)
-            | StepKind::Control(..)
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
             | StepKind::Fail => {}
         }
     }

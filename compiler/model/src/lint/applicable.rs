@@ -4,15 +4,14 @@
 
 use std::cmp::Ordering;
 
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
-
 use super::{
     agent_facts::{AgentFacts, Change, Held, change},
     plan_terms::{alternatives, fold, same_value},
     simple::{is_simple, is_simple_literal, is_simple_step},
 };
 use crate::{
-    Arg, BeliefId, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type, Value,
+    Arg, BeliefId, BinaryOp, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type,
+    UnaryOp, Value,
 };
 
 /// Steps of the search.
@@ -128,7 +127,7 @@ impl World {
     }
 
     fn against(&self, name: &str, value: Value) -> Asked<Ordering> {
-        let Some(number) = value.number() else {
+        let Some(number) = value.as_f64() else {
             let same = self.ask(Question::Holds(name.to_owned()))? == usize::from(value == Value::Bool(true));
             return Ok(if same { Ordering::Equal } else { Ordering::Less });
         };
@@ -149,7 +148,7 @@ impl World {
 }
 
 fn order(a: Value, b: Value) -> Ordering {
-    match (a.number(), b.number()) {
+    match (a.as_f64(), b.as_f64()) {
         (Some(x), Some(y)) => x.total_cmp(&y),
         (Some(_) | None, _) if same_value(a, b) => Ordering::Equal,
         (Some(_) | None, _) => Ordering::Less,
@@ -176,7 +175,7 @@ fn always(is_so: &dyn Fn(&World) -> Asked<bool>, world: &mut World) -> bool {
 /// Whether an achieve or query step has a plan or fact whenever it is reached.
 pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> bool {
     let answers = match &plan.body[at].kind {
-        StepKind::Achieve(goal, ..) => facts.plans(TriggerOn::Achieve(*goal)).all(is_simple),
+        StepKind::Achieve { goal, .. } => facts.plans(TriggerOn::GoalAdded(*goal)).all(is_simple),
         StepKind::Query(literal) => is_simple_literal(literal),
         _ => true,
     };
@@ -197,20 +196,20 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> boo
         }
         here.facts_since(plan, at)?;
         match &plan.body[at].kind {
-            StepKind::Achieve(goal, args, _) => {
+            StepKind::Achieve { goal, args, within: _ } => {
                 let args: Vec<Sym> = args.iter().map(|e| here.sym(e)).collect::<Asked<_>>()?;
                 here.has_plan(*goal, &args)
             }
             StepKind::Query(l) => here.literal(l.belief, &l.args),
-            StepKind::Do(..)
-            | StepKind::Spawn(..)
+            StepKind::Do { .. }
+            | StepKind::Spawn { .. }
             | StepKind::Test(_)
             | StepKind::Add(_)
             | StepKind::Remove(_)
             | StepKind::Replace(_)
             | StepKind::Abolish(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_)
+            | StepKind::Wait { .. }
             | StepKind::If { .. }
             | StepKind::While { .. }
             | StepKind::For { .. }
@@ -218,8 +217,8 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> boo
             | StepKind::Send { .. }
             | StepKind::Ask { .. }
             | StepKind::AskAll { .. }
-            | StepKind::Print(_)
-            | StepKind::Control(..)
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
             | StepKind::Fail => Ok(true),
         }
     };
@@ -255,14 +254,15 @@ impl<'a> Place<'a> {
     }
 
     fn head(&mut self, plan: &Plan) -> Asked<()> {
-        let params: &[Param] = match plan.trigger {
-            TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
-                &self.facts.belief(b).params
-            }
+        let params: &[Param] = match plan.trigger.on {
+            TriggerOn::BeliefAdded(b)
+            | TriggerOn::BeliefRemoved(b)
+            | TriggerOn::TestAdded(b)
+            | TriggerOn::TestFailed(b) => &self.facts.belief(b).params,
             TriggerOn::Perceived(e) => &self.facts.scenario.events[usize::from(e.0)].params,
-            TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+            TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
         };
-        for (i, arg) in plan.args.iter().enumerate() {
+        for (i, arg) in plan.trigger.args.iter().enumerate() {
             if let Arg::Var(var) = arg
                 && self.vars[usize::from(*var)].is_none()
             {
@@ -292,13 +292,13 @@ impl<'a> Place<'a> {
                     self.added.push((made.belief, args));
                 }
                 StepKind::Remove(l) | StepKind::Abolish(l) => self.added.retain(|(b, _)| *b != l.belief),
-                StepKind::Spawn(..) | StepKind::Print(_) => {}
+                StepKind::Spawn { .. } | StepKind::Print { .. } => {}
                 // Time may pass. Others than these are not simple.
-                StepKind::Do(..)
-                | StepKind::Achieve(..)
+                StepKind::Do { .. }
+                | StepKind::Achieve { .. }
                 | StepKind::Test(_)
                 | StepKind::Await { .. }
-                | StepKind::Wait(_)
+                | StepKind::Wait { .. }
                 | StepKind::If { .. }
                 | StepKind::While { .. }
                 | StepKind::For { .. }
@@ -306,7 +306,7 @@ impl<'a> Place<'a> {
                 | StepKind::Send { .. }
                 | StepKind::Ask { .. }
                 | StepKind::AskAll { .. }
-                | StepKind::Control(..)
+                | StepKind::Control { .. }
                 | StepKind::Fail => self.added.clear(),
             }
         }
@@ -315,7 +315,7 @@ impl<'a> Place<'a> {
 
     /// Whether some plan for the goal is applicable.
     fn has_plan(&self, goal: GoalId, args: &[Sym]) -> Asked<bool> {
-        for plan in self.facts.plans(TriggerOn::Achieve(goal)) {
+        for plan in self.facts.plans(TriggerOn::GoalAdded(goal)) {
             if !self.facts.work(1) {
                 return Ok(true);
             }
@@ -326,7 +326,7 @@ impl<'a> Place<'a> {
                 added: self.added.clone(),
                 ..*self
             };
-            if callee.matches(&plan.args, args)? && callee.formula(&plan.context)? {
+            if callee.matches(&plan.trigger.args, args)? && callee.formula(&plan.context)? {
                 return Ok(true);
             }
         }
@@ -526,17 +526,17 @@ fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
     let mut all: Vec<BeliefId> = Vec::new();
     for step in &plan.body[..at] {
         match &step.kind {
-            StepKind::Query(l) if facts.plans(TriggerOn::Test(l.belief)).next().is_none() => {}
-            StepKind::Spawn(..) | StepKind::Print(_) => {}
+            StepKind::Query(l) if facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none() => {}
+            StepKind::Spawn { .. } | StepKind::Print { .. } => {}
             StepKind::Add(_) | StepKind::Remove(_) | StepKind::Replace(_) | StepKind::Abolish(_) => {
                 all.extend(change(step).map(|c: Change<'_>| c.belief()));
             }
-            StepKind::Do(..)
-            | StepKind::Achieve(..)
+            StepKind::Do { .. }
+            | StepKind::Achieve { .. }
             | StepKind::Query(_)
             | StepKind::Test(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_)
+            | StepKind::Wait { .. }
             | StepKind::If { .. }
             | StepKind::While { .. }
             | StepKind::For { .. }
@@ -544,7 +544,7 @@ fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
             | StepKind::Send { .. }
             | StepKind::Ask { .. }
             | StepKind::AskAll { .. }
-            | StepKind::Control(..)
+            | StepKind::Control { .. }
             | StepKind::Fail => {
                 return facts.changed().collect();
             }

@@ -51,9 +51,9 @@ fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<Read>> {
         for step in steps {
             // A plan for the query may answer it without a fact.
             if let StepKind::Query(l) = &step.kind
-                && facts.plans(TriggerOn::Test(l.belief)).next().is_none()
+                && facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none()
             {
-                queries.push((l.belief, Read { span: step.span, name: None, negated: false }));
+                queries.push((l.belief, Read { span: step.origin, name: None, negated: false }));
             }
         }
     }
@@ -90,7 +90,7 @@ fn never_added(
     for read in reads.iter().filter(|r| r.span != first.span) {
         issue = issue.label(read.span, "tested here too");
     }
-    let issue = issue.label(declared.span, "declared here, without an initial value");
+    let issue = issue.label(declared.origin, "declared here, without an initial value");
     if circular {
         return Some(issue.help("give its declaration an initial value, or let a suite choose it"));
     }

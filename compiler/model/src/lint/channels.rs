@@ -1,5 +1,6 @@
 //! HR0514: channels over which nothing can happen, because one side of them has no edge. HR0107: those that have no side.
 
+use hrdsl_source::Span;
 use hrdsl_source::{Code, Diagnostic, FileId};
 
 use super::facts::Facts;
@@ -41,40 +42,41 @@ impl Sides {
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     let sides = Sides::of(scenario);
-    for (channel, sides) in scenario.channels.iter().zip(&sides) {
-        if channel.place.file != FileId(0) {
+    let places = scenario.places.channels.iter();
+    for ((channel, place), sides) in scenario.channels.iter().zip(places).zip(&sides) {
+        if place.name.file != FileId(0) {
             continue;
         }
         if sides.is_empty() {
-            issues.push(unused(channel));
+            issues.push(unused(channel, place.name));
             continue;
         }
         match &channel.kind {
             ChannelKind::HandShake | ChannelKind::Broadcast => {
-                issues.extend(one_side(scenario, channel, sides));
+                issues.extend(one_side(scenario, (channel, place.name), sides));
             }
             ChannelKind::Joint(parties) => {
-                let absent = parties.iter().filter(|p| !sides.join.contains(&p.automaton));
-                issues.extend(absent.map(|p| no_part(scenario, channel, p)));
+                let named = parties.iter().zip(&place.parties);
+                let absent = named.filter(|(p, _)| !sides.join.contains(&p.automaton));
+                issues.extend(absent.map(|(p, at)| no_part(scenario, channel, p, *at)));
             }
         }
     }
 }
 
-fn unused(channel: &Channel) -> Diagnostic {
+fn unused(channel: &Channel, at: Span) -> Diagnostic {
     let name = &channel.name;
-    let issue =
-        Diagnostic::warning(Code::UNUSED, channel.place, format!("the channel `{name}` is never used"))
-            .help("use it, or delete it");
+    let issue = Diagnostic::warning(Code::UNUSED, at, format!("the channel `{name}` is never used"))
+        .help("use it, or delete it");
     // One of several that are declared together cannot simply go.
-    if channel.span == channel.place {
+    if channel.origin == at {
         return issue;
     }
-    issue.fix(format!("delete `{name}`"), channel.span, "", true)
+    issue.fix(format!("delete `{name}`"), channel.origin, "", true)
 }
 
 /// A hand-shake or broadcast that only some edges offer, only some accept, or only one automaton does both.
-fn one_side(scenario: &Scenario, channel: &Channel, sides: &Sides) -> Option<Diagnostic> {
+fn one_side(scenario: &Scenario, (channel, at): (&Channel, Span), sides: &Sides) -> Option<Diagnostic> {
     let name = &channel.name;
     let (message, help) = match (sides.offer.as_slice(), sides.accept.as_slice()) {
         ([], _) => (format!("nobody offers the channel `{name}`"), format!("let an edge do so: `do {name}`")),
@@ -88,15 +90,15 @@ fn one_side(scenario: &Scenario, channel: &Channel, sides: &Sides) -> Option<Dia
         }
         ([_, ..], [_, ..]) => return None,
     };
-    Some(Diagnostic::warning(Code::ONE_SIDED_CHANNEL, channel.place, message).help(help))
+    Some(Diagnostic::warning(Code::ONE_SIDED_CHANNEL, at, message).help(help))
 }
 
-fn no_part(scenario: &Scenario, channel: &Channel, party: &Party) -> Diagnostic {
+fn no_part(scenario: &Scenario, channel: &Channel, party: &Party, at: Span) -> Diagnostic {
     let (name, of) = (&channel.name, usize::from(party.automaton.0));
     let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
     let message = format!("`{automaton}` has no edge for the joint channel `{name}`");
     let why = if party.optional { "it never takes part" } else { "nobody can take part without it" };
-    Diagnostic::warning(Code::ONE_SIDED_CHANNEL, party.span, message)
+    Diagnostic::warning(Code::ONE_SIDED_CHANNEL, at, message)
         .here(why)
         .help(format!("give it an edge with `on {name}`, or take it out of the parties"))
 }

@@ -42,7 +42,7 @@ fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize
     let places = scenario.places.automata.get(index);
     let first = cycle[0];
     let span =
-        places.and_then(|p| p.locations.get(first)).copied().unwrap_or(automaton.locations[first].span);
+        places.and_then(|p| p.locations.get(first)).copied().unwrap_or(automaton.locations[first].origin);
     let message = format!("no time passes in the cycle `{}`", names.join(" -> "));
     Diagnostic::warning(Code::NO_TIME_PASSES_HERE, span, message)
         .here("it can be gone round for ever at one instant")

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::BinaryOp;
 
 use super::{
     agent_facts::AgentFacts,
     plan_terms::{Term, alternatives, bound_before, of_args, same_expr, same_value},
 };
-use crate::{Arg, Context, Expr, ExprKind, Leaf, Param, Plan, TriggerOn, Type};
+use crate::{Arg, BinaryOp, Context, Expr, ExprKind, Leaf, Param, Plan, TriggerOn, Type};
 
 /// Why a context can never hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,9 +81,9 @@ fn negated_belief(plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
                 if held.belief == denied.belief && denies(&denied.args, &held.args, bound) =>
             {
                 Some(Contradiction {
-                    span: denied.span,
+                    span: denied.origin,
                     why: "this cannot be absent".to_owned(),
-                    with: Some((held.span, "since the context needs it here".to_owned())),
+                    with: Some((held.origin, "since the context needs it here".to_owned())),
                 })
             }
             Context::Belief(..)
@@ -314,17 +313,18 @@ impl Interval {
 fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
     let mut values: BTreeMap<u16, Interval> = BTreeMap::new();
     let params = |belief: crate::BeliefId| facts.belief(belief).params.as_slice();
-    let head: &[Param] = match plan.trigger {
-        TriggerOn::Added(b) | TriggerOn::Removed(b) | TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
-            params(b)
-        }
+    let head: &[Param] = match plan.trigger.on {
+        TriggerOn::BeliefAdded(b)
+        | TriggerOn::BeliefRemoved(b)
+        | TriggerOn::TestAdded(b)
+        | TriggerOn::TestFailed(b) => params(b),
         TriggerOn::Perceived(e) => &facts.scenario.events[usize::from(e.0)].params,
-        TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+        TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
     };
-    declare(&mut values, &plan.args, head, plan.head);
+    declare(&mut values, &plan.trigger.args, head, plan.trigger.origin);
     for part in parts {
         if let Context::Belief(l) = part {
-            declare(&mut values, &l.args, params(l.belief), l.span);
+            declare(&mut values, &l.args, params(l.belief), l.origin);
         }
     }
     for c in comparisons(parts) {
@@ -345,7 +345,7 @@ fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Opti
 }
 
 fn constant_number(e: &Expr) -> Option<f64> {
-    e.constant().and_then(crate::Value::number)
+    e.constant().and_then(crate::Value::as_f64)
 }
 
 fn declare(values: &mut BTreeMap<u16, Interval>, args: &[Arg], params: &[Param], span: Span) {

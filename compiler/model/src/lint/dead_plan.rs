@@ -32,25 +32,26 @@ pub(crate) fn never_runs(facts: &AgentFacts<'_>, plan: &Plan) -> bool {
 }
 
 fn dead_trigger(facts: &AgentFacts<'_>, plan: &Plan) -> Diagnostic {
-    let warning =
-        |why: &str| Diagnostic::warning(Code::DEAD_PLAN, plan.head, format!("this plan never runs: {why}"));
+    let warning = |why: &str| {
+        Diagnostic::warning(Code::DEAD_PLAN, plan.trigger.origin, format!("this plan never runs: {why}"))
+    };
     let of = |belief: BeliefId| facts.belief(belief).name.as_str();
-    match plan.trigger {
-        TriggerOn::Added(b) | TriggerOn::Removed(b) if !facts.comes_about(b) => {
+    match plan.trigger.on {
+        TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) if !facts.comes_about(b) => {
             let issue = warning(&format!("nothing adds the belief `{}`", of(b)))
-                .label(facts.belief(b).span, "declared here, without an initial value");
+                .label(facts.belief(b).origin, "declared here, without an initial value");
             let otherwise = "add the belief somewhere, or remove the plan".to_owned();
-            facts.near_belief(issue, b, Some(plan.name), otherwise)
+            facts.near_belief(issue, b, Some(plan.trigger.name), otherwise)
         }
-        TriggerOn::Added(b) => warning(&format!("nothing adds such a `{}`", of(b)))
+        TriggerOn::BeliefAdded(b) => warning(&format!("nothing adds such a `{}`", of(b)))
             .help("the arguments match none that is added: mend them, or remove the plan"),
-        TriggerOn::Removed(b) => warning(&format!("nothing removes or replaces such a `{}`", of(b)))
+        TriggerOn::BeliefRemoved(b) => warning(&format!("nothing removes or replaces such a `{}`", of(b)))
             .help(format!("remove the belief somewhere (`-{}`), or remove the plan", of(b))),
-        TriggerOn::Test(b) | TriggerOn::TestFailed(b) => {
+        TriggerOn::TestAdded(b) | TriggerOn::TestFailed(b) => {
             warning(&format!("no plan asks for such a `{}`", of(b)))
                 .help(format!("ask for the belief somewhere (`?{}`), or remove the plan", of(b)))
         }
-        TriggerOn::Achieve(_) | TriggerOn::Failed(_) | TriggerOn::Perceived(_) => {
+        TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) | TriggerOn::Perceived(_) => {
             warning("what it waits for never happens")
         }
     }

@@ -46,12 +46,12 @@ impl Handled<'_> {
 }
 
 fn handled(plan: &Plan) -> Vec<Handled<'_>> {
-    let trigger = match plan.trigger {
-        TriggerOn::Added(b) => Some((b, plan.args.as_slice(), plan.head)),
-        TriggerOn::Removed(_)
-        | TriggerOn::Achieve(_)
-        | TriggerOn::Failed(_)
-        | TriggerOn::Test(_)
+    let trigger = match plan.trigger.on {
+        TriggerOn::BeliefAdded(b) => Some((b, plan.trigger.args.as_slice(), plan.trigger.origin)),
+        TriggerOn::BeliefRemoved(_)
+        | TriggerOn::GoalAdded(_)
+        | TriggerOn::GoalFailed(_)
+        | TriggerOn::TestAdded(_)
         | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => None,
     };
@@ -72,7 +72,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
                 }
                 if let Some(Change::Removes(belief, args)) = change(step) {
                     let dropped = Dropped { facts, plan, at, belief, args };
-                    issues.extend(dropped.issue(step.span));
+                    issues.extend(dropped.issue(step.origin));
                 }
             }
         }
@@ -145,8 +145,9 @@ impl<'a> Dropped<'a> {
     /// Beliefs of different names are taken for copies of each other if they play the same part: both or neither are the
     /// trigger, of triggers of one kind, and they come about alike. What a suite chooses is most often asked, not used up.
     fn same_part(&self, kept: &Handled<'_>, other: &Plan) -> bool {
-        let is_trigger = |plan: &Plan, belief| plan.trigger == TriggerOn::Added(belief);
-        let alike = std::mem::discriminant(&self.plan.trigger) == std::mem::discriminant(&other.trigger);
+        let is_trigger = |plan: &Plan, belief| plan.trigger.on == TriggerOn::BeliefAdded(belief);
+        let alike =
+            std::mem::discriminant(&self.plan.trigger.on) == std::mem::discriminant(&other.trigger.on);
         let state = self
             .plan
             .body
@@ -166,8 +167,8 @@ impl<'a> Dropped<'a> {
         let mut seen = BTreeSet::new();
         let before = &self.plan.body[..self.at];
         before.iter().any(|step| match step.kind {
-            StepKind::Achieve(goal, ..) | StepKind::Spawn(goal, _) => self.goal_makes(goal, &mut seen),
-            StepKind::Do(..)
+            StepKind::Achieve { goal, .. } | StepKind::Spawn { goal, .. } => self.goal_makes(goal, &mut seen),
+            StepKind::Do { .. }
             | StepKind::Query(_)
             | StepKind::Test(_)
             | StepKind::Add(_)
@@ -175,7 +176,7 @@ impl<'a> Dropped<'a> {
             | StepKind::Replace(_)
             | StepKind::Abolish(_)
             | StepKind::Await { .. }
-            | StepKind::Wait(_)
+            | StepKind::Wait { .. }
             | StepKind::If { .. }
             | StepKind::While { .. }
             | StepKind::For { .. }
@@ -183,8 +184,8 @@ impl<'a> Dropped<'a> {
             | StepKind::Send { .. }
             | StepKind::Ask { .. }
             | StepKind::AskAll { .. }
-            | StepKind::Print(_)
-            | StepKind::Control(..)
+            | StepKind::Print { .. }
+            | StepKind::Control { .. }
             | StepKind::Fail => false,
         })
     }
@@ -197,12 +198,14 @@ impl<'a> Dropped<'a> {
         if !seen.insert(goal) {
             return false;
         }
-        self.facts.plans(TriggerOn::Achieve(goal)).chain(self.facts.plans(TriggerOn::Failed(goal))).any(
+        self.facts.plans(TriggerOn::GoalAdded(goal)).chain(self.facts.plans(TriggerOn::GoalFailed(goal))).any(
             |plan| {
                 makes(plan, plan.body.len(), self.belief, &self.args, true)
                     || all_steps(&plan.body).into_iter().any(|step| match step.kind {
-                        StepKind::Achieve(goal, ..) | StepKind::Spawn(goal, _) => self.goal_makes(goal, seen),
-                        StepKind::Do(..)
+                        StepKind::Achieve { goal, .. } | StepKind::Spawn { goal, .. } => {
+                            self.goal_makes(goal, seen)
+                        }
+                        StepKind::Do { .. }
                         | StepKind::Query(_)
                         | StepKind::Test(_)
                         | StepKind::Add(_)
@@ -210,7 +213,7 @@ impl<'a> Dropped<'a> {
                         | StepKind::Replace(_)
                         | StepKind::Abolish(_)
                         | StepKind::Await { .. }
-                        | StepKind::Wait(_)
+                        | StepKind::Wait { .. }
                         | StepKind::If { .. }
                         | StepKind::While { .. }
                         | StepKind::For { .. }
@@ -218,8 +221,8 @@ impl<'a> Dropped<'a> {
                         | StepKind::Send { .. }
                         | StepKind::Ask { .. }
                         | StepKind::AskAll { .. }
-                        | StepKind::Print(_)
-                        | StepKind::Control(..)
+                        | StepKind::Print { .. }
+                        | StepKind::Control { .. }
                         | StepKind::Fail => false,
                     })
             },
@@ -228,11 +231,11 @@ impl<'a> Dropped<'a> {
 
     /// A plan on the way to this one handles the belief, or has made it.
     fn known_to_callers(&self) -> bool {
-        let mut seen = BTreeSet::from([self.plan.span]);
+        let mut seen = BTreeSet::from([self.plan.origin]);
         let mut open = vec![self.plan];
         while let Some(plan) = open.pop() {
             for caller in callers(&self.facts, plan) {
-                if !seen.insert(caller.span) {
+                if !seen.insert(caller.origin) {
                     continue;
                 }
                 let knows = handled(caller).iter().any(|h| h.meets(self.belief, &self.args, true))
@@ -269,19 +272,21 @@ fn makes(plan: &Plan, at: usize, belief: BeliefId, args: &[Term<'_>], apart: boo
 
 /// The plans that adopt the plan's goal; a failure plan goes on after the plans for its goal.
 fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
-    let (goal, failed) = match plan.trigger {
-        TriggerOn::Achieve(goal) => (goal, false),
-        TriggerOn::Failed(goal) => (goal, true),
-        TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
+    let (goal, failed) = match plan.trigger.on {
+        TriggerOn::GoalAdded(goal) => (goal, false),
+        TriggerOn::GoalFailed(goal) => (goal, true),
+        TriggerOn::TestAdded(belief) | TriggerOn::TestFailed(belief) => {
             return facts.askers(belief).map(|(plan, _)| plan).collect();
         }
-        TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => return Vec::new(),
+        TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => {
+            return Vec::new();
+        }
     };
     let mut all: Vec<&Plan> = facts.adopters(goal).collect();
-    all.sort_by_key(|p| p.span);
-    all.dedup_by_key(|p| p.span);
+    all.sort_by_key(|p| p.origin);
+    all.dedup_by_key(|p| p.origin);
     if failed {
-        all.extend(facts.plans(TriggerOn::Achieve(goal)));
+        all.extend(facts.plans(TriggerOn::GoalAdded(goal)));
     }
     all
 }

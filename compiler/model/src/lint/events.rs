@@ -9,7 +9,7 @@ use crate::{EventId, Scenario};
 pub(super) fn own_events(scenario: &Scenario) -> impl Iterator<Item = (EventId, &crate::Event, Span)> {
     let events = (0..=u16::MAX).map(EventId).zip(&scenario.events);
     let place = |i: EventId, e: &crate::Event| {
-        scenario.places.events.get(usize::from(i.0)).copied().unwrap_or(e.span)
+        scenario.places.events.get(usize::from(i.0)).copied().unwrap_or(e.origin)
     };
     events.map(move |(i, e)| (i, e, place(i, e))).filter(|(_, _, span)| span.file == FileId(0))
 }

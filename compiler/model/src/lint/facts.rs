@@ -10,8 +10,8 @@ use super::{
     flow::{Flow, flows},
 };
 use crate::{
-    Arg, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind, StimulusStep,
-    Sync, TestStep, TriggerOn, Value, world::RuleOn,
+    Arg, ArgPattern, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind,
+    StimulusStep, Sync, TestStep, TriggerOn, Value, world::RuleOn,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -19,18 +19,6 @@ const MAKERS: usize = 64;
 
 /// A constant argument in a form that has an order; `None` may be anything.
 type Key = Option<(u8, u64)>;
-
-fn key(value: Value) -> (u8, u64) {
-    match value {
-        Value::Bool(b) => (0, u64::from(b)),
-        Value::Int(n) => (1, n.cast_unsigned()),
-        Value::Float(x) => (2, x.to_bits()),
-        Value::Symbol(symbol) => (3, symbol.number()),
-        Value::Text(text) => (4, text.0.number()),
-        // No event has one.
-        Value::List(_) => (5, 0),
-    }
-}
 
 /// An event with arguments that are constant or may be anything.
 #[derive(Clone, Debug)]
@@ -41,11 +29,17 @@ pub(crate) struct Wanted {
 
 impl Wanted {
     fn new(event: EventId, args: impl Iterator<Item = Option<Value>>) -> Self {
-        Self { event, args: args.map(|v| v.map(key)).collect() }
+        Self { event, args: args.map(|v| v.map(Value::key)).collect() }
     }
 
     pub fn of(pattern: &EventPattern) -> Self {
-        Self::new(pattern.event, pattern.args.iter().copied())
+        Self::new(
+            pattern.event,
+            pattern.args.iter().map(|a| match a {
+                ArgPattern::Any => None,
+                ArgPattern::Is(v) => Some(*v),
+            }),
+        )
     }
 }
 
@@ -146,7 +140,7 @@ impl<'a> Facts<'a> {
 
     fn makes(&mut self, event: EventId, args: impl Iterator<Item = Option<Value>>) {
         let Some(e) = self.events.get_mut(at(event)).filter(|e| !e.freely) else { return };
-        let args: Vec<Key> = args.map(|v| v.map(key)).collect();
+        let args: Vec<Key> = args.map(|v| v.map(Value::key)).collect();
         if args.iter().all(Option::is_none) || e.makers.len() == MAKERS {
             e.freely = true;
         } else {
@@ -202,7 +196,7 @@ impl<'a> Facts<'a> {
                     self.steps(then);
                     self.steps(otherwise);
                 }
-                StimulusStep::Hold(_) | StimulusStep::Act(_) => {}
+                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
             }
         }
     }
@@ -212,9 +206,9 @@ impl<'a> Facts<'a> {
             agent.beliefs.iter().filter_map(|b| b.percept).for_each(|event| self.reads(event));
             let places = scenario.places.agents.get(index);
             for (i, plan) in agent.plans.iter().enumerate() {
-                if let TriggerOn::Perceived(event) = plan.trigger {
-                    let span = places.and_then(|p| p.triggers.get(i)).copied().unwrap_or(plan.span);
-                    let args = plan.args.iter().map(|a| match a {
+                if let TriggerOn::Perceived(event) = plan.trigger.on {
+                    let span = places.and_then(|p| p.triggers.get(i)).copied().unwrap_or(plan.origin);
+                    let args = plan.trigger.args.iter().map(|a| match a {
                         Arg::Expr(e) => e.constant(),
                         Arg::Any | Arg::Var(_) | Arg::List(..) => None,
                     });
@@ -222,19 +216,19 @@ impl<'a> Facts<'a> {
                 }
                 for step in all_steps(&plan.body) {
                     match &step.kind {
-                        StepKind::Do(event, args) => self.makes_exprs(*event, args),
+                        StepKind::Do { event, args } => self.makes_exprs(*event, args),
                         StepKind::Await { events, .. } => {
-                            self.waits_for(step.span, events.iter().map(Wanted::of).collect());
+                            self.waits_for(step.origin, events.iter().map(Wanted::of).collect());
                         }
-                        StepKind::Achieve(..)
-                        | StepKind::Spawn(..)
+                        StepKind::Achieve { .. }
+                        | StepKind::Spawn { .. }
                         | StepKind::Query(..)
                         | StepKind::Test(_)
                         | StepKind::Add(..)
                         | StepKind::Remove(..)
                         | StepKind::Replace(..)
                         | StepKind::Abolish(_)
-                        | StepKind::Wait(_)
+                        | StepKind::Wait { .. }
                         | StepKind::If { .. }
                         | StepKind::While { .. }
                         | StepKind::For { .. }
@@ -242,8 +236,8 @@ impl<'a> Facts<'a> {
                         | StepKind::Send { .. }
                         | StepKind::Ask { .. }
                         | StepKind::AskAll { .. }
-                        | StepKind::Print(_)
-                        | StepKind::Control(..)
+                        | StepKind::Print { .. }
+                        | StepKind::Control { .. }
                         | StepKind::Fail => {}
                     }
                 }
@@ -259,10 +253,10 @@ impl<'a> Facts<'a> {
                     Sync::Internal | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
                     Sync::Send { event, args } => self.makes_exprs(*event, args),
                     Sync::Receive { event, args } => {
-                        let span = places.and_then(|p| p.waits.get(i)).copied().unwrap_or(edge.span);
+                        let span = places.and_then(|p| p.waits.get(i)).copied().unwrap_or(edge.origin);
                         let args = args.iter().map(|a| match a {
-                            ReceiveArg::Is(value) => Some(*value),
-                            ReceiveArg::Any | ReceiveArg::Bind => None,
+                            ReceiveArg::Match(ArgPattern::Is(value)) => Some(*value),
+                            ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind => None,
                         });
                         self.waits_for(span, vec![Wanted::new(*event, args)]);
                     }
@@ -295,7 +289,7 @@ impl<'a> Facts<'a> {
             self.makes_exprs(rule.event, &rule.args);
             match &rule.on {
                 RuleOn::Event(pattern) => self.waits_for(rule.span, vec![Wanted::of(pattern)]),
-                RuleOn::Closes(_) | RuleOn::Opens(_) => {}
+                RuleOn::Commanded { .. } => {}
             }
         }
     }
@@ -308,7 +302,7 @@ impl<'a> Facts<'a> {
             }
             let places = scenario.places.awaits.get(index);
             for (i, pattern) in awaits.iter().enumerate() {
-                let span = places.and_then(|p| p.get(i)).copied().unwrap_or(suite.span);
+                let span = places.and_then(|p| p.get(i)).copied().unwrap_or(suite.origin);
                 self.waits_for(span, vec![Wanted::of(pattern)]);
             }
         }
@@ -316,7 +310,7 @@ impl<'a> Facts<'a> {
             match step {
                 TestStep::Do { event, args, .. } => self.makes(*event, args.iter().copied().map(Some)),
                 TestStep::Await { events, .. } => events.iter().for_each(|p| self.reads(p.event)),
-                TestStep::Wait(_) => {}
+                TestStep::Wait { .. } => {}
             }
         }
     }

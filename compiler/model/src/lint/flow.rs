@@ -3,8 +3,8 @@
 use std::{collections::VecDeque, rc::Rc};
 
 use crate::{
-    Automaton, ChannelKind, ClockConstraint, ClockOp, Edge, EventId, Expr, ExprKind, FunctionId, Leaf,
-    LocationId, Param, ReceiveArg, Scenario, Sync, Update,
+    Automaton, Channel, ChannelKind, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, ExprKind,
+    FunctionId, Leaf, LocationId, ReceiveArg, Scenario, Sync, Update, leaves,
     lint::interval::{Env, Interval},
 };
 
@@ -43,12 +43,13 @@ pub(crate) struct Flow {
 
 /// The flows of all automata.
 pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
-    let intervals = |params: &[Param]| params.iter().map(|p| Interval::of(p.ty)).collect();
+    let of_event = |e: &Event| e.params.iter().map(|p| Interval::of(p.ty)).collect();
+    let of_channel = |c: &Channel| c.params.iter().map(|p| Interval::of(p.ty())).collect();
     let ranges = Rc::new(Ranges {
-        shared: scenario.shared.iter().map(|v| Interval::of(v.ty)).collect(),
-        params: scenario.events.iter().map(|e| intervals(&e.params)).collect(),
-        assigns: scenario.functions.iter().map(|f| f.assigns.clone()).collect(),
-        channels: scenario.channels.iter().map(|c| intervals(&c.params)).collect(),
+        shared: scenario.shared.iter().map(|v| Interval::of(v.ty())).collect(),
+        params: scenario.events.iter().map(of_event).collect(),
+        assigns: scenario.effects.iter().map(|f| f.assigns.clone()).collect(),
+        channels: scenario.channels.iter().map(of_channel).collect(),
         broadcasts: scenario.channels.iter().map(|c| c.kind == ChannelKind::Broadcast).collect(),
         clocks: scenario.clocks.len(),
     });
@@ -57,7 +58,7 @@ pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
 
 impl Flow {
     fn of(automaton: &Automaton, ranges: Rc<Ranges>) -> Self {
-        let own = automaton.vars.iter().map(|v| Interval::of(v.ty)).collect();
+        let own = automaton.vars.iter().map(|v| Interval::of(v.ty())).collect();
         let mut out = vec![Vec::new(); automaton.locations.len()];
         for (i, edge) in automaton.edges.iter().enumerate() {
             if let Some(edges) = out.get_mut(at(edge.from)) {
@@ -160,7 +161,7 @@ impl Flow {
 
     /// The selects, then what the event or channel binds.
     fn locals(&self, edge: &Edge) -> Vec<Interval> {
-        let mut locals: Vec<Interval> = edge.selects.iter().map(|p| Interval::of(p.ty)).collect();
+        let mut locals: Vec<Interval> = edge.selects.iter().map(|p| Interval::of(p.ty())).collect();
         let (args, params) = match &edge.sync {
             Sync::Receive { event, args } => (args, self.params(*event)),
             Sync::Accept { channel, args } => {
@@ -196,12 +197,12 @@ impl Flow {
 
     /// The variable that an update sets, its new value, and its range.
     pub fn set_by<'e>(&self, update: &'e Update) -> Option<(Leaf, &'e Expr, Interval)> {
-        let (leaf, e, range) = match update {
-            Update::Own(i, e) => (Leaf::Own(*i), e, self.own.get(usize::from(*i))),
-            Update::Shared(i, e) => (Leaf::Shared(*i), e, self.ranges.shared.get(usize::from(*i))),
-            Update::Element(..) | Update::Call(..) | Update::Reset { .. } => return None,
-        };
-        Some((leaf, e, range.copied().unwrap_or(Interval::ALL)))
+        match update {
+            Update::Assign { place, value } if place.indices.is_empty() => {
+                Some((place.slot, value, self.range_of(place.slot)))
+            }
+            Update::Assign { .. } | Update::Call { .. } | Update::Reset { .. } => None,
+        }
     }
 
     /// What an update may set besides [`Self::set_by`]: of elements and in functions any value.
@@ -215,25 +216,31 @@ impl Flow {
             });
         };
         match update {
-            Update::Own(_, e) | Update::Shared(_, e) => called(e),
-            Update::Element(place, e) => {
-                called(e);
-                set.extend(place.leaves());
+            Update::Assign { place, value } => {
+                called(value);
+                if !place.indices.is_empty() {
+                    set.extend(leaves(place));
+                }
             }
-            Update::Call(f, args) => {
+            Update::Call { function: f, args } => {
                 args.iter().for_each(called);
                 set.extend(self.assigned_by(*f));
             }
             Update::Reset { .. } => {}
         }
         for leaf in set {
-            let range = match leaf {
-                Leaf::Own(i) => self.own.get(usize::from(i)),
-                Leaf::Shared(i) => self.ranges.shared.get(usize::from(i)),
-                Leaf::Local(_) | Leaf::Signal(_) => None,
-            };
-            env.assign(leaf, range.copied().unwrap_or(Interval::ALL));
+            env.assign(leaf, self.range_of(leaf));
         }
+    }
+
+    /// The declared range of a variable.
+    fn range_of(&self, leaf: Leaf) -> Interval {
+        let range = match leaf {
+            Leaf::Own(i) => self.own.get(usize::from(i)),
+            Leaf::Shared(i) => self.ranges.shared.get(usize::from(i)),
+            Leaf::Local(_) | Leaf::Signal(_) => None,
+        };
+        range.copied().unwrap_or(Interval::ALL)
     }
 
     fn assigned_by(&self, function: FunctionId) -> &[Leaf] {
@@ -262,7 +269,7 @@ impl Flow {
 }
 
 fn initial(automaton: &Automaton) -> Vec<Interval> {
-    automaton.vars.iter().map(|v| Interval::value(v.init)).collect()
+    automaton.vars.iter().map(|v| v.value(v.init).map_or(Interval::ALL, Interval::value)).collect()
 }
 
 fn at(location: LocationId) -> usize {

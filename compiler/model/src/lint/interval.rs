@@ -3,9 +3,7 @@
 //! INVARIANT: an interval holds every value that the expression can have; an expression without a value (a division by
 //! zero, a number beyond 64 bits) is a fault of its own and not in it.
 
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
-
-use crate::{Expr, ExprKind, Function, Kind, Leaf, Type, Value};
+use crate::{BinaryOp, Expr, ExprKind, Kind, Leaf, NumberFunction, Type, UnaryOp, Value, leaves};
 
 /// `lo..=hi`, not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,7 +206,7 @@ impl<'a> Env<'a> {
             ExprKind::Const(value) => Interval::value(*value),
             ExprKind::Leaf(leaf) => self.get(*leaf),
             ExprKind::Element(place) => {
-                let all = place.leaves().into_iter().map(|l| self.get(l));
+                let all = leaves(place).into_iter().map(|l| self.get(l));
                 all.reduce(Interval::join).unwrap_or(Interval::ALL)
             }
             ExprKind::Apply(_, _, ty) => Interval::of(*ty),
@@ -235,10 +233,16 @@ impl<'a> Env<'a> {
             ExprKind::Call(f, args) => {
                 let args: Vec<Interval> = args.iter().map(|a| self.eval(a)).collect();
                 match (f, args.as_slice()) {
-                    (Function::Abs, [a]) => a.abs(),
-                    (Function::Min, [a, b]) => Interval { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi) },
-                    (Function::Max, [a, b]) => Interval { lo: a.lo.max(b.lo), hi: a.hi.max(b.hi) },
-                    (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => Interval::ALL,
+                    (NumberFunction::Abs, [a]) => a.abs(),
+                    (NumberFunction::Min, [a, b]) => Interval { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi) },
+                    (NumberFunction::Max, [a, b]) => Interval { lo: a.lo.max(b.lo), hi: a.hi.max(b.hi) },
+                    (
+                        NumberFunction::Abs
+                        | NumberFunction::Min
+                        | NumberFunction::Max
+                        | NumberFunction::Norm,
+                        _,
+                    ) => Interval::ALL,
                 }
             }
         }

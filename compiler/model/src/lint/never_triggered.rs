@@ -1,10 +1,9 @@
 //! HR0602: a requirement that nothing can ever put to the test.
 
 use hrdsl_source::{Code, Diagnostic};
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 
 use super::facts::Facts;
-use crate::{Expr, ExprKind, Function, Leaf, Pattern, Scenario, Term, Value};
+use crate::{BinaryOp, Expr, ExprKind, Leaf, NumberFunction, Pattern, Scenario, Term, UnaryOp, Value};
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
     for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
@@ -108,7 +107,7 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
     let of = |e: &Expr| range(scenario, e, depth);
     let infinite = f64::INFINITY;
     let (lo, hi) = match &e.kind {
-        ExprKind::Const(value) => value.number().map(|x| (x, x))?,
+        ExprKind::Const(value) => value.as_f64().map(|x| (x, x))?,
         ExprKind::Leaf(leaf) => range(scenario, signal(scenario, leaf, depth)?, depth + 1)?,
         ExprKind::Term(term) => match term {
             Term::Distance(..) | Term::Range(..) | Term::Speed(_) | Term::JointSpeed(_) => (0.0, infinite),
@@ -140,11 +139,14 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
         ExprKind::Call(f, args) => {
             let args: Option<Vec<(f64, f64)>> = args.iter().map(of).collect();
             match (f, args?.as_slice()) {
-                (Function::Abs, [(lo, hi)]) if *lo >= 0.0 => (*lo, *hi),
-                (Function::Abs, [(lo, hi)]) => ((-hi).max(0.0), hi.max(-lo)),
-                (Function::Min, [a, b]) => (a.0.min(b.0), a.1.min(b.1)),
-                (Function::Max, [a, b]) => (a.0.max(b.0), a.1.max(b.1)),
-                (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => return None,
+                (NumberFunction::Abs, [(lo, hi)]) if *lo >= 0.0 => (*lo, *hi),
+                (NumberFunction::Abs, [(lo, hi)]) => ((-hi).max(0.0), hi.max(-lo)),
+                (NumberFunction::Min, [a, b]) => (a.0.min(b.0), a.1.min(b.1)),
+                (NumberFunction::Max, [a, b]) => (a.0.max(b.0), a.1.max(b.1)),
+                (
+                    NumberFunction::Abs | NumberFunction::Min | NumberFunction::Max | NumberFunction::Norm,
+                    _,
+                ) => return None,
             }
         }
         ExprKind::Unary(UnaryOp::Not, _)

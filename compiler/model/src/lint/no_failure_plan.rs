@@ -29,12 +29,12 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
         let mut by_goal: BTreeMap<GoalId, usize> = BTreeMap::new();
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let found = in_plan(&facts, plan);
-            let group = match plan.trigger {
-                TriggerOn::Achieve(goal) => *by_goal.entry(goal).or_insert(all.len()),
-                TriggerOn::Failed(_)
-                | TriggerOn::Added(_)
-                | TriggerOn::Removed(_)
-                | TriggerOn::Test(_)
+            let group = match plan.trigger.on {
+                TriggerOn::GoalAdded(goal) => *by_goal.entry(goal).or_insert(all.len()),
+                TriggerOn::GoalFailed(_)
+                | TriggerOn::BeliefAdded(_)
+                | TriggerOn::BeliefRemoved(_)
+                | TriggerOn::TestAdded(_)
                 | TriggerOn::TestFailed(_)
                 | TriggerOn::Perceived(_) => all.len(),
             };
@@ -71,7 +71,7 @@ struct Roots<'a> {
 
 impl<'a> Roots<'a> {
     fn add(&mut self, plan: &'a Plan) {
-        if self.spans.insert(plan.span) {
+        if self.spans.insert(plan.origin) {
             self.plans.push(plan);
         }
     }
@@ -88,12 +88,12 @@ fn can_fail(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Option<&'static s
         StepKind::Await { within: Some(_), .. } => Some("the time may run out"),
         StepKind::Query(literal) => {
             let belief = literal.belief;
-            let answered = facts.plans(TriggerOn::Test(belief)).next().is_some();
+            let answered = facts.plans(TriggerOn::TestAdded(belief)).next().is_some();
             // That nothing adds it has been said.
             let stuck = facts.comes_about(belief) && !answered && !never_stuck(facts, plan, at);
             stuck.then_some("there may be no such fact")
         }
-        StepKind::Achieve(goal, args, within) => {
+        StepKind::Achieve { goal, args, within } => {
             let handled = has_failure_plan(facts, *goal, &of_exprs(args));
             let stuck = !handled && !never_stuck(facts, plan, at);
             let late = (!handled && within.is_some()).then_some("the time may run out");
@@ -105,27 +105,27 @@ fn can_fail(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Option<&'static s
         StepKind::Ask { within: None, .. } => Some("there may be no answer"),
         StepKind::AskAll { within: None, .. } | StepKind::Await { within: None, .. } => None,
         // What may have no answer here is meant to end the plan; steps in blocks are not looked into.
-        StepKind::Do(..)
-        | StepKind::Spawn(..)
+        StepKind::Do { .. }
+        | StepKind::Spawn { .. }
         | StepKind::Test(_)
         | StepKind::Add(_)
         | StepKind::Remove(_)
         | StepKind::Replace(_)
         | StepKind::Abolish(_)
-        | StepKind::Wait(_)
+        | StepKind::Wait { .. }
         | StepKind::If { .. }
         | StepKind::While { .. }
         | StepKind::For { .. }
         | StepKind::Fork { .. }
         | StepKind::Send { .. }
-        | StepKind::Print(_)
-        | StepKind::Control(..)
+        | StepKind::Print { .. }
+        | StepKind::Control { .. }
         | StepKind::Fail => None,
     }
 }
 
 fn has_failure_plan(facts: &AgentFacts<'_>, goal: GoalId, args: &[Term<'_>]) -> bool {
-    facts.plans(TriggerOn::Failed(goal)).any(|p| may_unify(args, &of_args(&p.args), true))
+    facts.plans(TriggerOn::GoalFailed(goal)).any(|p| may_unify(args, &of_args(&p.trigger.args), true))
 }
 
 /// The plans at whose end an intention dies if a step of `plan` fails, and with it something that was still to do: where
@@ -136,16 +136,16 @@ fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
     let mut seen = BTreeSet::new();
     let mut open = vec![(plan, lost)];
     while let Some((plan, lost)) = open.pop() {
-        if !seen.insert((plan.span, lost)) {
+        if !seen.insert((plan.origin, lost)) {
             continue;
         }
         if !facts.work(1) {
             return Roots::default();
         }
         let from = open.len();
-        match plan.trigger {
-            TriggerOn::Achieve(goal) if has_failure_plan(facts, goal, &of_args(&plan.args)) => {}
-            TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
+        match plan.trigger.on {
+            TriggerOn::GoalAdded(goal) if has_failure_plan(facts, goal, &of_args(&plan.trigger.args)) => {}
+            TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => {
                 for adoption in facts.adoptions(goal) {
                     match adoption {
                         Adoption::Root if lost => roots.add(plan),
@@ -154,10 +154,10 @@ fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
                     }
                 }
             }
-            TriggerOn::Test(belief) | TriggerOn::TestFailed(belief) => {
+            TriggerOn::TestAdded(belief) | TriggerOn::TestFailed(belief) => {
                 open.extend(facts.askers(belief).map(|(by, at)| (by, lost || is_before_others(by, at))));
             }
-            TriggerOn::Added(_) | TriggerOn::Removed(_) | TriggerOn::Perceived(_) => {
+            TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => {
                 if lost {
                     roots.add(plan);
                 }
@@ -182,24 +182,24 @@ impl<'a> Unhandled<'a> {
     fn issue(&self, facts: &AgentFacts<'_>) -> Option<Diagnostic> {
         let ((step, why), more) = self.steps.split_first()?;
         let message = "this can fail, and nothing handles the failure";
-        let mut issue = Diagnostic::warning(Code::NO_FAILURE_PLAN, step.span, message).here(*why);
+        let mut issue = Diagnostic::warning(Code::NO_FAILURE_PLAN, step.origin, message).here(*why);
         for (step, why) in more {
-            issue = issue.label(step.span, format!("here too: {why}"));
+            issue = issue.label(step.origin, format!("here too: {why}"));
         }
         for root in &self.roots.plans {
-            let text = match root.trigger {
-                TriggerOn::Achieve(goal) | TriggerOn::Failed(goal) => {
+            let text = match root.trigger.on {
+                TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => {
                     format!("then the goal `!{}` dies, with all that it still was to do", facts.goal(goal))
                 }
-                TriggerOn::Added(_)
-                | TriggerOn::Removed(_)
-                | TriggerOn::Test(_)
+                TriggerOn::BeliefAdded(_)
+                | TriggerOn::BeliefRemoved(_)
+                | TriggerOn::TestAdded(_)
                 | TriggerOn::TestFailed(_)
                 | TriggerOn::Perceived(_) => {
                     "then this plan dies, with all that it still was to do".to_owned()
                 }
             };
-            issue = issue.label(root.head, text);
+            issue = issue.label(root.trigger.origin, text);
         }
         Some(self.mend(facts, step, issue))
     }
@@ -207,12 +207,12 @@ impl<'a> Unhandled<'a> {
     /// Adds what to type.
     fn mend(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
         let mut all = [self.plan].into_iter().chain(self.roots.plans.iter().copied());
-        let handler = all.find_map(|p| match p.trigger {
-            TriggerOn::Achieve(goal) => Some((shown(facts, goal), p)),
-            TriggerOn::Failed(_)
-            | TriggerOn::Added(_)
-            | TriggerOn::Removed(_)
-            | TriggerOn::Test(_)
+        let handler = all.find_map(|p| match p.trigger.on {
+            TriggerOn::GoalAdded(goal) => Some((shown(facts, goal), p)),
+            TriggerOn::GoalFailed(_)
+            | TriggerOn::BeliefAdded(_)
+            | TriggerOn::BeliefRemoved(_)
+            | TriggerOn::TestAdded(_)
             | TriggerOn::TestFailed(_)
             | TriggerOn::Perceived(_) => None,
         });
@@ -221,11 +221,11 @@ impl<'a> Unhandled<'a> {
             |(head, _)| format!("say what then: `plan -!{head} {{ … }}`"),
         );
         let add = |issue: Diagnostic, head: &str, after: &Plan| {
-            let end = Span { start: after.span.end, ..after.span };
+            let end = Span { start: after.origin.end, ..after.origin };
             issue.fix(format!("add an empty plan `{head}`"), end, format!("\n  plan {head} {{ }}"), false)
         };
-        if let StepKind::Achieve(goal, ..) = step.kind
-            && let Some(last) = facts.plans(TriggerOn::Achieve(goal)).last()
+        if let StepKind::Achieve { goal, .. } = step.kind
+            && let Some(last) = facts.plans(TriggerOn::GoalAdded(goal)).last()
         {
             let head = format!("+!{}", shown(facts, goal));
             let issue =

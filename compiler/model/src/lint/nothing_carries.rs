@@ -6,8 +6,8 @@ use hrdsl_source::{Code, Diagnostic};
 
 use super::facts::Facts;
 use crate::{
-    BodyId, Motion, Scenario,
-    world::{Body, Frame, Gripper, Instance, Shape, World, sin_cos},
+    BodyId, Motion, Scenario, Shape,
+    world::{Body, Frame, Gripper, Instance, World, sin_cos},
 };
 
 /// Beyond so many comparisons nothing is said.
@@ -116,7 +116,7 @@ struct Extent {
 impl Extent {
     fn of(body: &Body) -> Self {
         let half = match body.shape {
-            Shape::Box(edges) => edges.map(|e| e / 2.0),
+            Shape::Box { size } => size.map(|e| e / 2.0),
             Shape::Sphere { radius } => [radius; 3],
             Shape::Capsule { radius, length } => [radius, radius, radius + length / 2.0],
             Shape::Cylinder { radius, length } => [radius, radius, length / 2.0],

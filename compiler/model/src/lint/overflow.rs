@@ -72,24 +72,18 @@ impl<'a> Checker<'a> {
                 Sync::Send { event, args } => self.args(&env, args, self.params(*event)),
                 Sync::Offer { channel, args } => {
                     let channel = self.scenario.channels.get(usize::from(channel.0));
-                    self.args(&env, args, channel.map_or(&[], |c| &c.params));
+                    for (arg, param) in args.iter().zip(channel.map_or(&[][..], |c| &c.params)) {
+                        self.fits(&env, arg, param.ty(), &format!("the parameter `{}`", param.name));
+                    }
                 }
                 Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
             }
             for update in &edge.updates {
                 flow.disturb(&mut env, update);
-                if let Update::Element(place, e) = update {
-                    self.element(&env, place.leaf, e, automaton);
+                if let Update::Assign { place, value } = update {
+                    self.assigned(&env, place.slot, value, automaton);
                 }
-                let var = match update {
-                    Update::Own(i, _) => automaton.vars.get(usize::from(*i)),
-                    Update::Shared(i, _) => self.scenario.shared.get(usize::from(*i)),
-                    Update::Element(..) | Update::Call(..) | Update::Reset { .. } => None,
-                };
-                let (Some(var), Some((leaf, e, range))) = (var, flow.set_by(update)) else { continue };
-                // One assignment sets an element of which only the index tells which it is.
-                let name = var.name.split('[').next().unwrap_or(&var.name);
-                self.fits(&env, e, var.ty, &format!("`{name}`"));
+                let Some((leaf, e, range)) = flow.set_by(update) else { continue };
                 match env.eval(e).meet(range) {
                     Some(value) => env.assign(leaf, value),
                     None => break,
@@ -98,8 +92,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What becomes of an element that an index chooses; all are of one type.
-    fn element(&mut self, env: &Env<'_>, leaf: Leaf, e: &Expr, automaton: &Automaton) {
+    /// What a variable becomes, or an element that an index chooses; all of an array are of one type.
+    fn assigned(&mut self, env: &Env<'_>, leaf: Leaf, e: &Expr, automaton: &Automaton) {
         let var = match leaf {
             Leaf::Own(i) => automaton.vars.get(usize::from(i)),
             Leaf::Shared(i) => self.scenario.shared.get(usize::from(i)),
@@ -107,7 +101,7 @@ impl<'a> Checker<'a> {
         };
         if let Some(var) = var {
             let name = var.name.split('[').next().unwrap_or(&var.name);
-            self.fits(env, e, var.ty, &format!("`{name}`"));
+            self.fits(env, e, var.ty(), &format!("`{name}`"));
         }
     }
 
@@ -132,7 +126,7 @@ impl<'a> Checker<'a> {
                         }
                     }
                 }
-                StimulusStep::Hold(_) | StimulusStep::Act(_) => {}
+                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
             }
         }
     }
@@ -155,16 +149,16 @@ impl<'a> Checker<'a> {
         let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for plan in &agent.plans {
             let mut env = Env::new(&[], &[], vec![Interval::ALL; plan.vars.len()]);
-            let matched: &[Param] = match plan.trigger {
-                TriggerOn::Added(b)
-                | TriggerOn::Removed(b)
-                | TriggerOn::Test(b)
+            let matched: &[Param] = match plan.trigger.on {
+                TriggerOn::BeliefAdded(b)
+                | TriggerOn::BeliefRemoved(b)
+                | TriggerOn::TestAdded(b)
                 | TriggerOn::TestFailed(b) => params(b),
                 TriggerOn::Perceived(event) => self.params(event),
                 // What a goal is adopted with has no range.
-                TriggerOn::Achieve(_) | TriggerOn::Failed(_) => &[],
+                TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
             };
-            if !bind(&mut env, &plan.args, matched) || !context(&mut env, &plan.context, agent) {
+            if !bind(&mut env, &plan.trigger.args, matched) || !context(&mut env, &plan.context, agent) {
                 continue;
             }
             self.plan_body(agent, &plan.body, env);
@@ -175,7 +169,7 @@ impl<'a> Checker<'a> {
         let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for step in steps {
             match &step.kind {
-                StepKind::Do(event, args) => self.args(&env, args, self.params(*event)),
+                StepKind::Do { event, args } => self.args(&env, args, self.params(*event)),
                 StepKind::Add(a) | StepKind::Replace(a) => self.args(&env, &a.args, params(a.belief)),
                 StepKind::Query(l) => {
                     if !bind(&mut env, &l.args, params(l.belief)) {
@@ -206,17 +200,17 @@ impl<'a> Checker<'a> {
                     branches.iter().for_each(|b| self.plan_body(agent, b, env.clone()));
                     self.forget(step, &mut env);
                 }
-                StepKind::Achieve(..)
-                | StepKind::Spawn(..)
+                StepKind::Achieve { .. }
+                | StepKind::Spawn { .. }
                 | StepKind::Remove(_)
                 | StepKind::Abolish(_)
                 | StepKind::Await { .. }
-                | StepKind::Wait(_)
+                | StepKind::Wait { .. }
                 | StepKind::Send { .. }
                 | StepKind::Ask { .. }
                 | StepKind::AskAll { .. }
-                | StepKind::Print(_)
-                | StepKind::Control(..)
+                | StepKind::Print { .. }
+                | StepKind::Control { .. }
                 | StepKind::Fail => {}
             }
         }
@@ -225,7 +219,7 @@ impl<'a> Checker<'a> {
     /// A name that a block binds may stand for something else afterwards; what was known before is still so.
     fn forget(&self, block: &Step, env: &mut Env<'_>) {
         let mut bound = Vec::new();
-        crate::each_step(std::slice::from_ref(block), &mut |step| {
+        hrdsl_ir::bdi::each_step(std::slice::from_ref(block), &mut |step| {
             if let StepKind::Query(l) = &step.kind {
                 bound.extend(super::plan_terms::vars_of(&l.args));
             }

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_syntax::ast::BinaryOp;
-
-use crate::{Arg, Context, Expr, ExprKind, Leaf, Plan, Value, value};
+use crate::{Arg, BinaryOp, Context, Expr, ExprKind, Leaf, Plan, Value};
 
 /// An argument, as far as the rules look at it.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +49,7 @@ pub(crate) fn of_values(args: &[Value]) -> Vec<Term<'static>> {
 
 /// The same at run time: `1` and `1.0` are equal.
 pub(crate) fn same_value(a: Value, b: Value) -> bool {
-    value::same(a, b)
+    hrdsl_ir::list::same(a, b)
 }
 
 /// Whose variables a term's are: those of two plans are different though they have the same numbers.
@@ -200,8 +198,8 @@ pub(crate) fn fold(e: &Expr, vars: &dyn Fn(u16) -> Option<Value>) -> Option<Valu
         | ExprKind::Element(_)
         | ExprKind::Apply(..)
         | ExprKind::Error => None,
-        ExprKind::Unary(op, a) => value::unary(*op, fold(a, vars)?).ok(),
-        ExprKind::Binary(op, a, b) => value::binary(*op, fold(a, vars)?, fold(b, vars)?).ok(),
+        ExprKind::Unary(op, a) => hrdsl_ir::expr::unary(*op, fold(a, vars)?).ok(),
+        ExprKind::Binary(op, a, b) => hrdsl_ir::expr::binary(*op, fold(a, vars)?, fold(b, vars)?).ok(),
         ExprKind::If(c, a, b) => match fold(c, vars)? {
             Value::Bool(true) => fold(a, vars),
             Value::Bool(false) => fold(b, vars),
@@ -209,7 +207,7 @@ pub(crate) fn fold(e: &Expr, vars: &dyn Fn(u16) -> Option<Value>) -> Option<Valu
         },
         ExprKind::Call(f, args) => {
             let args: Option<Vec<Value>> = args.iter().map(|a| fold(a, vars)).collect();
-            value::call(*f, &args?).ok()
+            hrdsl_ir::expr::call(*f, &args?).ok()
         }
     }
 }
@@ -257,8 +255,8 @@ fn expand<'a>(context: &'a Context, mut so_far: Vec<Vec<&'a Context>>) -> Option
 
 /// For each part of a conjunction, the variables that have a value before it.
 pub(crate) fn bound_before(plan: &Plan, parts: &[&Context]) -> Vec<Vec<u16>> {
-    let mut bound: Vec<u16> = vars_of(&plan.args);
-    plan.annotations.iter().for_each(|(_, arg)| arg.each_var(&mut |var| bound.push(var)));
+    let mut bound: Vec<u16> = vars_of(&plan.trigger.args);
+    plan.trigger.annotations.iter().for_each(|(_, arg)| arg.each_var(&mut |var| bound.push(var)));
     let mut all = Vec::new();
     for part in parts {
         all.push(bound.clone());

@@ -74,7 +74,7 @@ impl Reader<'_> {
             Formula::Data(e) => self.data(e),
             Formula::Clock(bound) => {
                 [Some(bound.clock), bound.minus].into_iter().flatten().for_each(|c| self.clock(c));
-                bound.bound.terms.iter().for_each(|(_, e)| self.data(e));
+                bound.bound.terms.iter().for_each(|t| self.data(&t.value));
             }
             Formula::Not(f) => self.formula(f),
             Formula::And(fs) | Formula::Or(fs) => fs.iter().for_each(|f| self.formula(f)),

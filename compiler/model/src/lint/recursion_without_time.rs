@@ -25,14 +25,14 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
     for facts in agents(scenario, all) {
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let endless = all_steps(&plan.body).into_iter().filter(|step| is_endless(&facts, step));
-            issues.extend(endless.map(|step| endless_loop(step.span)));
+            issues.extend(endless.map(|step| endless_loop(step.origin)));
         }
         let (mut left, mut progress, mut said) = (MANY, BTreeMap::new(), BTreeSet::new());
         for start in &facts.agent.plans {
-            if let TriggerOn::Achieve(goal) = start.trigger
+            if let TriggerOn::GoalAdded(goal) = start.trigger.on
                 && !never_runs(&facts, start)
             {
-                let args: Vec<Passed> = start.args.iter().enumerate().map(Passed::at_start).collect();
+                let args: Vec<Passed> = start.trigger.args.iter().enumerate().map(Passed::at_start).collect();
                 let (left, progress, said) = (&mut left, &mut progress, &mut said);
                 let way = Vec::new();
                 let mut search =
@@ -95,10 +95,10 @@ impl<'a> Search<'a, '_> {
     /// Whether something may change on the way through the steps.
     fn follow(&mut self, plan: &'a Plan, passed: &[Passed], steps: &'a [Step]) -> bool {
         for step in steps {
-            if let StepKind::Achieve(goal, args, _) = &step.kind {
+            if let StepKind::Achieve { goal, args, within: _ } = &step.kind {
                 let args: Vec<Passed> = of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
-                self.way.push((plan, step.span));
-                self.adopted(*goal, &args, step.span);
+                self.way.push((plan, step.origin));
+                self.adopted(*goal, &args, step.origin);
                 self.way.pop();
             }
             for block in step.blocks() {
@@ -112,7 +112,7 @@ impl<'a> Search<'a, '_> {
     }
 
     fn progresses(&mut self, step: &Step) -> bool {
-        let StepKind::Achieve(goal, ..) = &step.kind else {
+        let StepKind::Achieve { goal, .. } = &step.kind else {
             return progresses(&self.facts, step, &mut BTreeSet::new());
         };
         if let Some(known) = self.progress.get(goal) {
@@ -136,10 +136,10 @@ impl<'a> Search<'a, '_> {
         }
         *self.left -= 1;
         let facts = self.facts;
-        for plan in facts.plans(TriggerOn::Achieve(goal)) {
-            let later = plan.span.start > self.start.span.start;
+        for plan in facts.plans(TriggerOn::GoalAdded(goal)) {
+            let later = plan.origin.start > self.start.origin.start;
             let again = self.way.iter().any(|(p, _)| std::ptr::eq(*p, plan));
-            let fits = args.iter().zip(of_args(&plan.args)).all(|(a, t)| a.may_match(t));
+            let fits = args.iter().zip(of_args(&plan.trigger.args)).all(|(a, t)| a.may_match(t));
             if later && !again && fits {
                 self.from(plan, args);
             }
@@ -151,7 +151,7 @@ impl<'a> Search<'a, '_> {
         let message = format!("the goal `!{name}` comes back to itself, and no time passes");
         let mut issue = Diagnostic::warning(Code::NO_TIME_PASSES, span, message)
             .here("adopted again, at the same instant and with nothing changed");
-        issue = issue.label(self.start.head, "the cycle begins here");
+        issue = issue.label(self.start.trigger.origin, "the cycle begins here");
         for (_, through) in self.way.iter().filter(|(_, at)| *at != span) {
             issue = issue.label(*through, "and goes on here");
         }
@@ -165,14 +165,14 @@ impl<'a> Search<'a, '_> {
 fn is_endless(facts: &AgentFacts<'_>, step: &Step) -> bool {
     let StepKind::While { condition, body } = &step.kind else { return false };
     let quiet = |step: &&Step| match &step.kind {
-        StepKind::Print(_) => true,
-        StepKind::Do(..)
+        StepKind::Print { .. } => true,
+        StepKind::Do { .. }
         | StepKind::If { .. }
         | StepKind::For { .. }
         | StepKind::Fork { .. }
         | StepKind::While { .. } => !progresses(facts, step, &mut BTreeSet::new()),
-        StepKind::Achieve(..)
-        | StepKind::Spawn(..)
+        StepKind::Achieve { .. }
+        | StepKind::Spawn { .. }
         | StepKind::Query(_)
         | StepKind::Test(_)
         | StepKind::Add(_)
@@ -180,11 +180,11 @@ fn is_endless(facts: &AgentFacts<'_>, step: &Step) -> bool {
         | StepKind::Replace(_)
         | StepKind::Abolish(_)
         | StepKind::Await { .. }
-        | StepKind::Wait(_)
+        | StepKind::Wait { .. }
         | StepKind::Send { .. }
         | StepKind::Ask { .. }
         | StepKind::AskAll { .. }
-        | StepKind::Control(..)
+        | StepKind::Control { .. }
         | StepKind::Fail => false,
     };
     !draws(condition) && all_steps(body).iter().all(quiet)
@@ -220,7 +220,7 @@ fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
     match term {
         Term::Const(value) => Passed::Const(value),
         Term::Var(var) => {
-            let at = plan.args.iter().position(|arg| *arg == Arg::Var(var));
+            let at = plan.trigger.args.iter().position(|arg| *arg == Arg::Var(var));
             at.and_then(|at| passed.get(at)).cloned().unwrap_or(Passed::New)
         }
         Term::Any | Term::Other(_) | Term::Part => Passed::New,
@@ -230,29 +230,29 @@ fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
 /// Whether time may pass in a step, or a belief change.
 fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut BTreeSet<TriggerOn>) -> bool {
     let on = match &step.kind {
-        StepKind::Do(event, _) => {
+        StepKind::Do { event, args: _ } => {
             return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
         }
         // A message may be answered by another; what is dropped or suspended may be this goal.
         StepKind::Await { .. }
-        | StepKind::Wait(_)
+        | StepKind::Wait { .. }
         | StepKind::Send { .. }
         | StepKind::Ask { .. }
         | StepKind::AskAll { .. }
-        | StepKind::Control(..)
+        | StepKind::Control { .. }
         | StepKind::Fail => return true,
         StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) | StepKind::Abolish(_) => {
             return change(step).is_some();
         }
-        StepKind::Spawn(..) | StepKind::Print(_) => return false,
+        StepKind::Spawn { .. } | StepKind::Print { .. } => return false,
         // What is drawn at random may be another thing each time.
         StepKind::Test(condition) => return draws(condition),
         StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
             return step.condition().is_some_and(draws)
                 || step.blocks().into_iter().flatten().any(|inner| progresses(facts, inner, seen));
         }
-        StepKind::Achieve(goal, ..) => TriggerOn::Achieve(*goal),
-        StepKind::Query(l) => TriggerOn::Test(l.belief),
+        StepKind::Achieve { goal, .. } => TriggerOn::GoalAdded(*goal),
+        StepKind::Query(l) => TriggerOn::TestAdded(l.belief),
     };
     // Where there is that much on the way, something may well change.
     if seen.len() == FAR || !facts.work(1) {
@@ -262,11 +262,11 @@ fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut BTreeSet<TriggerOn
         return false;
     }
     let failed = match on {
-        TriggerOn::Achieve(goal) => Some(TriggerOn::Failed(goal)),
-        TriggerOn::Added(_)
-        | TriggerOn::Removed(_)
-        | TriggerOn::Failed(_)
-        | TriggerOn::Test(_)
+        TriggerOn::GoalAdded(goal) => Some(TriggerOn::GoalFailed(goal)),
+        TriggerOn::BeliefAdded(_)
+        | TriggerOn::BeliefRemoved(_)
+        | TriggerOn::GoalFailed(_)
+        | TriggerOn::TestAdded(_)
         | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => None,
     };

@@ -18,7 +18,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
                 let message = format!("this takes nothing away: only {who} the belief `{}`", belief.name);
                 let what = any_args(&belief.name, belief.params.len());
                 issues.push(
-                    Diagnostic::warning(Code::REMOVES_NOTHING, step.span, message)
+                    Diagnostic::warning(Code::REMOVES_NOTHING, step.origin, message)
                         .here("this takes the source `self` away alone")
                         .help(format!("write `-{what}[source(_)]` for any source")),
                 );

@@ -1,13 +1,12 @@
 //! HR0603: two requirements that no run can meet both.
 
 use hrdsl_source::{Code, Diagnostic};
-use hrdsl_syntax::ast::{BinaryOp, UnaryOp};
 
 use super::{
     facts::{Facts, Wanted},
     interval::same,
 };
-use crate::{EventPattern, Expr, ExprKind, Pattern, Scenario};
+use crate::{ArgPattern, BinaryOp, EventPattern, Expr, ExprKind, Pattern, Scenario, UnaryOp};
 
 /// Beyond so many pairs nothing is said.
 const PAIRS: usize = 1 << 16;
@@ -86,7 +85,7 @@ fn forbids(facts: &Facts<'_>, wants: &Pattern, ban: &Pattern) -> bool {
 /// Whether each event that fits one of `some` fits one of `all`.
 fn covers(all: &[EventPattern], some: &[EventPattern]) -> bool {
     let within = |p: &EventPattern, q: &EventPattern| {
-        p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| p.is_none() || p == q)
+        p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| *p == ArgPattern::Any || p == q)
     };
     some.iter().all(|q| all.iter().any(|p| within(p, q)))
 }
@@ -148,7 +147,7 @@ impl Bounds {
 /// `x < 5` as x and its bounds.
 fn bounds(e: &Expr) -> Option<(&Expr, Bounds)> {
     let ExprKind::Binary(op, a, b) = &e.kind else { return None };
-    let number = |e: &Expr| e.constant().and_then(|v| v.number());
+    let number = |e: &Expr| e.constant().and_then(|v| v.as_f64());
     let (x, limit, turned) = match (number(a), number(b)) {
         (None, Some(limit)) => (a, limit, false),
         (Some(limit), None) => (b, limit, true),

@@ -22,7 +22,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
                 continue;
             }
             let earlier = facts
-                .plans(later.trigger)
+                .plans(later.trigger.on)
                 .take(COMPARED)
                 .take_while(|earlier| !std::ptr::eq(*earlier, later));
             let mut looked_at =
@@ -42,20 +42,20 @@ fn shadowed(earlier: &Plan, later: &Plan) -> Diagnostic {
     };
     Diagnostic::warning(
         Code::SHADOWED_PLAN,
-        later.head,
+        later.trigger.origin,
         "this plan never runs: an earlier one is always taken",
     )
-    .label(earlier.head, "this plan fits whenever that one does")
+    .label(earlier.trigger.origin, "this plan fits whenever that one does")
     .help(help)
 }
 
 /// Whether the earlier plan is applicable whenever the later one is.
 pub(crate) fn shadows(earlier: &Plan, later: &Plan) -> bool {
-    if earlier.trigger != later.trigger || !earlier.annotations.is_empty() {
+    if earlier.trigger.on != later.trigger.on || !earlier.trigger.annotations.is_empty() {
         return false;
     }
     let mut renaming = Renaming::new();
-    if !more_general(&of_args(&earlier.args), &of_args(&later.args), &mut renaming) {
+    if !more_general(&of_args(&earlier.trigger.args), &of_args(&later.trigger.args), &mut renaming) {
         return false;
     }
     let (Some(ours), Some(theirs)) = (alternatives(&earlier.context), alternatives(&later.context)) else {

@@ -4,7 +4,9 @@ use crate::{Arg, Context, Literal, Plan, Step, StepKind};
 
 /// Whether a plan asks for nothing that is not looked into: annotations, lists, internal actions.
 pub(crate) fn is_simple(plan: &Plan) -> bool {
-    plan.annotations.is_empty() && is_simple_args(&plan.args) && is_simple_context(&plan.context)
+    plan.trigger.annotations.is_empty()
+        && is_simple_args(&plan.trigger.args)
+        && is_simple_context(&plan.context)
 }
 
 fn is_simple_context(context: &Context) -> bool {
@@ -31,16 +33,16 @@ fn is_simple_args(args: &[Arg]) -> bool {
 pub(crate) fn is_simple_step(step: &Step) -> bool {
     match &step.kind {
         StepKind::Query(literal) => is_simple_literal(literal),
-        StepKind::Do(..)
-        | StepKind::Achieve(..)
-        | StepKind::Spawn(..)
+        StepKind::Do { .. }
+        | StepKind::Achieve { .. }
+        | StepKind::Spawn { .. }
         | StepKind::Add(_)
         | StepKind::Remove(_)
         | StepKind::Replace(_)
         | StepKind::Abolish(_)
         | StepKind::Await { .. }
-        | StepKind::Wait(_)
-        | StepKind::Print(_) => true,
+        | StepKind::Wait { .. }
+        | StepKind::Print { .. } => true,
         StepKind::Test(_)
         | StepKind::If { .. }
         | StepKind::While { .. }
@@ -49,7 +51,7 @@ pub(crate) fn is_simple_step(step: &Step) -> bool {
         | StepKind::Send { .. }
         | StepKind::Ask { .. }
         | StepKind::AskAll { .. }
-        | StepKind::Control(..)
+        | StepKind::Control { .. }
         | StepKind::Fail => false,
     }
 }

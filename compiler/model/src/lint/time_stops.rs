@@ -19,7 +19,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
                 continue;
             }
             let places = scenario.places.automata.get(index);
-            let span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.span);
+            let span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.origin);
             let name = &location.name;
             let warning = |message: String| Diagnostic::warning(Code::TIME_STOPS, span, message);
             if barred[i] {
@@ -93,6 +93,6 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
 fn sets(edge: &Edge, bound: &ClockConstraint) -> bool {
     edge.updates.iter().any(|u| match u {
         Update::Reset { clock, .. } => bound.clocks().any(|c| c == *clock),
-        Update::Shared(..) | Update::Own(..) | Update::Element(..) | Update::Call(..) => false,
+        Update::Assign { .. } | Update::Call { .. } => false,
     })
 }

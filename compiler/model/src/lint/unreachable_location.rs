@@ -51,10 +51,10 @@ fn dead_edges(automaton: &Automaton, flow: &Flow) -> Vec<(usize, &'static str)> 
 fn never_taken(automaton: &Automaton, edge: &Edge, why: &str) -> Diagnostic {
     let name = |l: LocationId| automaton.locations.get(usize::from(l.0)).map_or("?", |l| l.name.as_str());
     let message = format!("the edge from `{}` to `{}` is never taken", name(edge.from), name(edge.to));
-    Diagnostic::warning(Code::UNREACHABLE_LOCATION, edge.span, message)
+    Diagnostic::warning(Code::UNREACHABLE_LOCATION, edge.origin, message)
         .here(why)
         .help("change the guard, or delete the edge")
-        .fix("delete the edge", edge.span, "", false)
+        .fix("delete the edge", edge.origin, "", false)
 }
 
 /// Marks the locations that edges lead to from these, as far as they are not reached.
@@ -90,14 +90,14 @@ fn locations(
                 continue;
             }
             follow(automaton, flow, vec![i], explained);
-            let span: Span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.span);
+            let span: Span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.origin);
             let message = format!("no edge leads to `{}` from the initial location", location.name);
             let issue = Diagnostic::warning(Code::UNREACHABLE_LOCATION, span, message);
             let untouched = flow.out[i].is_empty() && !entered[i];
             issues.push(if untouched {
                 issue.help("add an edge to it, or delete it").fix(
                     "delete the location",
-                    location.span,
+                    location.origin,
                     "",
                     true,
                 )

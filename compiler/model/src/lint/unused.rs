@@ -9,8 +9,8 @@ use super::{
     query_reads::QueryReads,
 };
 use crate::{
-    ActorId, Agent, Automaton, AutomatonId, Context, Expr, ExprKind, Leaf, Method, NetworkId, Pattern,
-    Performative, PlayerRef, Role, Routine, Scenario, StepKind, Subject, Sync, Time, Update, Var,
+    ActorId, Agent, Automaton, AutomatonId, Context, Effects, Expr, ExprKind, Leaf, Method, NetworkId,
+    Pattern, Performative, PlayerRef, Role, Scenario, StepKind, Subject, Sync, Time, Update, Var, leaves,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -65,9 +65,9 @@ fn vocabulary<'a>(scenario: &'a Scenario, facts: &Facts, found: &mut Vec<Unused<
         }
         let name = event.name.as_str();
         found.push(if event.stimulus.is_some() {
-            Unused { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.span, false)) }
+            Unused { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.origin, false)) }
         } else {
-            Unused { noun: "the event", name, at, lacks: "made nor taken", whole: Some((event.span, true)) }
+            Unused { noun: "the event", name, at, lacks: "made nor taken", whole: Some((event.origin, true)) }
         });
     }
 }
@@ -94,18 +94,18 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
     }
     let places = &scenario.places;
     for (i, agent) in scenario.agents.iter().enumerate().filter(|(i, _)| !agents[*i]) {
-        let at = places.agents.get(i).map_or(agent.span, |p| p.name);
-        let whole = Some((agent.span, false));
+        let at = places.agents.get(i).map_or(agent.origin, |p| p.name);
+        let whole = Some((agent.origin, false));
         found.push(Unused { noun: "the agent", name: &agent.name, at, lacks: "played in a suite", whole });
     }
     for (i, automaton) in scenario.automata.iter().enumerate().filter(|(i, _)| !automata[*i]) {
-        let at = places.automata.get(i).map_or(automaton.span, |p| p.name);
-        let (name, whole) = (automaton.name.as_str(), Some((automaton.span, false)));
+        let at = places.automata.get(i).map_or(automaton.origin, |p| p.name);
+        let (name, whole) = (automaton.name.as_str(), Some((automaton.origin, false)));
         found.push(Unused { noun: "the automaton", name, at, lacks: "played in a suite or network", whole });
     }
     for (i, network) in scenario.networks.iter().enumerate().filter(|(i, _)| !networks[*i]) {
-        let at = places.networks.get(i).copied().unwrap_or(network.span);
-        let whole = Some((network.span, false));
+        let at = places.networks.get(i).copied().unwrap_or(network.origin);
+        let whole = Some((network.origin, false));
         found.push(Unused {
             noun: "the network",
             name: &network.name,
@@ -120,7 +120,7 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
     let mut read = vec![false; agent.beliefs.len()];
     let mut named = vec![false; agent.beliefs.len()];
     for plan in &agent.plans {
-        plan.trigger.belief().iter().for_each(|b| read[usize::from(b.0)] = true);
+        plan.trigger.on.belief().iter().for_each(|b| read[usize::from(b.0)] = true);
         reads_beliefs(&plan.context, &mut read);
         for step in all_steps(&plan.body) {
             step.condition().iter().for_each(|c| reads_beliefs(c, &mut read));
@@ -152,8 +152,8 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
     let places = scenario.places.agents.get(index);
     let unread = |(i, b): &(usize, &crate::Belief)| !read[*i] && b.negates.is_none();
     for (i, belief) in agent.beliefs.iter().enumerate().filter(unread) {
-        let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.span);
-        let whole = (!named[i]).then_some((belief.span, true));
+        let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.origin);
+        let whole = (!named[i]).then_some((belief.origin, true));
         found.push(Unused { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
     }
 }
@@ -170,9 +170,9 @@ fn reads_beliefs(context: &Context, read: &mut [bool]) {
 fn of_messages(scenario: &Scenario, index: usize, read: &mut [bool], named: &mut [bool]) {
     let asks =
         |how: Option<Performative>| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
-    for content in &scenario.contents {
+    for (content, speech) in scenario.contents.iter().zip(&scenario.speech) {
         if let Some(Some(Subject::Belief(belief))) = content.of.get(index) {
-            read[usize::from(belief.0)] |= content.uses.iter().any(|(how, _)| asks(*how));
+            read[usize::from(belief.0)] |= speech.uses.iter().any(|(how, _)| asks(*how));
             named[usize::from(belief.0)] = true;
         }
     }
@@ -214,8 +214,9 @@ fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
 
 fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unused<'a>>) {
     let mut shared = Uses::read_by(&queries.shared.vars);
-    let owned = |owner: Option<AutomatonId>| -> Vec<&Routine> {
-        scenario.functions.iter().filter(|f| f.owner == owner).collect()
+    let owned = |owner: Option<AutomatonId>| -> Vec<&Effects> {
+        let all = scenario.functions.iter().zip(&scenario.effects);
+        all.filter(|(f, _)| f.owner == owner).map(|(_, effects)| effects).collect()
     };
     in_functions(&owned(None), &mut Uses::new(0), &mut shared);
     let first = scenario.clocks.len();
@@ -232,14 +233,14 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
         }
         let places = scenario.places.automata.get(index);
         for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[first + *i]) {
-            let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.span);
+            let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.origin);
             // Several clocks may share a declaration: there is no text that can simply go.
             found.push(Unused { noun: "the clock", name: clock, at, lacks: "read", whole: None });
         }
         for i in unread(&automaton.vars, &mut own) {
             let var = &automaton.vars[i];
             let place = places.and_then(|p| p.vars.get(i));
-            let at = place.map_or(automaton.span, |p| p.name);
+            let at = place.map_or(automaton.origin, |p| p.name);
             let whole = place.filter(|_| !own.set[i]).map(|p| (p.whole, true));
             found.push(Unused {
                 noun: "the variable",
@@ -263,15 +264,16 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
 /// Shared clocks; an array of which one is read is read.
 fn unread_clocks<'a>(scenario: &'a Scenario, uses: &Uses, found: &mut Vec<Unused<'a>>) {
     let mut at = 0;
-    for clocks in scenario.clocks.chunk_by(|a, b| a.place == b.place) {
-        let part = at..at + clocks.len();
+    for places in scenario.places.clocks.chunk_by(|a, b| a == b) {
+        let part = at..at + places.len();
+        let first = &scenario.clocks[at];
         at = part.end;
         if uses.read[part.clone()].contains(&true) {
             continue;
         }
-        let place = clocks[0].place;
+        let place = places[0];
         let whole = (!uses.set[part].contains(&true)).then_some((place.whole, true));
-        let name = whole_name(&clocks[0].name);
+        let name = whole_name(first);
         found.push(Unused { noun: "the clock", name, at: place.name, lacks: "read", whole });
     }
 }
@@ -287,7 +289,7 @@ fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
     let mut at = 0;
     while at < vars.len() {
         let name = whole_name(&vars[at].name);
-        let parts = vars[at..].iter().take_while(|v| whole_name(&v.name) == name && v.span == vars[at].span);
+        let parts = vars[at..].iter().take_while(|v| whole_name(&v.name) == name);
         let end = at + parts.count().max(1);
         if !uses.read[at..end].contains(&true) {
             uses.set[at] |= uses.set[at..end].contains(&true);
@@ -307,16 +309,16 @@ fn sets(leaf: Leaf, own: &mut Uses, shared: &mut Uses) {
 }
 
 /// What functions read and assign, whether they are called or not.
-fn in_functions(functions: &[&Routine], own: &mut Uses, shared: &mut Uses) {
-    for function in functions {
-        for leaf in &function.reads {
+fn in_functions(functions: &[&Effects], own: &mut Uses, shared: &mut Uses) {
+    for effects in functions {
+        for leaf in &effects.reads {
             match leaf {
                 Leaf::Own(i) => own.read[usize::from(*i)] = true,
                 Leaf::Shared(i) => shared.read[usize::from(*i)] = true,
                 Leaf::Local(_) | Leaf::Signal(_) => {}
             }
         }
-        function.assigns.iter().for_each(|l| sets(*l, own, shared));
+        effects.assigns.iter().for_each(|l| sets(*l, own, shared));
     }
 }
 
@@ -344,20 +346,14 @@ fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (U
         }
         for update in &edge.updates {
             match update {
-                Update::Own(i, e) => {
-                    own.set[usize::from(*i)] = true;
-                    reads(e, &mut own, shared, Some(Leaf::Own(*i)));
-                }
-                Update::Shared(i, e) => {
-                    shared.set[usize::from(*i)] = true;
-                    reads(e, &mut own, shared, Some(Leaf::Shared(*i)));
-                }
-                Update::Element(place, e) => {
-                    reads(e, &mut own, shared, None);
+                Update::Assign { place, value } => {
+                    // What only its own next value is made of is not read.
+                    let itself = place.indices.is_empty().then_some(place.slot);
+                    reads(value, &mut own, shared, itself);
                     place.indices.iter().for_each(|i| reads(&i.at, &mut own, shared, None));
-                    place.leaves().into_iter().for_each(|l| sets(l, &mut own, shared));
+                    leaves(place).into_iter().for_each(|l| sets(l, &mut own, shared));
                 }
-                Update::Call(_, args) => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
+                Update::Call { args, .. } => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
                 Update::Reset { clock, from, to } => {
                     clocks.set[usize::from(clock.0)] = true;
                     let other = from.filter(|f| f != clock);
@@ -371,7 +367,7 @@ fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (U
 }
 
 fn reads_time(time: &Time, own: &mut Uses, shared: &mut Uses) {
-    time.terms.iter().for_each(|(_, value)| reads(value, own, shared, None));
+    time.terms.iter().for_each(|t| reads(&t.value, own, shared, None));
 }
 
 /// Signals that no actor, rule, requirement or other signal reads.

@@ -3,11 +3,12 @@
 pub(crate) mod agents;
 pub(crate) mod automata;
 pub(crate) mod coverage;
+pub(crate) mod devices;
 pub(crate) mod functions;
 pub(crate) mod names;
 pub(crate) mod queries;
 pub(crate) mod requirements;
 pub(crate) mod roles;
-pub(crate) mod tests;
+pub(crate) mod scenario_tests;
 pub(crate) mod types;
 pub(crate) mod world;

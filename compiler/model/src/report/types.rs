@@ -3,11 +3,10 @@
 use hrdsl_source::{Code, Diagnostic, Span};
 
 use crate::{
-    Dim, Expr, Kind, Type, Value,
+    Dim, EvalError, Expr, Kind, Type, Value,
     noun::Noun,
     report::names::{replace, with_nearest},
     types::UNITS,
-    value::FoldError,
 };
 
 /// HR0201: something of another shape.
@@ -180,12 +179,21 @@ pub(crate) fn constant_cycle(name: &str, span: Span, declared: Span) -> Diagnost
 }
 
 /// HR0206: arithmetic on constants that has no result.
-pub(crate) fn fold(error: FoldError, span: Span) -> Diagnostic {
-    let issue = Diagnostic::error(Code::OUT_OF_RANGE, span, error.to_string());
-    match error {
-        FoldError::DivisionByZero => issue.help("divide by a number that is never zero"),
-        FoldError::Overflow => issue.help("use smaller numbers"),
-        FoldError::Type => issue,
+pub(crate) fn fold(error: EvalError, span: Span) -> Diagnostic {
+    let (message, help) = match error {
+        EvalError::DivisionByZero => ("this divides by zero", Some("divide by a number that is never zero")),
+        EvalError::Overflow => ("this number is too large", Some("use smaller numbers")),
+        EvalError::Type
+        | EvalError::Unbound(_)
+        | EvalError::Index { .. }
+        | EvalError::Endless
+        | EvalError::Range(_)
+        | EvalError::Outside { .. } => ("the operands do not fit the operator", None),
+    };
+    let issue = Diagnostic::error(Code::OUT_OF_RANGE, span, message);
+    match help {
+        Some(help) => issue.help(help),
+        None => issue,
     }
 }
 
@@ -231,7 +239,7 @@ pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span
 
 /// HR0211: a string or list in something that no agent has.
 pub(crate) fn of_agents_only(name: &str, ty: Type, span: Span) -> Diagnostic {
-    let message = format!("`{name}` is {}, which only agents know", ty.kind());
+    let message = format!("`{name}` is {}, which only agents know", Kind::of(ty));
     let help = match ty {
         Type::Text => "declare an enumeration: `enum Word { first, second }`",
         Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::List(_) => {

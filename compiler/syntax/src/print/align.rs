@@ -1,6 +1,6 @@
 //! Columns of neighbouring lines; lines to text.
 
-use crate::print::WIDTH;
+use crate::print::measure::WIDTH;
 use crate::token::Kind;
 
 /// How many blanks a line may get so that its columns stand under those of its neighbours.

@@ -159,7 +159,7 @@ pub(super) fn columns(toks: &[Tok<'_>], member: &Member) -> (Option<Kind>, [Opti
 /// The first token of a kind outside brackets, near the start of a member.
 fn find(toks: &[Tok<'_>], kind: Kind, from: usize, end: usize) -> Option<usize> {
     let mut depth = 0_usize;
-    for (at, tok) in toks.iter().enumerate().take(end.min(from + crate::print::WIDTH)).skip(from) {
+    for (at, tok) in toks.iter().enumerate().take(end.min(from + crate::print::measure::WIDTH)).skip(from) {
         if depth == 0 && tok.kind == kind {
             return Some(at);
         }

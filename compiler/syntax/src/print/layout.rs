@@ -3,10 +3,10 @@
 use crate::print::align::Line;
 use crate::print::flat::{Flat, columns};
 use crate::print::marks::BlockKind;
+use crate::print::measure::{STEP, WIDTH};
 use crate::print::shape::{Block, Member, Part};
 use crate::print::spacing::{Weakness, blank, ends_line, weakness};
 use crate::print::trivia::{Comment, Tok};
-use crate::print::{STEP, WIDTH};
 use crate::token::Kind;
 
 /// The lines of a file.

@@ -15,6 +15,7 @@ mod align;
 mod flat;
 mod layout;
 mod marks;
+mod measure;
 mod shape;
 mod spacing;
 mod trivia;
@@ -22,12 +23,6 @@ mod trivia;
 use hrdsl_source::{Diagnostic, FileId};
 
 use crate::parse::read;
-
-/// Columns of a line; comments at its end may go further.
-pub(crate) const WIDTH: usize = 110;
-
-/// Blanks of one more level.
-const STEP: usize = 2;
 
 /// The text in the style of the language, comments kept.
 ///

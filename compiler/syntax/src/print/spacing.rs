@@ -36,7 +36,8 @@ pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
         _ => {}
     }
     match n.kind {
-        Kind::Question => !p.kind.can_be_name(),
+        // What may stay away or be left out is marked behind it.
+        Kind::Question => !(p.kind.can_be_name() || p.kind == Kind::RBracket),
         Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor || of_channel(toks, at),
         Kind::LParen => !n.mark.call,
         // An index and annotations belong to what is before; a list stands alone.
@@ -107,6 +108,7 @@ fn clause(p: Kind, n: Kind) -> bool {
             | Kind::Mass
             | Kind::Ghost
             | Kind::Graspable
+            | Kind::Expect
     );
     starts && p.ends_operand()
 }

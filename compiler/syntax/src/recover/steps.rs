@@ -7,8 +7,8 @@ use hrdsl_source::{Code, Diagnostic};
 use super::Recovery;
 use crate::ast::{Step, StepKind};
 use crate::context::Unit;
-use crate::parse::run;
 use crate::report::{Fault, found, report};
+use crate::run::run;
 use crate::token::{Kind, Lexeme};
 
 impl Recovery<'_, '_> {

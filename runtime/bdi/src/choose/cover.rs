@@ -4,7 +4,10 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::space::Space;
+use super::{
+    sets::{Row, row_at, shuffle},
+    space::AllowedSpace,
+};
 
 /// Rows that compete for each place in the array.
 pub(super) const CANDIDATES: usize = 30;
@@ -12,21 +15,18 @@ pub(super) const CANDIDATES: usize = 30;
 /// Tuples that are kept track of, at most: a bit each.
 pub(super) const MAX_TUPLES: u128 = 100_000_000;
 
-/// An index of an alternative for each factor.
-pub(super) type Row = Vec<u32>;
-
 /// A factor and one of its alternatives.
 pub(super) type Place = (usize, u32);
 
 /// A covering array, and the strength that it has.
-pub(super) struct Covering {
+pub(super) struct CoveringArray {
     pub rows: Vec<Row>,
     /// Less than what was asked for if there would be too many tuples.
     pub strength: usize,
 }
 
 /// Which factors: in increasing order, as many as the strength.
-struct Group {
+struct FactorGroup {
     factors: Vec<usize>,
     /// Where its tuples start among all.
     start: usize,
@@ -35,11 +35,11 @@ struct Group {
 }
 
 /// The tuples of alternatives of `strength` different factors that no row has yet.
-pub(super) struct Uncovered<'s> {
+pub(super) struct UncoveredTuples<'s> {
     sizes: &'s [u32],
     strength: usize,
     /// In lexicographic order of the factors.
-    groups: Vec<Group>,
+    groups: Vec<FactorGroup>,
     /// `choose[k][n]`: how many sets of k there are of n; with it a group's place is found.
     choose: Vec<Vec<usize>>,
     /// A bit for each tuple: group by group, in each in lexicographic order of the alternatives.
@@ -49,7 +49,7 @@ pub(super) struct Uncovered<'s> {
     pub(super) left: usize,
 }
 
-impl<'s> Uncovered<'s> {
+impl<'s> UncoveredTuples<'s> {
     pub(super) fn new(sizes: &'s [u32], strength: usize) -> Self {
         let mut groups = Vec::new();
         let mut of: Vec<Vec<usize>> = sizes.iter().map(|size| vec![0; *size as usize]).collect();
@@ -61,7 +61,7 @@ impl<'s> Uncovered<'s> {
                 let each = tuples / (sizes[*factor] as usize).max(1);
                 of[*factor].iter_mut().for_each(|n| *n += each);
             }
-            groups.push(Group { factors: factors.clone(), start, left: tuples });
+            groups.push(FactorGroup { factors: factors.clone(), start, left: tuples });
             start += tuples;
             if !next_group(&mut factors, sizes.len()) {
                 break;
@@ -82,7 +82,7 @@ impl<'s> Uncovered<'s> {
 
     /// The first tuple of a group with these alternatives, all of its factors' but `open`'s, and the distance between
     /// those that differ in `open` only.
-    fn line(&self, group: &Group, row: &Row, open: usize) -> (usize, usize) {
+    fn line(&self, group: &FactorGroup, row: &Row, open: usize) -> (usize, usize) {
         let (mut at, mut stride, mut step) = (group.start, 1, 0);
         for factor in group.factors.iter().rev() {
             if *factor == open {
@@ -119,7 +119,7 @@ impl<'s> Uncovered<'s> {
     }
 
     /// Closes the tuples that occur in no allowed row; gives how many these are.
-    pub(super) fn exclude(&mut self, space: &mut Space<'_>, rng: &mut ChaCha8Rng) -> u64 {
+    pub(super) fn exclude(&mut self, space: &mut AllowedSpace<'_>, rng: &mut ChaCha8Rng) -> u64 {
         let (mut closed, mut row) = (0, vec![0; self.sizes.len()]);
         for index in 0..self.groups.len() {
             let factors = self.groups[index].factors.clone();
@@ -177,7 +177,7 @@ impl<'s> Uncovered<'s> {
 
     /// The first open tuple that has this alternative.
     pub(super) fn open_tuple(&self, (factor, alternative): Place) -> Vec<Place> {
-        let with = |g: &&Group| g.left > 0 && g.factors.contains(&factor);
+        let with = |g: &&FactorGroup| g.left > 0 && g.factors.contains(&factor);
         for group in self.groups.iter().filter(with) {
             let tuples: usize = group.factors.iter().map(|f| self.sizes[*f] as usize).product();
             for tuple in (0..tuples).filter(|t| self.is_open(group.start + t)) {
@@ -293,17 +293,17 @@ pub(super) fn tuples(sizes: &[u32], strength: usize) -> u128 {
 /// there are too many tuples the strength is lowered, to 2 at the least. With no more factors than that, but for pairs of
 /// two, these are all rows there can be, in lexicographic order: with a single factor every alternative occurs; without
 /// factors there is one empty row.
-pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut ChaCha8Rng) -> Covering {
+pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut ChaCha8Rng) -> CoveringArray {
     let mut strength = strength.max(2);
     if sizes.len() < 2 || (strength > 2 && strength >= sizes.len()) {
         let space = sizes.iter().fold(1u128, |n, size| n.saturating_mul(u128::from(*size)));
-        let rows = (0..space.min(limit as u128)).map(|index| super::explore::row_at(sizes, index)).collect();
-        return Covering { rows, strength };
+        let rows = (0..space.min(limit as u128)).map(|index| row_at(sizes, index)).collect();
+        return CoveringArray { rows, strength };
     }
     while strength > 2 && tuples(sizes, strength) > MAX_TUPLES {
         strength -= 1;
     }
-    let mut uncovered = Uncovered::new(sizes, strength);
+    let mut uncovered = UncoveredTuples::new(sizes, strength);
     let mut rows = Vec::new();
     while uncovered.left > 0 && rows.len() < limit {
         let mut best: Option<(usize, Row)> = None;
@@ -319,12 +319,12 @@ pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut C
         uncovered.cover(&row);
         rows.push(row);
     }
-    Covering { rows, strength }
+    CoveringArray { rows, strength }
 }
 
 /// A row that starts from alternatives of some factors and goes through the other factors in a random order, each time
 /// taking what covers most with the row so far; and how many open tuples these steps covered.
-fn candidate(uncovered: &Uncovered, start: &[Place], rng: &mut ChaCha8Rng) -> (usize, Row) {
+fn candidate(uncovered: &UncoveredTuples, start: &[Place], rng: &mut ChaCha8Rng) -> (usize, Row) {
     let mut row: Row = vec![0; uncovered.sizes.len()];
     let mut placed: Vec<usize> = start.iter().map(|(factor, _)| *factor).collect();
     for (factor, alternative) in start {
@@ -342,13 +342,6 @@ fn candidate(uncovered: &Uncovered, start: &[Place], rng: &mut ChaCha8Rng) -> (u
         gain += most;
     }
     (gain, row)
-}
-
-/// Fisher and Yates.
-pub(super) fn shuffle<T>(items: &mut [T], rng: &mut ChaCha8Rng) {
-    for last in (1..items.len()).rev() {
-        items.swap(last, rng.random_range(0..=last as u64) as usize);
-    }
 }
 
 #[cfg(test)]
@@ -420,7 +413,7 @@ mod tests {
         fn groups_are_found_at_their_place(n in 2usize..9, strength in 2usize..=6) {
             prop_assume!(strength <= n);
             let sizes = vec![2; n];
-            let uncovered = Uncovered::new(&sizes, strength);
+            let uncovered = UncoveredTuples::new(&sizes, strength);
             for (index, group) in uncovered.groups.iter().enumerate() {
                 prop_assert_eq!(uncovered.group(&group.factors), index);
             }

@@ -4,38 +4,25 @@ use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 
 use hrdsl_ir::{
     Program,
-    bdi::{AgentId, Fact},
+    bdi::AgentId,
     suite::{Choice, Explore},
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    ChooseError, Factor, Learner,
-    cover::{Row, covering, shuffle},
-    judge::Judge,
-    space::Space,
+    cover::covering,
+    factors::{BeliefFactor, ChooseError},
+    judge::ConditionEvaluator,
+    learn::FactorLearner,
+    sets::{BATCH, BeliefSet, MAX_SETS, Row, belief_set, row_at, shuffle, sizes, space},
+    space::AllowedSpace,
     within::within,
 };
 
-/// More sets than this are never made.
-pub const MAX_SETS: usize = 1_000_000;
-
-/// How many sets are run before what they reached is looked at. It is part of what `learn` means.
-pub const BATCH: usize = 16;
-
-/// What the agents of one abstract test start with.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BeliefSet {
-    /// In the order of the factors.
-    pub facts: Vec<(AgentId, Fact)>,
-    /// Each fact as it is written; [`Alternative::text`](super::Alternative::text).
-    pub text: Vec<String>,
-}
-
 /// The sets found, and how they stand to the whole belief space.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Explored {
+pub struct ExploredBeliefs {
     /// All different in what they choose.
     pub sets: Vec<BeliefSet>,
     /// The size of the whole belief space; `u128::MAX` if it is that or more.
@@ -49,11 +36,11 @@ pub struct Explored {
 /// - `Exhaustive`: all sets in lexicographic order (the last factor changes fastest), at most `tests`.
 /// - `Wise(t)`: sets in which every t alternatives of t different factors occur together, even if that takes more than
 ///   `tests`; then different random ones up to `tests`.
-/// - `Random`: `tests` different ones. `Learn` needs to be told what sets brought ([`Explorer`]); here it is the same.
+/// - `Random`: `tests` different ones. `Learn` needs to be told what sets brought ([`BeliefExplorer`]); here it is the same.
 ///
 /// A space of fewer than `tests` sets gives them all. The same arguments always give the same sets.
 #[must_use]
-pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> Explored {
+pub fn explore(factors: &[BeliefFactor], explore: Explore, tests: u32, seed: u64) -> ExploredBeliefs {
     let sizes = sizes(factors);
     let space = space(&sizes);
     let wanted = wanted(space, tests);
@@ -73,47 +60,47 @@ pub fn explore(factors: &[Factor], explore: Explore, tests: u32, seed: u64) -> E
         }
         Explore::Random | Explore::Learn => (fill(Vec::new(), &sizes, space, wanted, &mut rng), false),
     };
-    Explored { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
+    ExploredBeliefs { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
 }
 
 /// Explores the belief space in batches, each after what the one before it brought is known.
-pub struct Explorer<'a> {
-    /// The size of the whole belief space; see [`Explored::space`].
+pub struct BeliefExplorer<'a> {
+    /// The size of the whole belief space; see [`ExploredBeliefs::space`].
     pub space: u128,
-    /// See [`Explored::cut`].
+    /// See [`ExploredBeliefs::cut`].
     pub cut: bool,
     /// What conditions left out, and how that was found.
     pub notes: Vec<String>,
-    source: Source<'a>,
+    source: BeliefSetSource<'a>,
 }
 
-enum Source<'a> {
+enum BeliefSetSource<'a> {
     /// Known from the start, the last one first.
     Fixed(Vec<BeliefSet>),
-    Learner(Box<Learner<'a>>),
+    Learner(Box<FactorLearner<'a>>),
 }
 
-impl<'a> Explorer<'a> {
+impl<'a> BeliefExplorer<'a> {
     /// See [`explore`]; `Learn` makes at most `tests` different sets.
     #[must_use]
-    pub fn new(factors: &[Factor], how: Explore, tests: u32, seed: u64) -> Self {
-        match how {
+    pub fn new(factors: &[BeliefFactor], method: Explore, tests: u32, seed: u64) -> Self {
+        match method {
             Explore::Exhaustive | Explore::Wise(_) | Explore::Random => {
-                let Explored { mut sets, space, cut } = explore(factors, how, tests, seed);
+                let ExploredBeliefs { mut sets, space, cut } = explore(factors, method, tests, seed);
                 sets.reverse();
-                Self { space, cut, notes: Vec::new(), source: Source::Fixed(sets) }
+                Self { space, cut, notes: Vec::new(), source: BeliefSetSource::Fixed(sets) }
             }
             Explore::Learn => {
                 let space = space(&sizes(factors));
-                let learner = Learner::new(factors, wanted(space, tests), seed);
-                let source = Source::Learner(Box::new(learner));
+                let learner = FactorLearner::new(factors, wanted(space, tests), seed);
+                let source = BeliefSetSource::Learner(Box::new(learner));
                 Self { space, cut: false, notes: Vec::new(), source }
             }
         }
     }
 
     /// Explores what the conditions of the choices allow, in runs of these agents; without conditions the same as
-    /// [`Explorer::new`]. The factors are those of the choices.
+    /// [`BeliefExplorer::new`]. The factors are those of the choices.
     ///
     /// # Errors
     /// A condition that cannot be asked, or conditions that allow nothing.
@@ -121,14 +108,14 @@ impl<'a> Explorer<'a> {
         program: &'a Program,
         agents: &[AgentId],
         choices: &'a [Choice],
-        factors: &[Factor],
-        how: (Explore, u32, u64),
+        factors: &[BeliefFactor],
+        method: (Explore, u32, u64),
     ) -> Result<Self, ChooseError> {
-        let (explore, tests, seed) = how;
+        let (explore, tests, seed) = method;
         if choices.iter().all(|c| c.condition.is_none()) {
             return Ok(Self::new(factors, explore, tests, seed));
         }
-        let mut judge = Judge::new(program, agents, choices)?;
+        let mut judge = ConditionEvaluator::new(program, agents, choices)?;
         let scopes = judge.scopes(factors);
         let of_row = factors.to_vec();
         let fault = Rc::new(Cell::new(None));
@@ -141,7 +128,7 @@ impl<'a> Explorer<'a> {
             holds
         };
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let space = Space::new(sizes(factors), scopes, Box::new(holds), &mut rng);
+        let space = AllowedSpace::new(sizes(factors), scopes, Box::new(holds), &mut rng);
         let mut explorer = Self::within(space, factors, (explore, tests), rng).map_err(|e| match e {
             ChooseError::NothingAllowed { choices, is_proved, .. } => {
                 ChooseError::NothingAllowed { choices, is_proved, fault: fault.get() }
@@ -157,9 +144,9 @@ impl<'a> Explorer<'a> {
 
     /// Explores the part of the space that is allowed.
     pub(super) fn within(
-        mut space: Space<'a>,
-        factors: &[Factor],
-        (how, tests): (Explore, u32),
+        mut space: AllowedSpace<'a>,
+        factors: &[BeliefFactor],
+        (method, tests): (Explore, u32),
         mut rng: ChaCha8Rng,
     ) -> Result<Self, ChooseError> {
         let whole = self::space(&space.sizes);
@@ -181,79 +168,53 @@ impl<'a> Explorer<'a> {
                 .to_owned(),
         }];
         let tests = tests as usize;
-        if how == Explore::Learn {
+        if method == Explore::Learn {
             let wanted = allowed.map_or(tests, |n| wanted(n, u32::try_from(tests).unwrap_or(u32::MAX)));
-            let learner = Learner::within(factors, wanted.min(MAX_SETS), space, rng);
-            return Ok(Self { space: whole, cut: false, notes, source: Source::Learner(Box::new(learner)) });
+            let learner = FactorLearner::within(factors, wanted.min(MAX_SETS), space, rng);
+            return Ok(Self {
+                space: whole,
+                cut: false,
+                notes,
+                source: BeliefSetSource::Learner(Box::new(learner)),
+            });
         }
-        let found = within(&mut space, how, tests, &mut rng);
+        let found = within(&mut space, method, tests, &mut rng);
         let mut sets: Vec<BeliefSet> = found.rows.iter().map(|row| belief_set(factors, row)).collect();
         sets.reverse();
         notes.extend(found.notes);
-        Ok(Self { space: whole, cut: found.cut, notes, source: Source::Fixed(sets) })
+        Ok(Self { space: whole, cut: found.cut, notes, source: BeliefSetSource::Fixed(sets) })
     }
 
     /// How many sets are left, at most.
     #[must_use]
     pub fn left(&self) -> usize {
         match &self.source {
-            Source::Fixed(sets) => sets.len(),
-            Source::Learner(learner) => learner.left(),
+            BeliefSetSource::Fixed(sets) => sets.len(),
+            BeliefSetSource::Learner(learner) => learner.left(),
         }
     }
 
     /// The next sets, at most [`BATCH`]; none at the end.
     pub fn next_batch(&mut self) -> Vec<BeliefSet> {
         match &mut self.source {
-            Source::Fixed(sets) => {
+            BeliefSetSource::Fixed(sets) => {
                 sets.split_off(sets.len().saturating_sub(BATCH)).into_iter().rev().collect()
             }
-            Source::Learner(learner) => learner.next_batch(),
+            BeliefSetSource::Learner(learner) => learner.next_batch(),
         }
     }
 
     /// What the sets of the last batch brought, in their order.
     pub fn learn(&mut self, rewards: &[u32]) {
         match &mut self.source {
-            Source::Fixed(_) => {}
-            Source::Learner(learner) => learner.learn(rewards),
+            BeliefSetSource::Fixed(_) => {}
+            BeliefSetSource::Learner(learner) => learner.learn(rewards),
         }
     }
-}
-
-pub(super) fn sizes(factors: &[Factor]) -> Vec<u32> {
-    factors.iter().map(|f| f.alternatives.len() as u32).collect()
-}
-
-/// How many rows there are.
-pub(super) fn space(sizes: &[u32]) -> u128 {
-    sizes.iter().fold(1u128, |product, size| product.saturating_mul(u128::from(*size)))
 }
 
 fn wanted(space: u128, tests: u32) -> usize {
     usize::try_from(space).unwrap_or(usize::MAX).min(tests as usize).min(MAX_SETS)
-}
-
-pub(super) fn belief_set(factors: &[Factor], row: &Row) -> BeliefSet {
-    let mut set = BeliefSet::default();
-    for (factor, choice) in factors.iter().zip(row) {
-        let alternative = &factor.alternatives[*choice as usize];
-        set.facts.extend(alternative.facts.iter().map(|fact| (factor.agent, fact.clone())));
-        if !alternative.facts.is_empty() {
-            set.text.push(alternative.text.clone());
-        }
-    }
-    set
-}
-
-/// The row of this index in lexicographic order.
-pub(super) fn row_at(sizes: &[u32], mut index: u128) -> Row {
-    let mut row = vec![0; sizes.len()];
-    for (digit, size) in row.iter_mut().zip(sizes).rev() {
-        *digit = (index % u128::from(*size)) as u32;
-        index /= u128::from(*size);
-    }
-    row
 }
 
 /// Adds different random rows until there are `wanted`, which is at most the space.
@@ -278,14 +239,17 @@ fn fill(mut rows: Vec<Row>, sizes: &[u32], space: u128, wanted: usize, rng: &mut
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{Value, bdi::BeliefId};
+    use hrdsl_ir::{
+        Value,
+        bdi::{BeliefId, Fact},
+    };
     use proptest::prelude::*;
 
     use super::*;
-    use crate::choose::Alternative;
+    use crate::choose::FactorAlternative;
 
-    fn factors(sizes: &[u32]) -> Vec<Factor> {
-        let alternative = |f: u16, a: u32| Alternative {
+    fn factors(sizes: &[u32]) -> Vec<BeliefFactor> {
+        let alternative = |f: u16, a: u32| FactorAlternative {
             facts: vec![Fact {
                 belief: BeliefId(f),
                 args: vec![Value::Int(i64::from(a))],
@@ -295,7 +259,7 @@ mod tests {
         };
         (0u16..)
             .zip(sizes)
-            .map(|(f, n)| Factor {
+            .map(|(f, n)| BeliefFactor {
                 agent: AgentId(0),
                 name: format!("b{f}"),
                 alternatives: (0..*n).map(|a| alternative(f, a)).collect(),
@@ -303,7 +267,7 @@ mod tests {
             .collect()
     }
 
-    fn texts(found: &Explored) -> Vec<String> {
+    fn texts(found: &ExploredBeliefs) -> Vec<String> {
         found.sets.iter().map(|s| s.text.join(" ")).collect()
     }
 
@@ -325,7 +289,7 @@ mod tests {
     #[test]
     fn what_is_not_held_is_not_told() {
         let mut factors = factors(&[2, 2]);
-        factors[0].alternatives[0] = Alternative { facts: vec![], text: "not b0".into() };
+        factors[0].alternatives[0] = FactorAlternative { facts: vec![], text: "not b0".into() };
         let all = explore(&factors, Explore::Exhaustive, 9, 0);
         assert_eq!(texts(&all), ["b1(0)", "b1(1)", "b0(1) b1(0)", "b0(1) b1(1)"]);
         assert_eq!(all.sets[0].facts.len(), 1);
@@ -333,9 +297,10 @@ mod tests {
 
     #[test]
     fn no_factors_give_one_empty_set() {
-        for how in [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn]
+        for method in
+            [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn]
         {
-            assert_eq!(explore(&[], how, 5, 0).sets, [BeliefSet::default()]);
+            assert_eq!(explore(&[], method, 5, 0).sets, [BeliefSet::default()]);
         }
     }
 
@@ -359,10 +324,10 @@ mod tests {
             sizes in prop::collection::vec(1u32..5, 0..6), tests in 0u32..200, seed: u64,
         ) {
             let product: u32 = sizes.iter().product();
-            let ways = [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
-            for how in ways {
-                let found = explore(&factors(&sizes), how, tests, seed);
-                let mut explorer = Explorer::new(&factors(&sizes), how, tests, seed);
+            let methods = [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
+            for method in methods {
+                let found = explore(&factors(&sizes), method, tests, seed);
+                let mut explorer = BeliefExplorer::new(&factors(&sizes), method, tests, seed);
                 let mut batched = Vec::new();
                 loop {
                     let batch = explorer.next_batch();
@@ -374,16 +339,16 @@ mod tests {
                     batched.extend(batch);
                 }
                 prop_assert_eq!(batched.len(), found.sets.len());
-                if how != Explore::Learn {
+                if method != Explore::Learn {
                     prop_assert_eq!(&batched, &found.sets);
                 }
-                let found = Explored { sets: batched, ..found };
+                let found = ExploredBeliefs { sets: batched, ..found };
                 let mut distinct = texts(&found);
                 distinct.sort();
                 distinct.dedup();
                 prop_assert_eq!(distinct.len(), found.sets.len());
                 let least = product.min(tests) as usize;
-                if matches!(how, Explore::Wise(_)) {
+                if matches!(method, Explore::Wise(_)) {
                     prop_assert!(found.sets.len() >= least && found.sets.len() <= product as usize);
                 } else {
                     prop_assert_eq!(found.sets.len(), least);

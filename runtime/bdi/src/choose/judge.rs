@@ -8,15 +8,16 @@ use hrdsl_ir::{
     suite::{Choice, Condition},
 };
 
-use super::{BeliefSet, ChooseError, Factor};
+use super::{
+    factors::{BeliefFactor, ChooseError},
+    sets::BeliefSet,
+};
 use crate::{
-    Fault,
-    belief::{Annotations, BeliefBase, sourced, typed},
+    belief::{Annotations, BeliefBase, Ground, sourced, typed},
     check,
-    dice::Dice,
-    event::Ground,
-    mind::{Me, Mind, Peers},
-    query::Solver,
+    dice::AgentRng,
+    mind::{AgentIdentity, MentalState, PeerTable},
+    query::{BeliefQueryError, QuerySolver},
 };
 
 /// Whether all conditions of the choices allow the set, in a run of these agents.
@@ -29,12 +30,12 @@ pub fn allows(
     choices: &[Choice],
     set: &BeliefSet,
 ) -> Result<bool, ChooseError> {
-    let mut judge = Judge::new(program, agents, choices)?;
+    let mut judge = ConditionEvaluator::new(program, agents, choices)?;
     Ok((0..judge.questions.len()).all(|q| judge.holds(q, &mut set.facts.iter().map(|(a, f)| (*a, f)))))
 }
 
 /// A condition, and whom it is asked.
-struct Question<'p> {
+struct AskedCondition<'p> {
     /// Into the minds.
     mind: usize,
     condition: &'p Condition,
@@ -43,24 +44,24 @@ struct Question<'p> {
 }
 
 /// Answers the conditions of a suite's choices.
-pub(super) struct Judge<'p> {
-    minds: Vec<Mind<'p>>,
+pub(super) struct ConditionEvaluator<'p> {
+    minds: Vec<MentalState<'p>>,
     /// What each of them believes without any choice.
     initial: Vec<BeliefBase>,
-    questions: Vec<Question<'p>>,
-    solver: Solver<'p>,
+    questions: Vec<AskedCondition<'p>>,
+    solver: QuerySolver<'p>,
     /// Why a condition had no answer, not even "none".
-    pub fault: Option<Fault>,
+    pub fault: Option<BeliefQueryError>,
 }
 
-impl<'p> Judge<'p> {
+impl<'p> ConditionEvaluator<'p> {
     /// `agents`: those of the run, in order.
     pub fn new(program: &'p Program, agents: &[AgentId], choices: &'p [Choice]) -> Result<Self, ChooseError> {
         let mut judge = Self {
             minds: Vec::new(),
             initial: Vec::new(),
             questions: Vec::new(),
-            solver: Solver::default(),
+            solver: QuerySolver::default(),
             fault: None,
         };
         for choice in choices {
@@ -73,7 +74,7 @@ impl<'p> Judge<'p> {
             }
             let mind = judge.mind(program, agent, choice.agent, agents);
             let reads = reads(agent, &condition.context);
-            judge.questions.push(Question { mind, condition, reads });
+            judge.questions.push(AskedCondition { mind, condition, reads });
         }
         Ok(judge)
     }
@@ -86,10 +87,15 @@ impl<'p> Judge<'p> {
         if !all.contains(&id) {
             all.push(id);
         }
-        let peers = Arc::new(Peers::new(program, all.iter().copied()));
+        let peers = Arc::new(PeerTable::new(program, all.iter().copied()));
         let at = all.iter().position(|a| *a == id).unwrap_or(0);
-        let me = Me { name: peers.agents[at].0, place: u16::try_from(at).unwrap_or(u16::MAX), id, peers };
-        let mut mind = Mind::new(program, Some(agent), me);
+        let me = AgentIdentity {
+            name: peers.agents[at].0,
+            place: u16::try_from(at).unwrap_or(u16::MAX),
+            id,
+            peers,
+        };
+        let mut mind = MentalState::new(program, Some(agent), me);
         agent.initial_beliefs.iter().for_each(|fact| believe(&mut mind, fact));
         self.initial.push(mind.beliefs.clone());
         self.minds.push(mind);
@@ -97,8 +103,8 @@ impl<'p> Judge<'p> {
     }
 
     /// For each condition the factors that its answer may depend on.
-    pub fn scopes(&self, factors: &[Factor]) -> Vec<Vec<usize>> {
-        let concerns = |question: &Question<'_>, factor: &Factor| {
+    pub fn scopes(&self, factors: &[BeliefFactor]) -> Vec<Vec<usize>> {
+        let concerns = |question: &AskedCondition<'_>, factor: &BeliefFactor| {
             let mut facts = factor.alternatives.iter().flat_map(|a| &a.facts);
             factor.agent == self.minds[question.mind].me.id
                 && facts.any(|f| question.reads.contains(&f.belief))
@@ -110,7 +116,7 @@ impl<'p> Judge<'p> {
     /// Whether the condition of this number has an answer with these chosen facts. Each time is time 0, and chance starts
     /// with the seed 0.
     pub fn holds(&mut self, question: usize, chosen: &mut dyn Iterator<Item = (AgentId, &Fact)>) -> bool {
-        let Question { mind: at, condition, .. } = &self.questions[question];
+        let AskedCondition { mind: at, condition, .. } = &self.questions[question];
         let mind = &mut self.minds[*at];
         mind.beliefs.clone_from(&self.initial[*at]);
         for (agent, fact) in chosen {
@@ -118,7 +124,7 @@ impl<'p> Judge<'p> {
                 believe(mind, fact);
             }
         }
-        let mut dice = Dice::new(0, u64::from(mind.me.id.0) + 1);
+        let mut dice = AgentRng::new(0, u64::from(mind.me.id.0) + 1);
         self.solver.open(condition.vars.len());
         match self.solver.solve(mind, &mut dice, &condition.context) {
             Ok(holds) => holds,
@@ -131,7 +137,7 @@ impl<'p> Judge<'p> {
 }
 
 /// As an agent does when it starts; a fact that does not fit its declaration is left out.
-fn believe(mind: &mut Mind<'_>, fact: &Fact) {
+fn believe(mind: &mut MentalState<'_>, fact: &Fact) {
     let declared = mind.agent.and_then(|a| a.beliefs.get(usize::from(fact.belief.0)));
     if let Some(args) = declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
         let annotations = sourced(Annotations::from_slice(&fact.annotations));
@@ -153,7 +159,7 @@ fn reads(agent: &Agent, formula: &Context) -> BTreeSet<BeliefId> {
             }
             Context::Not(inner) => open.push(inner),
             Context::And(all) | Context::Or(all) => open.extend(all),
-            Context::Internal(internal) => match &**internal {
+            Context::Internal(internal, _) => match &**internal {
                 Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => open.push(formula),
                 Internal::Member { .. }
                 | Internal::Apply { .. }
@@ -174,6 +180,7 @@ fn reads(agent: &Agent, formula: &Context) -> BTreeSet<BeliefId> {
 
 #[cfg(test)]
 mod tests {
+    use hrdsl_ir::Span;
     use hrdsl_ir::{
         ActorId, Expr, Param, Type, Value,
         bdi::{Belief, Literal, Rule, Term},
@@ -182,12 +189,17 @@ mod tests {
     };
 
     use super::*;
-    use crate::choose::{Explorer, factors};
+    use crate::choose::{BeliefExplorer, factors};
 
     const N: Type = Type::Int { lo: 0, hi: 3 };
 
     fn literal(belief: u16, args: Vec<Term>) -> Context {
-        Context::Belief(Literal { belief: BeliefId(belief), args, annotations: vec![] })
+        Context::Belief(Literal {
+            origin: Span::default(),
+            belief: BeliefId(belief),
+            args,
+            annotations: vec![],
+        })
     }
 
     fn binary(op: BinaryOp, left: Expr, right: Expr) -> Expr {
@@ -197,6 +209,7 @@ mod tests {
     /// `wants(n)`, `tired`, `limit(n)`, of which `limit(2)` is held, and `rule most(N) when wants(N) && not tired`
     fn program() -> Program {
         let belief = |name: &str, params: usize| Belief {
+            negates: None,
             name: name.into(),
             params: vec![Param { name: "n".into(), ty: N }; params],
             annotations: vec![],
@@ -211,6 +224,7 @@ mod tests {
             beliefs: vec![belief("wants", 1), belief("tired", 0), belief("limit", 1), belief("most", 1)],
             goals: vec![],
             rules: vec![Rule {
+                head: Span::default(),
                 belief: BeliefId(3),
                 args: vec![Term::Var(0)],
                 body,
@@ -243,9 +257,9 @@ mod tests {
     fn explored(context: Option<Context>) -> Result<Vec<String>, String> {
         let (program, choices) = (program(), choices(context));
         let factors = factors(&program, &choices).unwrap();
-        let how = (Explore::Exhaustive, 100, 0);
-        let mut explorer =
-            Explorer::of(&program, &[AgentId(0)], &choices, &factors, how).map_err(|e| e.to_string())?;
+        let settings = (Explore::Exhaustive, 100, 0);
+        let mut explorer = BeliefExplorer::of(&program, &[AgentId(0)], &choices, &factors, settings)
+            .map_err(|e| e.to_string())?;
         let sets = explorer.next_batch();
         for set in &sets {
             assert!(allows(&program, &[AgentId(0)], &choices, set).unwrap());

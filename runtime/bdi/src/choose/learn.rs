@@ -6,10 +6,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    BATCH, BeliefSet, Factor,
-    cover::Row,
-    explore::{belief_set, sizes},
-    space::{Next, Space},
+    factors::BeliefFactor,
+    sets::{BATCH, BeliefSet, Row, belief_set, sizes},
+    space::{AllowedSpace, NextRow},
     within::after,
 };
 
@@ -37,8 +36,8 @@ const ATTEMPTS: usize = 50;
 /// A decision is made at random with the probability ε, which is 1 in the first batch, 0.9 times as much in each that
 /// follows, and at least 0.1; otherwise it is one of the alternatives with the greatest value. Sets come in batches of
 /// [`BATCH`], and values change between batches only, so that runs may be made in parallel. No set comes twice.
-pub struct Learner<'a> {
-    factors: Vec<Factor>,
+pub struct FactorLearner<'a> {
+    factors: Vec<BeliefFactor>,
     sizes: Vec<u32>,
     /// By factor, the alternative before it (0 for the first) and the alternative; absent: 0.
     values: BTreeMap<(u32, u32, u32), f64>,
@@ -49,12 +48,12 @@ pub struct Learner<'a> {
     wanted: usize,
     rng: ChaCha8Rng,
     /// What conditions allow; without it everything is.
-    space: Option<Space<'a>>,
+    space: Option<AllowedSpace<'a>>,
 }
 
-impl<'a> Learner<'a> {
+impl<'a> FactorLearner<'a> {
     /// Makes `wanted` different sets; there must be as many.
-    pub(super) fn new(factors: &[Factor], wanted: usize, seed: u64) -> Self {
+    pub(super) fn new(factors: &[BeliefFactor], wanted: usize, seed: u64) -> Self {
         Self {
             factors: factors.to_vec(),
             sizes: sizes(factors),
@@ -69,7 +68,12 @@ impl<'a> Learner<'a> {
     }
 
     /// Makes at most `wanted` different sets that the space allows.
-    pub(super) fn within(factors: &[Factor], wanted: usize, space: Space<'a>, rng: ChaCha8Rng) -> Self {
+    pub(super) fn within(
+        factors: &[BeliefFactor],
+        wanted: usize,
+        space: AllowedSpace<'a>,
+        rng: ChaCha8Rng,
+    ) -> Self {
         Self { rng, space: Some(space), ..Self::new(factors, wanted, 0) }
     }
 
@@ -145,7 +149,7 @@ impl<'a> Learner<'a> {
         };
         for from in [row, vec![0; self.sizes.len()]] {
             let mut next = space.next(&from);
-            while let Next::Row(row) = next {
+            while let NextRow::Row(row) = next {
                 if !self.seen.contains(&row) {
                     return Some(row);
                 }
@@ -194,11 +198,11 @@ fn advance(row: &mut Row, sizes: &[u32]) {
 mod tests {
     use hrdsl_ir::bdi::AgentId;
 
-    use super::{super::Alternative, *};
+    use super::{super::FactorAlternative, *};
 
-    fn factors(sizes: &[u32]) -> Vec<Factor> {
-        let alternative = |a: u32| Alternative { facts: vec![], text: a.to_string() };
-        let factor = |n: &u32| Factor {
+    fn factors(sizes: &[u32]) -> Vec<BeliefFactor> {
+        let alternative = |a: u32| FactorAlternative { facts: vec![], text: a.to_string() };
+        let factor = |n: &u32| BeliefFactor {
             agent: AgentId(0),
             name: String::new(),
             alternatives: (0..*n).map(alternative).collect(),
@@ -207,7 +211,7 @@ mod tests {
     }
 
     /// Rows of so many batches, when each set brings what `reward` says.
-    fn run(learner: &mut Learner, batches: usize, reward: impl Fn(&Row) -> u32) -> Vec<Row> {
+    fn run(learner: &mut FactorLearner, batches: usize, reward: impl Fn(&Row) -> u32) -> Vec<Row> {
         let mut all = Vec::new();
         for _ in 0..batches {
             learner.next_batch();
@@ -220,19 +224,19 @@ mod tests {
 
     #[test]
     fn the_whole_space_comes_once() {
-        let mut learner = Learner::new(&factors(&[3, 2, 4]), 24, 7);
+        let mut learner = FactorLearner::new(&factors(&[3, 2, 4]), 24, 7);
         let rows = run(&mut learner, 9, |row| row[0]);
         assert_eq!(rows.len(), 24);
         assert_eq!(rows.iter().collect::<BTreeSet<_>>().len(), 24);
         assert!(learner.next_batch().is_empty());
-        assert_eq!(run(&mut Learner::new(&[], 1, 0), 2, |_| 1), [Row::new()]);
+        assert_eq!(run(&mut FactorLearner::new(&[], 1, 0), 2, |_| 1), [Row::new()]);
     }
 
     #[test]
     fn what_brings_something_is_chosen_more_often() {
         // Only sets with alternative 7 after alternative 3 bring anything: one in 64 at random.
         let is_good = |row: &Row| row[1] == 3 && row[2] == 7;
-        let mut learner = Learner::new(&factors(&[8, 8, 8, 8]), 4096, 11);
+        let mut learner = FactorLearner::new(&factors(&[8, 8, 8, 8]), 4096, 11);
         let rows = run(&mut learner, 40, |row| u32::from(is_good(row)));
         let good = |rows: &[Row]| rows.iter().filter(|r| is_good(r)).count();
         let (first, last) = (good(&rows[..320]), good(&rows[320..]));
@@ -242,7 +246,7 @@ mod tests {
 
     #[test]
     fn values_are_learned_from_the_last_decision_back() {
-        let mut learner = Learner::new(&factors(&[2, 2]), 4, 0);
+        let mut learner = FactorLearner::new(&factors(&[2, 2]), 4, 0);
         learner.episode(&vec![1, 0], 8.0);
         assert_eq!(learner.values[&(1, 1, 0)], 4.0);
         assert_eq!(learner.values[&(0, 0, 1)], 0.5 * 0.9 * 4.0);
@@ -254,7 +258,8 @@ mod tests {
 
     #[test]
     fn the_same_seed_and_rewards_give_the_same_sets() {
-        let rows = |seed| run(&mut Learner::new(&factors(&[5; 5]), 200, seed), 12, |row| row[0] * row[4]);
+        let rows =
+            |seed| run(&mut FactorLearner::new(&factors(&[5; 5]), 200, seed), 12, |row| row[0] * row[4]);
         assert_eq!(rows(3), rows(3));
         assert_ne!(rows(3), rows(4));
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::cover::{Row, shuffle};
+use super::sets::{Row, shuffle};
 
 /// A group of at most so many rows is gone through.
 pub(super) const MAX_ROWS: u128 = 1_000_000;
@@ -30,7 +30,7 @@ const EFFORT: u64 = 5_000_000;
 /// Decides a condition by its number; only the alternatives of the factors in its scope are looked at.
 pub(super) type Holds<'a> = Box<dyn FnMut(usize, &Row) -> bool + 'a>;
 
-struct Clause {
+struct ConditionClause {
     /// Upwards.
     scope: Vec<usize>,
     /// Answers by the alternatives of the scope.
@@ -38,7 +38,7 @@ struct Clause {
 }
 
 /// Factors that conditions tie together.
-pub(super) struct Group {
+pub(super) struct TiedFactors {
     /// Upwards.
     pub factors: Vec<usize>,
     /// The allowed rows of these factors, one after the other; all of them, in lexicographic order, or a sample.
@@ -48,7 +48,7 @@ pub(super) struct Group {
     seen: BTreeMap<Vec<usize>, Vec<bool>>,
 }
 
-impl Group {
+impl TiedFactors {
     pub fn len(&self) -> usize {
         self.rows.len() / self.factors.len().max(1)
     }
@@ -83,7 +83,7 @@ impl Group {
 
 /// What a search brought.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Next {
+pub(super) enum NextRow {
     Row(Row),
     /// There is none.
     End,
@@ -92,11 +92,11 @@ pub(super) enum Next {
 }
 
 /// The rows that all conditions allow.
-pub(super) struct Space<'a> {
+pub(super) struct AllowedSpace<'a> {
     pub sizes: Vec<u32>,
-    clauses: Vec<Clause>,
+    clauses: Vec<ConditionClause>,
     holds: Holds<'a>,
-    pub groups: Vec<Group>,
+    pub groups: Vec<TiedFactors>,
     /// By factor: its group; none for a free one.
     pub group_of: Vec<Option<usize>>,
     /// By factor: the conditions that can be decided once it has an alternative, in the order of the factors.
@@ -109,7 +109,7 @@ pub(super) struct Space<'a> {
     draws: usize,
 }
 
-impl<'a> Space<'a> {
+impl<'a> AllowedSpace<'a> {
     pub fn new(sizes: Vec<u32>, scopes: Vec<Vec<usize>>, holds: Holds<'a>, rng: &mut ChaCha8Rng) -> Self {
         Self::limited(sizes, scopes, holds, MAX_ROWS, rng)
     }
@@ -127,8 +127,8 @@ impl<'a> Space<'a> {
             scope.last().iter().for_each(|f| last[**f].push(clause));
         }
         let (groups, group_of) = tied(&scopes, sizes.len());
-        let clause = |scope| Clause { scope, known: BTreeMap::new() };
-        let clauses: Vec<Clause> = scopes.into_iter().map(clause).collect();
+        let clause = |scope| ConditionClause { scope, known: BTreeMap::new() };
+        let clauses: Vec<ConditionClause> = scopes.into_iter().map(clause).collect();
         let mut space = Self {
             sizes,
             clauses,
@@ -151,10 +151,10 @@ impl<'a> Space<'a> {
         space
     }
 
-    fn group(&mut self, factors: Vec<usize>, max_rows: u128, rng: &mut ChaCha8Rng) -> Group {
+    fn group(&mut self, factors: Vec<usize>, max_rows: u128, rng: &mut ChaCha8Rng) -> TiedFactors {
         let size = factors.iter().fold(1u128, |n, f| n.saturating_mul(u128::from(self.sizes[*f])));
         let exact = size <= max_rows;
-        let mut group = Group { factors, rows: Vec::new(), exact, seen: BTreeMap::new() };
+        let mut group = TiedFactors { factors, rows: Vec::new(), exact, seen: BTreeMap::new() };
         if exact {
             let mut row = vec![0; self.sizes.len()];
             // INVARIANT: a search of a whole group tries fewer alternatives than twice its rows and more.
@@ -186,12 +186,12 @@ impl<'a> Space<'a> {
         }
         let free = (0..self.sizes.len()).filter(|f| self.group_of[*f].is_none());
         let free = free.fold(1u128, |n, f| n.saturating_mul(u128::from(self.sizes[f])));
-        let of = |n: u128, g: &Group| n.saturating_mul(g.len() as u128);
+        let of = |n: u128, g: &TiedFactors| n.saturating_mul(g.len() as u128);
         self.is_exact().then(|| self.groups.iter().fold(free, of))
     }
 
     /// A group of which no row is known.
-    pub fn empty(&self) -> Option<&Group> {
+    pub fn empty(&self) -> Option<&TiedFactors> {
         self.groups.iter().find(|g| g.len() == 0)
     }
 
@@ -242,16 +242,16 @@ impl<'a> Space<'a> {
     }
 
     /// The first allowed row from this one on, in lexicographic order.
-    pub fn next(&mut self, from: &Row) -> Next {
+    pub fn next(&mut self, from: &Row) -> NextRow {
         let (mut row, mut nodes) = (from.clone(), MAX_NODES);
         if self.never {
-            return Next::End;
+            return NextRow::End;
         }
         let all: Vec<usize> = (0..self.sizes.len()).collect();
         match self.search(&all, &mut row, &mut nodes) {
-            Some(true) => Next::Row(row),
-            Some(false) => Next::End,
-            None => Next::Open,
+            Some(true) => NextRow::Row(row),
+            Some(false) => NextRow::End,
+            None => NextRow::Open,
         }
     }
 

@@ -7,9 +7,9 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    MAX_SETS,
-    cover::{CANDIDATES, Place, Row, Uncovered, shuffle, tuples},
-    space::{Next, Space},
+    cover::{CANDIDATES, Place, UncoveredTuples, tuples},
+    sets::{MAX_SETS, Row, shuffle},
+    space::{AllowedSpace, NextRow},
 };
 
 /// Tuples that are looked at, at most: each is compared with what is allowed.
@@ -20,7 +20,7 @@ const MISSES: usize = 1_000;
 
 /// What was found within a space.
 #[derive(Debug, Default)]
-pub(super) struct Within {
+pub(super) struct AllowedRows {
     pub rows: Vec<Row>,
     /// A limit cut short what was asked for.
     pub cut: bool,
@@ -28,11 +28,16 @@ pub(super) struct Within {
 }
 
 /// As [`explore`](super::explore), but `Learn` is as `Random`.
-pub(super) fn within(space: &mut Space<'_>, how: Explore, tests: usize, rng: &mut ChaCha8Rng) -> Within {
-    match how {
+pub(super) fn within(
+    space: &mut AllowedSpace<'_>,
+    method: Explore,
+    tests: usize,
+    rng: &mut ChaCha8Rng,
+) -> AllowedRows {
+    match method {
         Explore::Exhaustive => {
             let (rows, end) = first(space, tests);
-            Within { rows, cut: end != Next::End, notes: Vec::new() }
+            AllowedRows { rows, cut: end != NextRow::End, notes: Vec::new() }
         }
         Explore::Wise(strength) => {
             let mut found = covering(space, usize::from(strength).max(2), rng);
@@ -41,7 +46,7 @@ pub(super) fn within(space: &mut Space<'_>, how: Explore, tests: usize, rng: &mu
             found
         }
         Explore::Random | Explore::Learn => {
-            let mut found = Within::default();
+            let mut found = AllowedRows::default();
             found.cut = !fill(&mut found, space, tests, rng);
             found
         }
@@ -49,10 +54,10 @@ pub(super) fn within(space: &mut Space<'_>, how: Explore, tests: usize, rng: &mu
 }
 
 /// The first allowed rows, and what comes after them.
-fn first(space: &mut Space<'_>, limit: usize) -> (Vec<Row>, Next) {
+fn first(space: &mut AllowedSpace<'_>, limit: usize) -> (Vec<Row>, NextRow) {
     let mut rows = Vec::new();
     let mut next = space.next(&vec![0; space.sizes.len()]);
-    while let Next::Row(row) = &next {
+    while let NextRow::Row(row) = &next {
         if rows.len() >= limit {
             break;
         }
@@ -63,17 +68,17 @@ fn first(space: &mut Space<'_>, limit: usize) -> (Vec<Row>, Next) {
 }
 
 /// The first allowed row after this one.
-pub(super) fn after(space: &mut Space<'_>, row: &Row) -> Next {
+pub(super) fn after(space: &mut AllowedSpace<'_>, row: &Row) -> NextRow {
     let mut from = row.clone();
     match from.last_mut() {
         Some(last) => *last += 1,
-        None => return Next::End,
+        None => return NextRow::End,
     }
     space.next(&from)
 }
 
 /// Adds different random rows until there are as many as were asked for, or all; `false` if a bound ended that.
-fn fill(found: &mut Within, space: &mut Space<'_>, tests: usize, rng: &mut ChaCha8Rng) -> bool {
+fn fill(found: &mut AllowedRows, space: &mut AllowedSpace<'_>, tests: usize, rng: &mut ChaCha8Rng) -> bool {
     let allowed = space.allowed();
     let most = allowed.map_or(usize::MAX, |n| usize::try_from(n).unwrap_or(usize::MAX));
     let wanted = tests.min(MAX_SETS).min(most);
@@ -101,25 +106,25 @@ fn fill(found: &mut Within, space: &mut Space<'_>, tests: usize, rng: &mut ChaCh
 
 /// Rows in which every tuple occurs that some allowed row has; otherwise as
 /// [`covering`](super::cover::covering).
-fn covering(space: &mut Space<'_>, mut strength: usize, rng: &mut ChaCha8Rng) -> Within {
+fn covering(space: &mut AllowedSpace<'_>, mut strength: usize, rng: &mut ChaCha8Rng) -> AllowedRows {
     let sizes = space.sizes.clone();
     if sizes.len() < 2 || (strength > 2 && strength >= sizes.len()) {
         let (rows, end) = first(space, MAX_SETS);
-        return Within { rows, cut: end != Next::End, notes: Vec::new() };
+        return AllowedRows { rows, cut: end != NextRow::End, notes: Vec::new() };
     }
     let asked = strength;
     while strength > 2 && tuples(&sizes, strength) > MAX_TUPLES {
         strength -= 1;
     }
-    let mut uncovered = Uncovered::new(&sizes, strength);
+    let mut uncovered = UncoveredTuples::new(&sizes, strength);
     let excluded = uncovered.exclude(space, rng);
-    let mut found = Within { cut: strength < asked, ..Within::default() };
+    let mut found = AllowedRows { cut: strength < asked, ..AllowedRows::default() };
     if excluded > 0 {
         found.notes.push(excluded_note(excluded, strength, space.is_exact()));
     }
     while uncovered.left > 0 && found.rows.len() < MAX_SETS {
         let start = uncovered.open_tuple(uncovered.neediest());
-        let begun = Begun::new(space, &start);
+        let begun = TupleCandidates::new(space, &start);
         let mut best: Option<(usize, Row)> = None;
         for _ in 0..CANDIDATES {
             let (gain, row) = begun.candidate(&uncovered, rng);
@@ -147,14 +152,14 @@ fn excluded_note(excluded: u64, strength: usize, is_exact: bool) -> String {
 }
 
 /// A tuple that candidates begin with, and by group the allowed rows that have it; `None`: all of them.
-struct Begun<'s, 'a> {
-    space: &'s Space<'a>,
+struct TupleCandidates<'s, 'a> {
+    space: &'s AllowedSpace<'a>,
     start: &'s [Place],
     matching: Vec<Option<Vec<u32>>>,
 }
 
-impl<'s, 'a> Begun<'s, 'a> {
-    fn new(space: &'s Space<'a>, start: &'s [Place]) -> Self {
+impl<'s, 'a> TupleCandidates<'s, 'a> {
+    fn new(space: &'s AllowedSpace<'a>, start: &'s [Place]) -> Self {
         let mut begun = Self { space, start, matching: vec![None; space.groups.len()] };
         let mut matching = begun.matching.clone();
         start.iter().for_each(|place| begun.narrow(&mut matching, *place));
@@ -192,7 +197,7 @@ impl<'s, 'a> Begun<'s, 'a> {
     }
 
     /// As [`candidate`](super::cover), of what is permitted.
-    fn candidate(&self, uncovered: &Uncovered<'_>, rng: &mut ChaCha8Rng) -> (usize, Row) {
+    fn candidate(&self, uncovered: &UncoveredTuples<'_>, rng: &mut ChaCha8Rng) -> (usize, Row) {
         let mut row: Row = vec![0; self.space.sizes.len()];
         let mut placed: Vec<usize> = self.start.iter().map(|(factor, _)| *factor).collect();
         self.start.iter().for_each(|(factor, alternative)| row[*factor] = *alternative);
@@ -224,7 +229,7 @@ mod tests {
     use rand::SeedableRng;
 
     use super::*;
-    use crate::choose::{Alternative, BATCH, ChooseError, Explorer, Factor, explore::row_at};
+    use crate::choose::{BATCH, BeliefExplorer, BeliefFactor, ChooseError, FactorAlternative, sets::row_at};
     use hrdsl_ir::bdi::{AgentId, BeliefId, Fact};
 
     /// A condition: the factors in its scope, and how often it holds, of 8; which rows these are comes from a hash.
@@ -248,10 +253,10 @@ mod tests {
         clauses: &'a [(Vec<usize>, u8)],
         max: u128,
         rng: &mut ChaCha8Rng,
-    ) -> Space<'a> {
+    ) -> AllowedSpace<'a> {
         let scopes = clauses.iter().map(|(scope, _)| scope.clone()).collect();
         let holds = move |clause: usize, row: &Row| holds(clauses, clause, row);
-        Space::limited(sizes.to_vec(), scopes, Box::new(holds), max, rng)
+        AllowedSpace::limited(sizes.to_vec(), scopes, Box::new(holds), max, rng)
     }
 
     /// The allowed rows, by trying all.
@@ -270,14 +275,14 @@ mod tests {
         found
     }
 
-    fn factors(sizes: &[u32]) -> Vec<Factor> {
+    fn factors(sizes: &[u32]) -> Vec<BeliefFactor> {
         let fact = |f: u16, a: u32| Fact {
             belief: BeliefId(f),
             args: vec![hrdsl_ir::Value::Int(a.into())],
             annotations: vec![],
         };
-        let alternative = |f, a| Alternative { facts: vec![fact(f, a)], text: format!("b{f}({a})") };
-        let factor = |(f, n): (u16, &u32)| Factor {
+        let alternative = |f, a| FactorAlternative { facts: vec![fact(f, a)], text: format!("b{f}({a})") };
+        let factor = |(f, n): (u16, &u32)| BeliefFactor {
             agent: AgentId(0),
             name: format!("b{f}"),
             alternatives: (0..*n).map(|a| alternative(f, a)).collect(),
@@ -288,13 +293,13 @@ mod tests {
     /// The rows that an explorer makes, batch by batch.
     fn explored(
         sizes: &[u32],
-        space: Space<'_>,
-        how: Explore,
+        space: AllowedSpace<'_>,
+        method: Explore,
         tests: u32,
         seed: u64,
     ) -> Result<Vec<Row>, ChooseError> {
         let rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut explorer = Explorer::within(space, &factors(sizes), (how, tests), rng)?;
+        let mut explorer = BeliefExplorer::within(space, &factors(sizes), (method, tests), rng)?;
         let mut rows = Vec::new();
         loop {
             let batch = explorer.next_batch();
@@ -308,7 +313,7 @@ mod tests {
         }
     }
 
-    const WAYS: [Explore; 5] =
+    const METHODS: [Explore; 5] =
         [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
 
     proptest! {
@@ -322,11 +327,11 @@ mod tests {
         ) {
             let clauses = clauses(&sizes, &drawn);
             let allowed = allowed(&sizes, &clauses);
-            for how in WAYS {
+            for method in METHODS {
                 let mut rng = ChaCha8Rng::seed_from_u64(seed);
                 let space = space(&sizes, &clauses, u128::MAX, &mut rng);
                 prop_assert_eq!(space.allowed(), Some(allowed.len() as u128));
-                let found = explored(&sizes, space, how, tests, seed);
+                let found = explored(&sizes, space, method, tests, seed);
                 let Ok(rows) = found else {
                     prop_assert!(allowed.is_empty());
                     continue;
@@ -334,9 +339,9 @@ mod tests {
                 prop_assert!(!allowed.is_empty());
                 let distinct: BTreeSet<&Row> = rows.iter().collect();
                 prop_assert_eq!(distinct.len(), rows.len());
-                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", how);
+                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", method);
                 let least = allowed.len().min(tests as usize);
-                match how {
+                match method {
                     Explore::Exhaustive => prop_assert_eq!(&rows[..], &allowed[..least]),
                     Explore::Wise(strength) => {
                         let (n, t) = (sizes.len(), usize::from(strength));
@@ -356,16 +361,16 @@ mod tests {
         ) {
             let clauses = clauses(&sizes, &drawn);
             let allowed = allowed(&sizes, &clauses);
-            for how in WAYS {
+            for method in METHODS {
                 let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                let Ok(rows) = explored(&sizes, space(&sizes, &clauses, 0, &mut rng), how, 20, seed) else {
+                let Ok(rows) = explored(&sizes, space(&sizes, &clauses, 0, &mut rng), method, 20, seed) else {
                     continue;
                 };
-                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", how);
+                prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", method);
                 let distinct: BTreeSet<&Row> = rows.iter().collect();
                 prop_assert_eq!(distinct.len(), rows.len());
                 // So small a space is found whole at random.
-                if let Explore::Wise(t) = how {
+                if let Explore::Wise(t) = method {
                     let (n, t) = (sizes.len(), usize::from(t));
                     prop_assert_eq!(sub_tuples(&rows, n, t), sub_tuples(&allowed, n, t));
                 }
@@ -374,22 +379,22 @@ mod tests {
     }
 
     /// 40 beliefs of which at most three are held.
-    fn few_of_many(rng: &mut ChaCha8Rng) -> Space<'static> {
+    fn few_of_many(rng: &mut ChaCha8Rng) -> AllowedSpace<'static> {
         let few = |_, row: &Row| row.iter().sum::<u32>() <= 3;
-        Space::new(vec![2; 40], vec![(0..40).collect()], Box::new(few), rng)
+        AllowedSpace::new(vec![2; 40], vec![(0..40).collect()], Box::new(few), rng)
     }
 
     #[test]
     fn few_of_many_beliefs_are_found_in_a_vast_space() {
         // Each three that are held need a row of their own: the strength of 3 would take long.
-        for how in WAYS.into_iter().filter(|how| *how != Explore::Wise(3)) {
+        for method in METHODS.into_iter().filter(|method| *method != Explore::Wise(3)) {
             let mut rng = ChaCha8Rng::seed_from_u64(5);
             let space = few_of_many(&mut rng);
             assert_eq!((space.allowed(), space.is_exact()), (None, false));
-            let rows = explored(&[2; 40], space, how, 50, 5).unwrap();
-            assert!(rows.iter().all(|row| row.iter().sum::<u32>() <= 3), "{how:?}");
-            assert!(rows.len() >= 50, "{how:?}: {}", rows.len());
-            if how == Explore::Wise(2) {
+            let rows = explored(&[2; 40], space, method, 50, 5).unwrap();
+            assert!(rows.iter().all(|row| row.iter().sum::<u32>() <= 3), "{method:?}");
+            assert!(rows.len() >= 50, "{method:?}: {}", rows.len());
+            if method == Explore::Wise(2) {
                 let held = |r: &Row, f: usize, g: usize| r[f] == 1 && r[g] == 1;
                 let pairs = (0..40).flat_map(|f| (0..f).map(move |g| (f, g)));
                 for (f, g) in pairs {
@@ -403,10 +408,10 @@ mod tests {
     fn what_no_row_fulfils_is_said() {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
         let never = |_, row: &Row| row[1] == 2;
-        let space = Space::new(vec![2, 2], vec![vec![1]], Box::new(never), &mut rng);
+        let space = AllowedSpace::new(vec![2, 2], vec![vec![1]], Box::new(never), &mut rng);
         let error = explored(&[2, 2], space, Explore::Wise(2), 9, 0).unwrap_err();
         assert_eq!(error.to_string(), "no belief set fulfils what `where` says of b1");
-        let space = Space::new(vec![2], vec![vec![]], Box::new(|_, _| false), &mut rng);
+        let space = AllowedSpace::new(vec![2], vec![vec![]], Box::new(|_, _| false), &mut rng);
         let error = explored(&[2], space, Explore::Learn, 9, 0).unwrap_err();
         assert_eq!(error.to_string(), "no belief set fulfils what `where` says");
     }
@@ -415,8 +420,9 @@ mod tests {
     fn what_is_left_out_is_counted() {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
         let differ = |_, row: &Row| row[0] != row[1];
-        let space = Space::new(vec![3, 3, 2], vec![vec![0, 1]], Box::new(differ), &mut rng);
-        let explorer = Explorer::within(space, &factors(&[3, 3, 2]), (Explore::Wise(2), 9), rng).unwrap();
+        let space = AllowedSpace::new(vec![3, 3, 2], vec![vec![0, 1]], Box::new(differ), &mut rng);
+        let explorer =
+            BeliefExplorer::within(space, &factors(&[3, 3, 2]), (Explore::Wise(2), 9), rng).unwrap();
         assert_eq!(
             explorer.notes,
             [

@@ -15,7 +15,7 @@
 //! ```
 
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Type, Value,
+    Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Span, Type, Value,
     bdi::{
         Agent, Assertion, Belief, BeliefId, Content, ContentId, Context, Goal, GoalId, Literal, Performative,
         Plan, Step, StepKind, Subject, Term, Trigger, TriggerOn,
@@ -30,6 +30,7 @@ pub fn step(kind: StepKind) -> Step {
 fn belief(name: &str, params: usize) -> Belief {
     let param = Param { name: "n".into(), ty: Type::Int { lo: 0, hi: 4 } };
     Belief {
+        negates: None,
         name: name.into(),
         params: vec![param; params],
         annotations: vec![],
@@ -39,14 +40,14 @@ fn belief(name: &str, params: usize) -> Belief {
 }
 
 pub fn holds(belief: u16, args: Vec<Term>) -> Context {
-    Context::Belief(Literal { belief: BeliefId(belief), args, annotations: vec![] })
+    Context::Belief(Literal { origin: Span::default(), belief: BeliefId(belief), args, annotations: vec![] })
 }
 
 pub fn plan(label: &str, on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind>) -> Plan {
     Plan {
         label: label.into(),
         atomic: false,
-        trigger: Trigger { on, args, annotations: vec![] },
+        trigger: Trigger { name: Span::default(), origin: Span::default(), on, args, annotations: vec![] },
         context,
         body: body.into_iter().map(step).collect(),
         vars: vec!["N".into(), "M".into()],

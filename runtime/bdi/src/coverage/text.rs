@@ -5,35 +5,37 @@ use hrdsl_ir::{
     bdi::{Agent, BeliefId, ContentId, GoalId, StepKind, TriggerOn},
 };
 
-use super::universe::{Applicable, Item, sites};
+use super::universe::{AgentCoverItem, ApplicableCount, sites};
 use crate::show::performative as performative_name;
 
 /// What an item is called: `plan Human.leg#2 failed`, `edge Human.table#1 -> leg#2 (step 3)`.
 #[must_use]
-pub fn name(program: &Program, agent: &Agent, item: Item) -> String {
+pub fn name(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
     let label = |plan: u16| agent.plans.get(usize::from(plan)).map_or("?", |p| &p.label);
     let owner = &agent.name;
     match item {
-        Item::Selected(plan) => format!("plan {owner}.{}", label(plan)),
-        Item::Completed(plan) => format!("plan {owner}.{} completed", label(plan)),
-        Item::Failed(plan) => format!("plan {owner}.{} failed", label(plan)),
-        Item::Context { plan, holds } => format!("context {owner}.{} {holds}", label(plan)),
-        Item::Applicable { on, plans } => {
+        AgentCoverItem::Selected(plan) => format!("plan {owner}.{}", label(plan)),
+        AgentCoverItem::Completed(plan) => format!("plan {owner}.{} completed", label(plan)),
+        AgentCoverItem::Failed(plan) => format!("plan {owner}.{} failed", label(plan)),
+        AgentCoverItem::Context { plan, holds } => format!("context {owner}.{} {holds}", label(plan)),
+        AgentCoverItem::Applicable { on, plans } => {
             let many = match plans {
-                Applicable::None => "none",
-                Applicable::One => "one",
-                Applicable::Many => "many",
+                ApplicableCount::None => "none",
+                ApplicableCount::One => "one",
+                ApplicableCount::Many => "many",
             };
             format!("applicable {owner}.{} {many}", trigger(program, agent, on))
         }
-        Item::Message { plan, site } => {
+        AgentCoverItem::Message { plan, site } => {
             let what = message(program, agent, plan, site);
             format!("message {owner}.{}: {what} (step {})", label(plan), site + 1)
         }
-        Item::Edge { plan, site, by } => {
+        AgentCoverItem::Edge { plan, site, by } => {
             format!("edge {owner}.{} -> {} (step {})", label(plan), label(by), site + 1)
         }
-        Item::Path([a, b, c]) => format!("path {owner}: {} > {} > {}", label(a), label(b), label(c)),
+        AgentCoverItem::Path([a, b, c]) => {
+            format!("path {owner}: {} > {} > {}", label(a), label(b), label(c))
+        }
     }
 }
 
@@ -77,6 +79,7 @@ pub fn trigger(program: &Program, agent: &Agent, on: TriggerOn) -> String {
 
 #[cfg(test)]
 mod tests {
+    use hrdsl_ir::Span;
     use hrdsl_ir::{
         Expr,
         bdi::{Annotation, Context, Internal, Literal, Term},
@@ -118,15 +121,16 @@ mod tests {
     fn annotations_lists_and_internal_actions_are_written() {
         let source = Term::Expr(Expr::Const(hrdsl_ir::Value::Symbol(hrdsl_ir::Symbol::intern("percept"))));
         let literal = Literal {
+            origin: Span::default(),
             belief: BeliefId(0),
             args: vec![Term::List(vec![Term::Var(0)], Some(Box::new(Term::Any)))],
             annotations: vec![(Annotation::Source, source)],
         };
         assert_eq!(written(&Context::Belief(literal)), "wants([N | _])[source(percept)]");
         let count = Internal::Count { formula: fixture::holds(1, vec![Term::Any]), out: Term::Var(1) };
-        assert_eq!(written(&Context::Internal(Box::new(count))), ".count(near(_), M)");
+        assert_eq!(written(&Context::Internal(Box::new(count), Span::default())), ".count(near(_), M)");
         let intend = Internal::Intend { goal: GoalId(1), args: vec![Term::Any] };
-        assert_eq!(written(&Context::Internal(Box::new(intend))), ".intend(leg(_))");
+        assert_eq!(written(&Context::Internal(Box::new(intend), Span::default())), ".intend(leg(_))");
         let unify = Context::Unify(Term::Var(0), Expr::binary(BinaryOp::Sub, Expr::Var(1), Expr::int(1)));
         assert_eq!(written(&unify), "N = M - 1");
     }

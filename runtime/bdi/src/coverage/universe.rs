@@ -8,12 +8,12 @@ use hrdsl_ir::{
     suite::{ItemKind, ModelGoal},
 };
 
-use crate::measure::Measured;
+use crate::measure::AgentCounts;
 
 /// Something of an agent's program that a run reaches or does not. Plans are named by their place in the library, steps
-/// by their site ([`Measured`]).
+/// by their site ([`AgentCounts`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Item {
+pub enum AgentCoverItem {
     /// The plan was selected.
     Selected(u16),
     /// It was finished.
@@ -27,7 +27,7 @@ pub enum Item {
     /// An event came with so many applicable plans.
     Applicable {
         on: TriggerOn,
-        plans: Applicable,
+        plans: ApplicableCount,
     },
     /// The message of a step was sent.
     Message {
@@ -46,54 +46,58 @@ pub enum Item {
 
 /// How many plans are applicable to an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Applicable {
+pub enum ApplicableCount {
     None,
     One,
     Many,
 }
 
-impl Applicable {
-    /// Its place in [`Measured::applicable`].
+impl ApplicableCount {
+    /// Its place in [`AgentCounts::applicable`].
     fn index(self) -> usize {
         match self {
-            Applicable::None => 0,
-            Applicable::One => 1,
-            Applicable::Many => 2,
+            ApplicableCount::None => 0,
+            ApplicableCount::One => 1,
+            ApplicableCount::Many => 2,
         }
     }
 }
 
-impl Item {
+impl AgentCoverItem {
     #[must_use]
     pub fn kind(self) -> ItemKind {
         match self {
-            Item::Selected(_) => ItemKind::Selected,
-            Item::Completed(_) => ItemKind::Completed,
-            Item::Failed(_) => ItemKind::Failed,
-            Item::Context { holds: true, .. } => ItemKind::ContextTrue,
-            Item::Context { holds: false, .. } => ItemKind::ContextFalse,
-            Item::Applicable { .. } => ItemKind::Applicable,
-            Item::Message { .. } => ItemKind::Message,
-            Item::Edge { .. } => ItemKind::Edge,
-            Item::Path(_) => ItemKind::Path,
+            AgentCoverItem::Selected(_) => ItemKind::Selected,
+            AgentCoverItem::Completed(_) => ItemKind::Completed,
+            AgentCoverItem::Failed(_) => ItemKind::Failed,
+            AgentCoverItem::Context { holds: true, .. } => ItemKind::ContextTrue,
+            AgentCoverItem::Context { holds: false, .. } => ItemKind::ContextFalse,
+            AgentCoverItem::Applicable { .. } => ItemKind::Applicable,
+            AgentCoverItem::Message { .. } => ItemKind::Message,
+            AgentCoverItem::Edge { .. } => ItemKind::Edge,
+            AgentCoverItem::Path(_) => ItemKind::Path,
         }
     }
 
     /// Whether a run with these counts reached it.
     #[must_use]
-    pub fn is_reached(self, measured: &Measured) -> bool {
+    pub fn is_reached(self, measured: &AgentCounts) -> bool {
         let of = |counts: &[u64], plan: u16| counts.get(usize::from(plan)).copied().unwrap_or(0);
         let count = match self {
-            Item::Selected(plan) => of(&measured.selected, plan),
-            Item::Completed(plan) => of(&measured.completed, plan),
-            Item::Failed(plan) => of(&measured.failed, plan),
-            Item::Context { plan, holds } => {
+            AgentCoverItem::Selected(plan) => of(&measured.selected, plan),
+            AgentCoverItem::Completed(plan) => of(&measured.completed, plan),
+            AgentCoverItem::Failed(plan) => of(&measured.failed, plan),
+            AgentCoverItem::Context { plan, holds } => {
                 measured.contexts.get(usize::from(plan)).map_or(0, |n| n[usize::from(holds)])
             }
-            Item::Applicable { on, plans } => measured.applicable.get(&on).map_or(0, |n| n[plans.index()]),
-            Item::Message { plan, site } => measured.sent.get(&(plan, site)).copied().unwrap_or(0),
-            Item::Edge { plan, site, by } => measured.edges.get(&(plan, site, by)).copied().unwrap_or(0),
-            Item::Path(plans) => measured.paths.get(&plans).copied().unwrap_or(0),
+            AgentCoverItem::Applicable { on, plans } => {
+                measured.applicable.get(&on).map_or(0, |n| n[plans.index()])
+            }
+            AgentCoverItem::Message { plan, site } => measured.sent.get(&(plan, site)).copied().unwrap_or(0),
+            AgentCoverItem::Edge { plan, site, by } => {
+                measured.edges.get(&(plan, site, by)).copied().unwrap_or(0)
+            }
+            AgentCoverItem::Path(plans) => measured.paths.get(&plans).copied().unwrap_or(0),
         };
         count > 0
     }
@@ -114,35 +118,39 @@ pub(super) fn numbered(agent: &Agent) -> impl Iterator<Item = (u16, &Plan)> {
 
 /// All items of an agent, by kind in the order of [`ItemKind::ALL`], in each in the order of the text.
 #[must_use]
-pub fn universe(agent: &Agent) -> Vec<Item> {
-    let selected = numbered(agent).map(|(p, _)| Item::Selected(p));
-    let completed = numbered(agent).filter(|(_, plan)| can_end(plan)).map(|(p, _)| Item::Completed(p));
-    let failed = numbered(agent).filter(|(_, plan)| !plan.body.is_empty()).map(|(p, _)| Item::Failed(p));
-    let mut all: Vec<Item> = selected.chain(completed).chain(failed).collect();
+pub fn universe(agent: &Agent) -> Vec<AgentCoverItem> {
+    let selected = numbered(agent).map(|(p, _)| AgentCoverItem::Selected(p));
+    let completed =
+        numbered(agent).filter(|(_, plan)| can_end(plan)).map(|(p, _)| AgentCoverItem::Completed(p));
+    let failed =
+        numbered(agent).filter(|(_, plan)| !plan.body.is_empty()).map(|(p, _)| AgentCoverItem::Failed(p));
+    let mut all: Vec<AgentCoverItem> = selected.chain(completed).chain(failed).collect();
     for holds in [true, false] {
         let with = numbered(agent).filter(|(_, plan)| plan.context != Context::True);
-        all.extend(with.map(|(plan, _)| Item::Context { plan, holds }));
+        all.extend(with.map(|(plan, _)| AgentCoverItem::Context { plan, holds }));
     }
     all.extend(applicable(agent));
     for (plan, declared) in numbered(agent) {
         let steps = (0u16..).zip(sites(declared));
-        all.extend(steps.filter(|(_, s)| sends(&s.kind)).map(|(site, _)| Item::Message { plan, site }));
+        all.extend(
+            steps.filter(|(_, s)| sends(&s.kind)).map(|(site, _)| AgentCoverItem::Message { plan, site }),
+        );
     }
-    all.extend(edges(agent).into_iter().map(|(plan, site, by)| Item::Edge { plan, site, by }));
-    all.extend(paths(agent).into_iter().map(Item::Path));
+    all.extend(edges(agent).into_iter().map(|(plan, site, by)| AgentCoverItem::Edge { plan, site, by }));
+    all.extend(paths(agent).into_iter().map(AgentCoverItem::Path));
     all
 }
 
 /// The items that a goal of a suite asks for; none for one that is not about an agent.
 #[must_use]
-pub fn items(agent: &Agent, goal: ModelGoal) -> Vec<Item> {
-    let is_meant = |item: &Item| match goal {
-        ModelGoal::Bins { .. } => false,
-        ModelGoal::Plans => matches!(item, Item::Selected(_)),
-        ModelGoal::Contexts => matches!(item, Item::Context { .. }),
-        ModelGoal::Edges => matches!(item, Item::Edge { .. }),
-        ModelGoal::Messages => matches!(item, Item::Message { .. }),
-        ModelGoal::Paths => matches!(item, Item::Path(_)),
+pub fn items(agent: &Agent, goal: ModelGoal) -> Vec<AgentCoverItem> {
+    let is_meant = |item: &AgentCoverItem| match goal {
+        ModelGoal::Bins(_) => false,
+        ModelGoal::Plans => matches!(item, AgentCoverItem::Selected(_)),
+        ModelGoal::Contexts => matches!(item, AgentCoverItem::Context { .. }),
+        ModelGoal::Edges => matches!(item, AgentCoverItem::Edge { .. }),
+        ModelGoal::Messages => matches!(item, AgentCoverItem::Message { .. }),
+        ModelGoal::Paths => matches!(item, AgentCoverItem::Path(_)),
     };
     universe(agent).into_iter().filter(is_meant).collect()
 }
@@ -157,7 +165,7 @@ fn sends(step: &StepKind) -> bool {
 }
 
 /// How many plans can be applicable, for each trigger in the order of its first plan.
-fn applicable(agent: &Agent) -> Vec<Item> {
+fn applicable(agent: &Agent) -> Vec<AgentCoverItem> {
     let mut items = Vec::new();
     let mut known = BTreeSet::new();
     for plan in agent.plans.iter().filter(|plan| known.insert(plan.trigger.on)) {
@@ -165,12 +173,12 @@ fn applicable(agent: &Agent) -> Vec<Item> {
         let plans: Vec<&Plan> = agent.plans.iter().filter(|p| p.trigger.on == on).collect();
         let always = plans.iter().filter(|p| is_always_applicable(p)).count();
         let can_be = [
-            (Applicable::None, always == 0),
-            (Applicable::One, always <= 1),
-            (Applicable::Many, plans.len() > 1),
+            (ApplicableCount::None, always == 0),
+            (ApplicableCount::One, always <= 1),
+            (ApplicableCount::Many, plans.len() > 1),
         ];
         let can_be = can_be.into_iter().filter(|(_, can)| *can);
-        items.extend(can_be.map(|(plans, _)| Item::Applicable { on, plans }));
+        items.extend(can_be.map(|(plans, _)| AgentCoverItem::Applicable { on, plans }));
     }
     items
 }
@@ -238,6 +246,7 @@ fn paths(agent: &Agent) -> BTreeSet<[u16; 3]> {
 mod tests {
     use super::{super::fixture, *};
     use crate::coverage::name;
+    use hrdsl_ir::coverage::CrossId;
 
     #[test]
     fn all_that_the_program_does_not_rule_out_is_in_it() {
@@ -294,14 +303,14 @@ mod tests {
         assert_eq!(count(ModelGoal::Plans), 6);
         assert_eq!(count(ModelGoal::Contexts), 6);
         assert_eq!((count(ModelGoal::Edges), count(ModelGoal::Paths)), (6, 4));
-        assert_eq!((count(ModelGoal::Messages), count(ModelGoal::Bins { cross: 0 })), (1, 0));
+        assert_eq!((count(ModelGoal::Messages), count(ModelGoal::Bins(CrossId(0)))), (1, 0));
     }
 
     #[test]
     fn counts_reach_items() {
         let program = fixture::program();
         let human = &program.agents[0];
-        let nothing = Measured::new(human);
+        let nothing = AgentCounts::new(human);
         let all = universe(human);
         assert!(all.iter().all(|i| !i.is_reached(&nothing)));
         let mut measured = nothing;

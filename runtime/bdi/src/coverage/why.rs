@@ -10,13 +10,11 @@ use hrdsl_ir::{
     },
 };
 
-use crate::show;
-
 use super::{
     text::{belief, goal, trigger},
-    universe::{Applicable, Item, is_always_applicable, numbered, sites},
+    universe::{AgentCoverItem, ApplicableCount, is_always_applicable, numbered, sites},
 };
-use crate::measure::Measured;
+use crate::{measure::AgentCounts, show};
 
 /// How many causes of causes are named.
 const DEPTH: usize = 3;
@@ -24,9 +22,9 @@ const DEPTH: usize = 3;
 const LISTED: usize = 4;
 
 /// The agents that were run together, with their counts over all runs.
-pub struct Team<'a> {
+pub struct AgentTeam<'a> {
     pub program: &'a Program,
-    pub measured: &'a [(AgentId, Measured)],
+    pub measured: &'a [(AgentId, AgentCounts)],
 }
 
 /// `once`, `twice`, `12 times`.
@@ -39,52 +37,52 @@ pub fn times(n: u64) -> String {
     }
 }
 
-impl Team<'_> {
+impl AgentTeam<'_> {
     /// Why no run reached an item of an agent.
     #[must_use]
-    pub fn why(&self, agent: AgentId, item: Item) -> String {
+    pub fn why(&self, agent: AgentId, item: AgentCoverItem) -> String {
         let member = self.member(agent);
         let Some(member) = member else { return "its agent was not run".to_owned() };
         match item {
-            Item::Selected(plan) => member.why_not_selected(plan, DEPTH),
-            Item::Completed(plan) => member.why_not_completed(plan),
-            Item::Failed(plan) => {
+            AgentCoverItem::Selected(plan) => member.why_not_selected(plan, DEPTH),
+            AgentCoverItem::Completed(plan) => member.why_not_completed(plan),
+            AgentCoverItem::Failed(plan) => {
                 member.unless_selected(plan, |n| format!("it was selected {n} and never failed"))
             }
-            Item::Context { plan, holds: true } => member.why_not_true(plan),
-            Item::Context { plan, holds: false } => member.why_not_false(plan),
-            Item::Applicable { on, plans } => member.why_not_applicable(on, plans),
-            Item::Message { plan, site } => member.unless_selected(plan, |n| {
+            AgentCoverItem::Context { plan, holds: true } => member.why_not_true(plan),
+            AgentCoverItem::Context { plan, holds: false } => member.why_not_false(plan),
+            AgentCoverItem::Applicable { on, plans } => member.why_not_applicable(on, plans),
+            AgentCoverItem::Message { plan, site } => member.unless_selected(plan, |n| {
                 format!("its plan was selected {n}, but step {} never sent it", site + 1)
             }),
-            Item::Edge { plan, site, by } => member.why_no_edge(plan, site, by),
-            Item::Path(plans) => member.why_no_path(plans),
+            AgentCoverItem::Edge { plan, site, by } => member.why_no_edge(plan, site, by),
+            AgentCoverItem::Path(plans) => member.why_no_path(plans),
         }
     }
 
-    fn member(&self, id: AgentId) -> Option<Member<'_>> {
+    fn member(&self, id: AgentId) -> Option<TeamMember<'_>> {
         let (_, measured) = self.measured.iter().find(|(a, _)| *a == id)?;
         let agent = self.program.agents.get(usize::from(id.0))?;
-        Some(Member { team: self, id, agent, measured })
+        Some(TeamMember { team: self, id, agent, measured })
     }
 }
 
 #[derive(Clone, Copy)]
-struct Member<'a> {
-    team: &'a Team<'a>,
+struct TeamMember<'a> {
+    team: &'a AgentTeam<'a>,
     id: AgentId,
     agent: &'a Agent,
-    measured: &'a Measured,
+    measured: &'a AgentCounts,
 }
 
 /// A step that could make what a plan waits for.
-struct Maker<'a> {
-    who: Member<'a>,
+struct EnablingStep<'a> {
+    who: TeamMember<'a>,
     plan: u16,
     site: u16,
 }
 
-impl<'a> Member<'a> {
+impl<'a> TeamMember<'a> {
     fn plan(&self, plan: u16) -> Option<&'a Plan> {
         self.agent.plans.get(usize::from(plan))
     }
@@ -189,7 +187,7 @@ impl<'a> Member<'a> {
             | Context::Or(_)
             | Context::Test(_)
             | Context::Unify(..)
-            | Context::Internal(_) => &declared.context,
+            | Context::Internal(_, _) => &declared.context,
         };
         let text = show::context(self.team.program, self.agent, &declared.vars, part);
         Some(match blocked.len() {
@@ -219,7 +217,7 @@ impl<'a> Member<'a> {
         })
     }
 
-    fn why_not_applicable(&self, on: TriggerOn, plans: Applicable) -> String {
+    fn why_not_applicable(&self, on: TriggerOn, plans: ApplicableCount) -> String {
         let name = trigger(self.team.program, self.agent, on);
         let Some([none, one, many]) = self.measured.applicable.get(&on).copied().filter(|n| *n != [0; 3])
         else {
@@ -229,10 +227,10 @@ impl<'a> Member<'a> {
         let found = found.into_iter().filter(|(n, _)| *n > 0);
         let found: Vec<String> = found.map(|(n, what)| format!("{} {what} applicable", times(n))).collect();
         let always = match plans {
-            Applicable::One => numbered(self.agent)
+            ApplicableCount::One => numbered(self.agent)
                 .find(|(_, p)| p.trigger.on == on && is_always_applicable(p))
                 .filter(|_| one == 0),
-            Applicable::None | Applicable::Many => None,
+            ApplicableCount::None | ApplicableCount::Many => None,
         };
         let always = always.map(|(p, _)| format!("; `{}` always is", self.label(p))).unwrap_or_default();
         format!("`{name}` came {}: {}{always}", times(none + one + many), found.join(", "))
@@ -357,8 +355,8 @@ impl<'a> Member<'a> {
     fn why_never_asked(&self, wanted: BeliefId, depth: usize) -> String {
         let own = |k: &StepKind| matches!(k, StepKind::Query(l) if l.belief == wanted);
         let asked = self.messages(Subject::Belief(wanted), &[Performative::AskOne]);
-        let makers: Vec<Maker<'_>> = self.own_steps(own).chain(asked).collect();
-        let is_run = |m: &Maker<'_>| m.who.selected(m.plan) > 0;
+        let makers: Vec<EnablingStep<'_>> = self.own_steps(own).chain(asked).collect();
+        let is_run = |m: &EnablingStep<'_>| m.who.selected(m.plan) > 0;
         if makers.iter().any(is_run) {
             return format!("each `?{}` found an answer among the beliefs", belief(self.agent, wanted));
         }
@@ -366,12 +364,12 @@ impl<'a> Member<'a> {
     }
 
     /// The steps of the agent's plans that are so.
-    fn own_steps<F: Fn(&StepKind) -> bool>(self, is_so: F) -> impl Iterator<Item = Maker<'a>> {
+    fn own_steps<F: Fn(&StepKind) -> bool>(self, is_so: F) -> impl Iterator<Item = EnablingStep<'a>> {
         let mut found = Vec::new();
         for (plan, declared) in numbered(self.agent) {
             for (site, step) in (0u16..).zip(sites(declared)) {
                 if is_so(&step.kind) {
-                    found.push(Maker { who: self, plan, site });
+                    found.push(EnablingStep { who: self, plan, site });
                 }
             }
         }
@@ -379,13 +377,13 @@ impl<'a> Member<'a> {
     }
 
     /// The steps of other agents that send such a message about this.
-    fn messages(&self, about: Subject, how: &[Performative]) -> Vec<Maker<'a>> {
+    fn messages(&self, about: Subject, performatives: &[Performative]) -> Vec<EnablingStep<'a>> {
         let team = self.team;
         let others = team.measured.iter().filter(|(a, _)| *a != self.id).filter_map(|(a, _)| team.member(*a));
         let is_it = |content: &ContentId| self.subject(*content) == Some(about);
-        let asks = how.contains(&Performative::AskOne);
+        let asks = performatives.contains(&Performative::AskOne);
         let is_so = |k: &StepKind| {
-            matches!(k, StepKind::Send { performative, content, .. } if how.contains(performative) && is_it(content))
+            matches!(k, StepKind::Send { performative, content, .. } if performatives.contains(performative) && is_it(content))
                 || matches!(k, StepKind::Ask { content, .. } if asks && is_it(content))
         };
         others.flat_map(|other| other.own_steps(is_so).collect::<Vec<_>>()).collect()
@@ -398,7 +396,7 @@ impl<'a> Member<'a> {
     }
 
     /// Why none of the steps that could have made something did.
-    fn because(&self, mut makers: Vec<Maker<'_>>, on: TriggerOn, verb: &str, depth: usize) -> String {
+    fn because(&self, mut makers: Vec<EnablingStep<'_>>, on: TriggerOn, verb: &str, depth: usize) -> String {
         let is_any = !makers.is_empty();
         // What needs the trigger itself is no beginning.
         makers.retain(|m| m.who.id != self.id || self.plan(m.plan).is_none_or(|p| p.trigger.on != on));
@@ -406,11 +404,11 @@ impl<'a> Member<'a> {
             let but = if is_any { " but its own plans" } else { "" };
             return format!("nothing{but} {verb}");
         };
-        let place = |m: &Maker<'_>| {
+        let place = |m: &EnablingStep<'_>| {
             let owner = if m.who.id == self.id { String::new() } else { format!("{}.", m.who.agent.name) };
             format!("`{owner}{}` (step {})", m.who.label(m.plan), m.site + 1)
         };
-        let run: Vec<&Maker<'_>> = makers.iter().filter(|m| m.who.selected(m.plan) > 0).collect();
+        let run: Vec<&EnablingStep<'_>> = makers.iter().filter(|m| m.who.selected(m.plan) > 0).collect();
         if run.is_empty() {
             let places: Vec<String> = makers.iter().map(place).collect();
             let plans: BTreeSet<(AgentId, u16)> = makers.iter().map(|m| (m.who.id, m.plan)).collect();
@@ -452,25 +450,25 @@ fn some_of(texts: &[String], between: &str) -> String {
 mod tests {
     use super::{super::fixture, *};
 
-    struct Setting {
+    struct TeamFixture {
         program: Program,
-        measured: Vec<(AgentId, Measured)>,
+        measured: Vec<(AgentId, AgentCounts)>,
     }
 
-    fn setting() -> Setting {
+    fn setting() -> TeamFixture {
         let program = fixture::program();
         let measured =
-            (0u16..).map(AgentId).zip(&program.agents).map(|(id, a)| (id, Measured::new(a))).collect();
-        Setting { program, measured }
+            (0u16..).map(AgentId).zip(&program.agents).map(|(id, a)| (id, AgentCounts::new(a))).collect();
+        TeamFixture { program, measured }
     }
 
-    impl Setting {
-        fn human(&mut self) -> &mut Measured {
+    impl TeamFixture {
+        fn human(&mut self) -> &mut AgentCounts {
             &mut self.measured[0].1
         }
 
-        fn why(&self, agent: u16, item: Item) -> String {
-            Team { program: &self.program, measured: &self.measured }.why(AgentId(agent), item)
+        fn why(&self, agent: u16, item: AgentCoverItem) -> String {
+            AgentTeam { program: &self.program, measured: &self.measured }.why(AgentId(agent), item)
         }
     }
 
@@ -481,21 +479,21 @@ mod tests {
     fn a_trigger_that_never_came_is_followed_to_its_cause() {
         let mut s = setting();
         assert_eq!(
-            s.why(0, Item::Selected(5)),
+            s.why(0, AgentCoverItem::Selected(5)),
             "`on discarded` never came: `robot` never made `discarded` when the agent could perceive it"
         );
         assert_eq!(
-            s.why(1, Item::Selected(0)),
+            s.why(1, AgentCoverItem::Selected(0)),
             "`+seen` never came: only `Human.table#1` (step 2) adds it, never selected: `+!table` never came: nothing \
              but its own plans adopts it"
         );
         assert_eq!(
-            s.why(0, Item::Selected(2)),
+            s.why(0, AgentCoverItem::Selected(2)),
             "`+!leg` never came: only `table#1` (step 1) or `sit#1` (step 2) adopts it, never selected"
         );
         s.human().selected[0] = 3;
         assert_eq!(
-            s.why(1, Item::Selected(0)),
+            s.why(1, AgentCoverItem::Selected(0)),
             "`+seen` never came: what adds it was never executed: `Human.table#1` (step 2), selected 3 times"
         );
     }
@@ -518,13 +516,13 @@ mod tests {
         m.unmatched[3] = 3;
         m.faults[3] = 1;
         assert_eq!(
-            s.why(0, Item::Selected(3)),
+            s.why(0, AgentCoverItem::Selected(3)),
             "`+!leg` came 12 times: 5 times a plan before it was selected (`leg#1` 5 times), 3 times its arguments did \
              not match, 3 times its context was false (`near(_) || tired`), once an expression had no value"
         );
         s.human().selected[0] = 0;
         assert_eq!(
-            s.why(0, Item::Selected(0)),
+            s.why(0, AgentCoverItem::Selected(0)),
             "`+!table` came 12 times: 9 times its context was false (mostly for want of `N > 0`: 6 times), 3 times it \
              was not tried"
         );
@@ -543,37 +541,37 @@ mod tests {
         m.applicable.insert(LEG, [0, 3, 0]);
         m.contexts[2] = [3, 0];
         m.blocked[2] = vec![3];
-        assert_eq!(s.why(0, Item::Completed(0)), "it was selected 4 times and failed once");
-        assert_eq!(s.why(0, Item::Failed(4)), "it was selected 3 times and never failed");
+        assert_eq!(s.why(0, AgentCoverItem::Completed(0)), "it was selected 4 times and failed once");
+        assert_eq!(s.why(0, AgentCoverItem::Failed(4)), "it was selected 3 times and never failed");
         assert_eq!(
-            s.why(0, Item::Context { plan: 0, holds: false }),
+            s.why(0, AgentCoverItem::Context { plan: 0, holds: false }),
             "it was true each time that it was tried: 4 times"
         );
         assert_eq!(
-            s.why(0, Item::Context { plan: 2, holds: true }),
+            s.why(0, AgentCoverItem::Context { plan: 2, holds: true }),
             "`+!leg` came 3 times: 3 times its context was false (`near(_)`)"
         );
         assert_eq!(
-            s.why(0, Item::Edge { plan: 0, site: 0, by: 2 }),
+            s.why(0, AgentCoverItem::Edge { plan: 0, site: 0, by: 2 }),
             "for this step others were selected (`leg#3` 3 times); `leg#1` was never selected: `+!leg` came 3 times: 3 \
              times its context was false (`near(_)`)"
         );
         assert_eq!(
-            s.why(0, Item::Path([0, 0, 4])),
+            s.why(0, AgentCoverItem::Path([0, 0, 4])),
             "`table#1` never led to `table#1`: `table#1` was selected 4 times, but no plan was ever selected for its \
              step 3"
         );
         s.human().edges.insert((0, 2, 0), 1);
         assert_eq!(
-            s.why(0, Item::Path([0, 0, 4])),
+            s.why(0, AgentCoverItem::Path([0, 0, 4])),
             "`table#1` led to `table#1`, and that to `leg#3`, but never one on the other"
         );
         assert_eq!(
-            s.why(0, Item::Message { plan: 0, site: 1 }),
+            s.why(0, AgentCoverItem::Message { plan: 0, site: 1 }),
             "its plan was selected 4 times, but step 2 never sent it"
         );
         assert_eq!(
-            s.why(0, Item::Applicable { on: TABLE, plans: Applicable::One }),
+            s.why(0, AgentCoverItem::Applicable { on: TABLE, plans: ApplicableCount::One }),
             "`+!table` came 4 times: 4 times several plans were applicable; `table#2` always is"
         );
     }
@@ -582,7 +580,7 @@ mod tests {
     fn an_agent_that_was_not_run_is_said_so() {
         let mut s = setting();
         s.measured.truncate(1);
-        assert_eq!(s.why(1, Item::Selected(0)), "its agent was not run");
-        assert_eq!(s.why(0, Item::Selected(99)), "there is no such plan");
+        assert_eq!(s.why(1, AgentCoverItem::Selected(0)), "its agent was not run");
+        assert_eq!(s.why(0, AgentCoverItem::Selected(99)), "there is no such plan");
     }
 }

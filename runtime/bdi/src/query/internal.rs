@@ -8,21 +8,21 @@ use hrdsl_ir::{
     value::seconds,
 };
 
-use super::{At, Cont, Fault, Solver, Way};
+use super::{AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, SolverContinuation};
 use crate::{
-    dice::Dice,
-    mind::{Held, Mind},
+    dice::AgentRng,
+    mind::{GoalAttitude, MentalState},
     unify::{Slot, eval, undo, unify_all},
 };
 
-impl<'p> Solver<'p> {
+impl<'p> QuerySolver<'p> {
     pub(super) fn internal(
         &mut self,
-        mind: &Mind<'p>,
-        dice: &mut Dice,
+        mind: &MentalState<'p>,
+        dice: &mut AgentRng,
         internal: &'p Internal,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let base = at.base as usize;
         let value = |e, slots: &[Slot]| eval(e, &slots[base..]);
         let (out, result) = match internal {
@@ -45,9 +45,15 @@ impl<'p> Solver<'p> {
                 let holds = apply(*function, &args)? == Some(Value::Bool(true));
                 return Ok(holds.then_some(at.next));
             }
-            Internal::Intend { goal, args } => return self.held(mind, Held::Intended, *goal, args, at),
-            Internal::Desire { goal, args } => return self.held(mind, Held::Desired, *goal, args, at),
-            Internal::Suspended { goal, args } => return self.held(mind, Held::Suspended, *goal, args, at),
+            Internal::Intend { goal, args } => {
+                return self.held(mind, GoalAttitude::Intended, *goal, args, at);
+            }
+            Internal::Desire { goal, args } => {
+                return self.held(mind, GoalAttitude::Desired, *goal, args, at);
+            }
+            Internal::Suspended { goal, args } => {
+                return self.held(mind, GoalAttitude::Suspended, *goal, args, at);
+            }
             Internal::Random { from: None, out } => (out, Some(Value::Float(dice.fraction()))),
             Internal::Random { from: Some(list), out } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
@@ -69,17 +75,17 @@ impl<'p> Solver<'p> {
 
     fn held(
         &mut self,
-        mind: &Mind<'p>,
-        how: Held,
+        mind: &MentalState<'p>,
+        attitude: GoalAttitude,
         goal: GoalId,
         args: &'p [Term],
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let from = self.had.len() as u32;
-        mind.each_had(how, goal, &mut |had| self.had.extend_from_slice(had));
+        mind.each_had(attitude, goal, &mut |had| self.had.extend_from_slice(had));
         let arity = args.len() as u32;
         if arity == 0 {
-            return Ok(mind.has_any(how, goal).then_some(at.next));
+            return Ok(mind.has_any(attitude, goal).then_some(at.next));
         }
         let to = self.had.len() as u32;
         self.goals(args, from, to, at)
@@ -90,15 +96,15 @@ impl<'p> Solver<'p> {
         args: &'p [Term],
         mut from: u32,
         to: u32,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         while from < to {
             let end = from + args.len() as u32;
             let mark = self.trail.len();
             let had = self.had[from as usize..end as usize].to_vec();
             let base = at.base as usize;
             if unify_all(args, had.into_iter(), base, &mut self.slots, &mut self.trail)? {
-                self.choose(Way::Goals { args, from: end, to }, at);
+                self.choose(AnswerSource::Goals { args, from: end, to }, at);
                 if let Some(choice) = self.choices.last_mut() {
                     choice.trail = mark as u32;
                 }
@@ -114,19 +120,27 @@ impl<'p> Solver<'p> {
         what: &'p Internal,
         formula: &'p Context,
         template: Option<&'p hrdsl_ir::Expr>,
-        at: At,
+        at: FormulaPosition,
     ) -> u32 {
-        self.choose(Way::Collection { start: self.collected.len(), what }, at);
-        let end = self.push(Cont::Collected(template), at);
-        self.push(Cont::Goals(std::slice::from_ref(formula)), At { next: end, ..at })
+        self.choose(AnswerSource::Collection { start: self.collected.len(), what }, at);
+        let end = self.push(SolverContinuation::Collected(template), at);
+        self.push(
+            SolverContinuation::Goals(std::slice::from_ref(formula)),
+            FormulaPosition { next: end, ..at },
+        )
     }
 
-    pub(super) fn member(&mut self, element: &'p Term, mut list: List, at: At) -> Result<Option<u32>, Fault> {
+    pub(super) fn member(
+        &mut self,
+        element: &'p Term,
+        mut list: List,
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         while let Some((head, rest)) = list.split() {
             let mark = self.trail.len();
             if self.matches(element, head, at)? {
                 if !rest.is_empty() {
-                    self.choose(Way::Member { element, rest }, at);
+                    self.choose(AnswerSource::Member { element, rest }, at);
                     if let Some(choice) = self.choices.last_mut() {
                         choice.trail = mark as u32;
                     }
@@ -143,8 +157,8 @@ impl<'p> Solver<'p> {
         &mut self,
         start: usize,
         what: &'p Internal,
-        at: At,
-    ) -> Result<Option<u32>, Fault> {
+        at: FormulaPosition,
+    ) -> Result<Option<u32>, BeliefQueryError> {
         let mut all: Vec<Value> = self.collected.drain(start..).collect();
         let (out, value) = match what {
             Internal::FindAll { set, out, .. } => {

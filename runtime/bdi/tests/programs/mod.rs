@@ -44,7 +44,13 @@ pub fn plan(on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind
     Plan {
         label: format!("{on:?}"),
         atomic: false,
-        trigger: Trigger { on, args, annotations: Vec::new() },
+        trigger: Trigger {
+            name: Span::default(),
+            origin: Span::default(),
+            on,
+            args,
+            annotations: Vec::new(),
+        },
         context,
         body: body.into_iter().map(|kind| Step { kind, origin: Span::default() }).collect(),
         vars: (0..vars).map(|v| format!("V{v}")).collect(),

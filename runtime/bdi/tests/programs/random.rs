@@ -59,6 +59,7 @@ impl Maker {
     fn agent(&mut self, number: u16) -> Agent {
         let param = || Param { name: "p".to_owned(), ty: INT };
         let belief = |b: u16| Belief {
+            negates: None,
             name: format!("b{b}"),
             params: vec![param()],
             annotations: Vec::new(),
@@ -103,7 +104,13 @@ impl Maker {
         Plan {
             label: format!("p{at}"),
             atomic: self.rng.random_ratio(1, 12),
-            trigger: Trigger { on, args: vec![Term::Var(0)], annotations: Vec::new() },
+            trigger: Trigger {
+                name: Span::default(),
+                origin: Span::default(),
+                on,
+                args: vec![Term::Var(0)],
+                annotations: Vec::new(),
+            },
             context,
             body,
             vars: (0..VARS).map(|v| format!("V{v}")).collect(),
@@ -143,7 +150,7 @@ impl Maker {
     fn literal(&mut self, binds: bool) -> Literal {
         let annotations =
             if self.rng.random_ratio(1, 5) { vec![(Annotation::Source, Term::Any)] } else { Vec::new() };
-        Literal { belief: self.belief(), args: vec![self.term(binds)], annotations }
+        Literal { origin: Span::default(), belief: self.belief(), args: vec![self.term(binds)], annotations }
     }
 
     fn context(&mut self) -> Context {
@@ -152,10 +159,11 @@ impl Maker {
             1 => Context::Not(Box::new(Context::Belief(self.literal(false)))),
             2 => Context::Test(Expr::binary(BinaryOp::Lt, self.expr(), self.expr())),
             3 => Context::And(vec![Context::Belief(self.literal(true)), self.context()]),
-            4 => Context::Internal(Box::new(Internal::Count {
-                formula: Context::Belief(self.literal(false)),
-                out: self.term(true),
-            })),
+            4 => {
+                let formula = Context::Belief(self.literal(false));
+                let count = Internal::Count { formula, out: self.term(true) };
+                Context::Internal(Box::new(count), Span::default())
+            }
             _ => Context::Belief(self.literal(true)),
         }
     }

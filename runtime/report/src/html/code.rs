@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hrdsl_results::{CodeFile, Results, SuiteInfo};
 use serde::Serialize;
 
-use super::{Ratio, branches_of, lines_of};
+use super::pieces::{Ratio, branches_of, lines_of};
 use crate::{facts, text};
 
 #[derive(Serialize)]

@@ -1,9 +1,11 @@
 //! Violated requirements, each with a few tests that show it and their witnesses.
 
-use hrdsl_results::{Failure, Requirement, Results, SuiteName, TestName, TestResult, VerdictResult};
+use hrdsl_results::{
+    FirstFailure, RequirementResult, Results, SuiteName, TestName, TestResult, VerdictResult,
+};
 use serde::Serialize;
 
-use super::Link;
+use super::pieces::Link;
 use crate::{facts, text};
 
 /// Tests that are shown with their witness for each requirement.
@@ -58,7 +60,7 @@ pub struct Point {
 
 /// One for each violated requirement.
 pub fn all(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Violated> {
-    let of = |requirement: &Requirement| {
+    let of = |requirement: &RequirementResult| {
         let failing = facts::failing(results, requirement);
         (!failing.is_empty()).then(|| violated(results, requirement, &failing, link))
     };
@@ -67,7 +69,7 @@ pub fn all(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Violated>
 
 fn violated(
     results: &Results,
-    requirement: &Requirement,
+    requirement: &RequirementResult,
     failing: &[(usize, &TestResult)],
     link: &dyn Fn(&TestName) -> Link,
 ) -> Violated {
@@ -107,7 +109,7 @@ fn choose<'a>(failing: &[(usize, &'a TestResult)]) -> Vec<(usize, &'a TestResult
 }
 
 /// The witness of a failure as a line of time that ends with the violation.
-pub fn witness(verdict: &VerdictResult, failure: &Failure) -> Witness {
+pub fn witness(verdict: &VerdictResult, failure: &FirstFailure) -> Witness {
     let steps = &failure.witness;
     let point = |i: usize| Point {
         class: if i + 1 == steps.len() && !failure.deadline { "end" } else { "" },

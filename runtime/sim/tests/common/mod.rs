@@ -3,7 +3,7 @@
 
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Nanos, Span, Type, Unit, Value};
-use hrdsl_sim::{Command, CommandError, CommandId, Sim};
+use hrdsl_sim::{CommandError, CommandId, MotorCommand, Sim};
 
 pub const SECOND: Nanos = 1_000_000_000;
 pub const STEP: Nanos = 10_000_000;
@@ -120,6 +120,8 @@ pub fn table() -> World {
         joints: Vec::new(),
         arms: Vec::new(),
         grippers: Vec::new(),
+        devices: Vec::new(),
+        device_kinds: Vec::new(),
         currents: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
@@ -173,8 +175,8 @@ pub fn at(of: Option<BodyRef>, place: Vec3) -> Point {
     Point { of, offset: place.map(Expr::float) }
 }
 
-pub fn move_to(target: Vec3) -> Command {
-    Command::MoveTo { arm: ARM, target, max_speed: None }
+pub fn move_to(target: Vec3) -> MotorCommand {
+    MotorCommand::ReachPoint { arm: ARM, target, max_speed: None }
 }
 
 /// Runs until the command ends; gives the seconds it took.
@@ -191,7 +193,7 @@ pub fn wait(sim: &mut Sim, id: CommandId, mut each: impl FnMut(&Sim)) -> (f64, R
     }
 }
 
-pub fn run(sim: &mut Sim, command: Command) -> f64 {
+pub fn run(sim: &mut Sim, command: MotorCommand) -> f64 {
     let what = format!("{command:?}");
     let id = sim.command(command).unwrap_or_else(|e| panic!("{what}: {e}"));
     let (time, result) = wait(sim, id, |_| {});
@@ -216,7 +218,7 @@ pub fn distance(a: Vec3, b: Vec3) -> f64 {
 pub fn offer(sim: &mut Sim) {
     let [x, y, z] = LEGS[0];
     run(sim, move_to(LEGS[0]));
-    run(sim, Command::Close { gripper: GRIP });
+    run(sim, MotorCommand::CloseFingers { gripper: GRIP });
     run(sim, move_to([x, y, z + 0.15]));
     run(sim, move_to(OFFER));
 }

@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CellHandle, CellOrder, Isolation, Supervisor};
-use crate::{ProgramLimits, SutError};
+use super::{
+    handle::{CellHandle, Supervisor},
+    message::{CellOrder, Isolation},
+};
+use crate::{error::SutError, limits::ProgramLimits};
 
 /// What all cells of a campaign have in common.
 #[derive(Clone, Debug)]

@@ -19,8 +19,8 @@ use rustix::{
     },
 };
 
-use super::{CellEnding, CellOrder, CellReport, CellUsage, Isolation, message::CellRequest};
-use crate::SutError;
+use super::message::{CellEnding, CellOrder, CellReport, CellRequest, CellUsage, Isolation};
+use crate::error::SutError;
 
 /// How long the supervisor may take to make a cell, and to end it: it only guards.
 const PATIENCE: Duration = Duration::from_secs(60);

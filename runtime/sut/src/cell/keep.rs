@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{CELL_FOLDER, KeptFiles};
+use super::message::{CELL_FOLDER, KeptFiles};
 
 /// At most so many files are kept of one cell.
 const MOST_FILES: u64 = 10_000;

@@ -4,7 +4,10 @@ use std::{ffi::OsString, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Exit;
+use crate::exit::Exit;
+
+/// The folder of a cell's own home and temporary files: the same path in every cell.
+pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";
 
 /// How a cell keeps its program apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,38 +2,33 @@
 //!
 //! # Steps
 //!
-//! 1. [`CellHandle::start`] starts a *supervisor* (this program, or another that calls [`supervise`]) and hands it a [`CellOrder`]
-//!    with the program's descriptors.
+//! 1. [`CellHandle::start`](handle::CellHandle::start) starts a *supervisor* (this program, or another that calls
+//!    [`supervise`]) and hands it a [`CellOrder`](message::CellOrder) with the program's descriptors.
 //! 2. The supervisor makes the cell. With [`Isolation::Namespaces`] it enters namespaces of its own
 //!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`Isolation::Copies`] it copies the
 //!    project's folder (`copies.rs`). Either way it has a process outside, to which the program is no child, and which
 //!    cleans up whatever the program does to its parent.
-//! 3. It starts the program under its limits and without rights over the machine (`rights.rs`), and answers [`CellRequest`]s with [`CellReport`]s; processor time and
-//!    sleep of everything that runs in the cell are read from the kernel's process tree (`descendants.rs`).
+//! 3. It starts the program under its limits and without rights over the machine (`rights.rs`), and answers
+//!    [`CellRequest`](message::CellRequest)s with [`CellReport`](message::CellReport)s; processor time and sleep of
+//!    everything that runs in the cell are read from the kernel's process tree (`descendants.rs`).
 //! 4. When the program ends, when it is told to, or when the harness is gone, it kills every process of the cell, keeps the
 //!    changed files if they were asked for (`keep.rs`), and ends.
 //!
 //! The harness's death closes the supervisor's only connection, so nothing has to be cleaned up by who was killed.
 
-mod cells;
+pub(crate) mod cells;
 mod copies;
 mod descendants;
-mod handle;
+pub(crate) mod handle;
 mod keep;
 mod limits;
-mod message;
+pub(crate) mod message;
 mod namespaces;
 mod rights;
 mod supervisor;
 mod view;
 
 pub use cells::Cells;
-pub(crate) use handle::CellHandle;
 pub use handle::Supervisor;
-pub use message::{CellEnding, CellUsage, Isolation, KeptFiles};
+pub use message::{CELL_FOLDER, CellEnding, CellUsage, Isolation, KeptFiles};
 pub use supervisor::supervise;
-
-pub(crate) use message::{CellOrder, CellReport, CellRequest};
-
-/// The folder of a cell's own home and temporary files: the same path in every cell.
-pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";

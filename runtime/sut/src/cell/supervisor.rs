@@ -35,16 +35,15 @@ use rustix::{
 };
 
 use super::{
-    CELL_FOLDER, CellEnding, CellOrder, CellReport, Isolation, KeptFiles,
     copies::{CellFolder, ProjectCopy},
     descendants,
     keep::keep,
     limits,
-    message::CellRequest,
+    message::{CELL_FOLDER, CellEnding, CellOrder, CellReport, CellRequest, Isolation, KeptFiles},
     namespaces, rights,
     view::PrivateView,
 };
-use crate::Exit;
+use crate::exit::Exit;
 
 /// The word with which the supervisor starts itself again, inside the cell.
 const INSIDE: &str = "inside";

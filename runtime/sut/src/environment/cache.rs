@@ -18,7 +18,7 @@ use tempfile::TempDir;
 use walkdir::WalkDir;
 
 use super::preparation::Preparation;
-use crate::SutError;
+use crate::error::SutError;
 
 /// In each folder that was made.
 const MANIFEST: &str = ".hrdsl-manifest.json";

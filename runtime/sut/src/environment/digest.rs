@@ -5,7 +5,7 @@ use std::{fmt::Write as _, fs::File, io, path::Path};
 use sha2::{Digest, Sha256};
 
 use super::local;
-use crate::SutError;
+use crate::error::SutError;
 
 /// A hash of parts that are told apart: `ab`, `c` is not `a`, `bc`.
 pub(super) struct Fingerprint(Sha256);

@@ -16,7 +16,7 @@ use super::{
     requirements::{RequirementLine, Requirements},
     watch::{PipSaid, watch},
 };
-use crate::SutError;
+use crate::error::SutError;
 
 /// How much of what pip said is passed on when it fails.
 const LAST_LINES: usize = 16;

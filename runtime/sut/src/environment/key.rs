@@ -11,7 +11,7 @@ use super::{
     probe::Probe,
     requirements::{RequirementLine, Requirements, Variables},
 };
-use crate::SutError;
+use crate::error::SutError;
 
 /// A name for all that an installation depends on.
 pub(super) struct PackagesKey {

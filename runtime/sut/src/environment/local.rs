@@ -8,7 +8,7 @@ use std::{
 
 use walkdir::{DirEntry, WalkDir};
 
-use crate::SutError;
+use crate::error::SutError;
 
 /// A file of a folder's contents.
 pub(super) struct LocalContent {

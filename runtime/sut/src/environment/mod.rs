@@ -14,6 +14,7 @@ mod preparation;
 mod probe;
 mod requirements;
 mod watch;
+pub(crate) mod word;
 
 use std::{
     fs,
@@ -29,7 +30,9 @@ use requirements::Requirements;
 
 pub use preparation::{Hooked, Preparation};
 
-use crate::{SutError, launch::is_python};
+use crate::error::SutError;
+
+use word::is_python;
 
 /// The newest coverage.py for each Python; pinned, since its tracer's packing of line numbers is read directly.
 const COVERAGE: &str = "\

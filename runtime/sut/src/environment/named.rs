@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
 use super::{options::quoted, requirements::LineOrigin};
-use crate::SutError;
+use crate::error::SutError;
 
 /// Something local, with the text around it on its line.
 #[derive(Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use super::{
     install::{command, last_lines},
     preparation::Hooked,
 };
-use crate::SutError;
+use crate::error::SutError;
 
 const PROBE: &str = include_str!("probe.py");
 

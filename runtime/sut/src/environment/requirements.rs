@@ -13,7 +13,7 @@ use super::{
     named::{self, LocalRequirement},
     options::{self, OptionKind},
 };
-use crate::SutError;
+use crate::error::SutError;
 
 /// What pip is to install.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-use crate::SutError;
+use crate::error::SutError;
 
 /// Between signs of life of a command that says nothing.
 const TICK: Duration = Duration::from_secs(1);

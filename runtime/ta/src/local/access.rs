@@ -8,25 +8,25 @@ use hrdsl_ir::{
     ta::{Automaton, ClockConstraint, ClockId, Edge, FunctionId, Location, Statement, Sync, Time, Update},
 };
 
-use super::NotApplicable;
-use crate::{Model, network::Part, semantics::Take};
+use super::refusal::NotApplicableError;
+use crate::network::{model::CompiledNetwork, parts::EdgeSync, semantics::CompiledMove};
 
 /// Something that automata may share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Thing {
+enum SharedResource {
     Var(u16),
     Clock(u16),
 }
 
 /// What is read (or written) and what is written; shared things only.
 #[derive(Default)]
-struct Uses {
-    all: BTreeSet<Thing>,
-    written: BTreeSet<Thing>,
+struct ResourceAccesses {
+    all: BTreeSet<SharedResource>,
+    written: BTreeSet<SharedResource>,
 }
 
 /// The processes of a network: its automata, then its media, and what each transition depends on.
-pub(super) struct Processes {
+pub(super) struct NetworkProcesses {
     /// Automata and media.
     pub count: usize,
     /// By automaton and edge: all whose state a transition with this edge depends on because of it.
@@ -35,28 +35,28 @@ pub(super) struct Processes {
     owners: Vec<Option<u16>>,
 }
 
-impl Processes {
+impl NetworkProcesses {
     /// Finds what the edges share, and whether it can be told apart.
     ///
     /// # Errors
     /// If the network is none that local time serves.
-    pub(super) fn of(model: &Model, media: bool) -> Result<Self, NotApplicable> {
+    pub(super) fn of(model: &CompiledNetwork, media: bool) -> Result<Self, NotApplicableError> {
         let program = model.program;
         let (mut uses, mut invariants) = (Vec::new(), Vec::new());
         for m in &model.members {
             shape(program, m.automaton)?;
-            let edges = m.automaton.edges.iter().map(|e| Walker::new(program).edge(e));
-            uses.push(edges.collect::<Vec<Uses>>());
-            let locations = m.automaton.locations.iter().map(|l| Walker::new(program).location(l));
-            invariants.push(locations.collect::<Vec<Uses>>());
+            let edges = m.automaton.edges.iter().map(|e| AccessCollector::new(program).edge(e));
+            uses.push(edges.collect::<Vec<ResourceAccesses>>());
+            let locations = m.automaton.locations.iter().map(|l| AccessCollector::new(program).location(l));
+            invariants.push(locations.collect::<Vec<ResourceAccesses>>());
         }
         if model.extrapolation.diagonals.is_some() {
-            return Err(NotApplicable::Difference(model.name.to_owned()));
+            return Err(NotApplicableError::Difference(model.name.to_owned()));
         }
         let shared = shared(&uses, &invariants);
         steady(model, &uses, &invariants, &shared)?;
         if let (false, Some(&thing)) = (media, shared.iter().next()) {
-            return Err(NotApplicable::Shared(name(program, thing)));
+            return Err(NotApplicableError::Shared(name(program, thing)));
         }
         let (groups, count) = group(&uses, &shared, model.members.len());
         let touched: Vec<Vec<Vec<u16>>> =
@@ -68,7 +68,7 @@ impl Processes {
         let edges = edges.collect();
         let mut owners = vec![None; model.dim];
         for (clock, owner) in owners.iter_mut().enumerate().skip(1).take(program.clocks.len()) {
-            *owner = shared_owner(Thing::Clock(clock as u16 - 1), &uses, &invariants, &groups);
+            *owner = shared_owner(SharedResource::Clock(clock as u16 - 1), &uses, &invariants, &groups);
         }
         for (m, member) in model.members.iter().enumerate() {
             owners[member.first_clock..][..member.automaton.clocks.len()].fill(Some(m as u16));
@@ -77,7 +77,7 @@ impl Processes {
     }
 
     /// The processes that a transition with these parts depends on; each once, in order.
-    pub(super) fn involved(&self, parts: &[Take], out: &mut Vec<u16>) {
+    pub(super) fn involved(&self, parts: &[CompiledMove], out: &mut Vec<u16>) {
         out.clear();
         for part in parts {
             out.extend_from_slice(&self.edges[usize::from(part.member)][usize::from(part.edge)]);
@@ -93,30 +93,31 @@ impl Processes {
 }
 
 /// The automaton, the media that the edge touches, and those who take part if they can, with what decides whether they can.
-fn depends(model: &Model, touched: &[Vec<Vec<u16>>], member: usize, edge: usize) -> Vec<u16> {
+fn depends(model: &CompiledNetwork, touched: &[Vec<Vec<u16>>], member: usize, edge: usize) -> Vec<u16> {
     let mut all = vec![member as u16];
     all.extend_from_slice(&touched[member][edge]);
     match &model.members[member].edges[edge].sync {
-        Part::Out(signal) if signal.broadcast => {
+        EdgeSync::Out(signal) if signal.broadcast => {
             for partner in &signal.partners {
                 all.push(partner.member);
                 let edges = partner.edges.iter().flatten();
                 all.extend(edges.flat_map(|&e| &touched[usize::from(partner.member)][usize::from(e)]));
             }
         }
-        Part::Join { channel, .. } => {
-            let joint = model.joints.iter().find(|j| j.channel == *channel);
-            for &(party, optional) in joint.iter().flat_map(|j| &j.parties) {
+        EdgeSync::Join { channel, .. } => {
+            let shared = model.multiway.iter().find(|j| j.channel == *channel);
+            for &(party, optional) in shared.iter().flat_map(|j| &j.parties) {
                 if optional {
                     all.push(party);
                     let arrows = model.members[usize::from(party)].edges.iter().enumerate();
-                    let joins = arrows
-                        .filter(|(_, a)| matches!(&a.sync, Part::Join { channel: c, .. } if c == channel));
+                    let joins = arrows.filter(
+                        |(_, a)| matches!(&a.sync, EdgeSync::Join { channel: c, .. } if c == channel),
+                    );
                     all.extend(joins.flat_map(|(e, _)| &touched[usize::from(party)][e]));
                 }
             }
         }
-        Part::Internal | Part::Out(_) | Part::In(_) => {}
+        EdgeSync::Internal | EdgeSync::Out(_) | EdgeSync::In(_) => {}
     }
     all.sort_unstable();
     all.dedup();
@@ -124,11 +125,11 @@ fn depends(model: &Model, touched: &[Vec<Vec<u16>>], member: usize, edge: usize)
 }
 
 /// Whether an automaton by itself has only what local zones can say.
-fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicable> {
+fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicableError> {
     let invariants = a.locations.iter().flat_map(|l| &l.invariant);
     let guards = a.edges.iter().flat_map(|e| &e.clock_guard);
     if invariants.chain(guards).any(|c| c.minus.is_some()) {
-        return Err(NotApplicable::Difference(a.name.clone()));
+        return Err(NotApplicableError::Difference(a.name.clone()));
     }
     for e in &a.edges {
         let (Sync::Offer { channel: c, .. } | Sync::Accept { channel: c, .. } | Sync::Join { channel: c }) =
@@ -137,15 +138,15 @@ fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicable> {
             continue;
         };
         if let Some(c) = program.channels.get(usize::from(c.0)).filter(|c| c.urgent) {
-            return Err(NotApplicable::Urgent(c.name.clone()));
+            return Err(NotApplicableError::Urgent(c.name.clone()));
         }
     }
     Ok(())
 }
 
 /// The things that several automata use, unless they are never written.
-fn shared(uses: &[Vec<Uses>], invariants: &[Vec<Uses>]) -> BTreeSet<Thing> {
-    let mut users: BTreeMap<Thing, BTreeSet<usize>> = BTreeMap::new();
+fn shared(uses: &[Vec<ResourceAccesses>], invariants: &[Vec<ResourceAccesses>]) -> BTreeSet<SharedResource> {
+    let mut users: BTreeMap<SharedResource, BTreeSet<usize>> = BTreeMap::new();
     let mut written = BTreeSet::new();
     for (automaton, of) in uses.iter().zip(invariants).enumerate() {
         for u in of.0.iter().chain(of.1) {
@@ -155,17 +156,17 @@ fn shared(uses: &[Vec<Uses>], invariants: &[Vec<Uses>]) -> BTreeSet<Thing> {
             written.extend(u.written.iter().copied());
         }
     }
-    let lasting = |t: &Thing| matches!(t, Thing::Clock(_)) || written.contains(t);
+    let lasting = |t: &SharedResource| matches!(t, SharedResource::Clock(_)) || written.contains(t);
     users.into_iter().filter(|(t, by)| by.len() > 1 && lasting(t)).map(|(t, _)| t).collect()
 }
 
 /// Whether no invariant depends on what other automata change: time may then pass for each automaton by itself.
 fn steady(
-    model: &Model,
-    uses: &[Vec<Uses>],
-    invariants: &[Vec<Uses>],
-    shared: &BTreeSet<Thing>,
-) -> Result<(), NotApplicable> {
+    model: &CompiledNetwork,
+    uses: &[Vec<ResourceAccesses>],
+    invariants: &[Vec<ResourceAccesses>],
+    shared: &BTreeSet<SharedResource>,
+) -> Result<(), NotApplicableError> {
     for (i, of) in invariants.iter().enumerate() {
         let automaton = model.members[i].automaton;
         for (location, u) in automaton.locations.iter().zip(of) {
@@ -173,8 +174,8 @@ fn steady(
                 let others = uses.iter().enumerate().filter(|&(j, _)| j != i);
                 let changed = others.flat_map(|(_, of)| of).any(|u| u.written.contains(&thing));
                 // The medium of a shared clock has no location, so it cannot have the invariant.
-                if changed || matches!(thing, Thing::Clock(_)) {
-                    return Err(NotApplicable::Invariant {
+                if changed || matches!(thing, SharedResource::Clock(_)) {
+                    return Err(NotApplicableError::Invariant {
                         automaton: automaton.name.clone(),
                         location: location.name.clone(),
                         shared: name(model.program, thing),
@@ -186,16 +187,20 @@ fn steady(
     Ok(())
 }
 
-fn name(program: &Program, thing: Thing) -> String {
+fn name(program: &Program, thing: SharedResource) -> String {
     let name = match thing {
-        Thing::Var(v) => program.shared.get(usize::from(v)).map(|v| &v.name),
-        Thing::Clock(c) => program.clocks.get(usize::from(c)),
+        SharedResource::Var(v) => program.shared.get(usize::from(v)).map(|v| &v.name),
+        SharedResource::Clock(c) => program.clocks.get(usize::from(c)),
     };
     name.cloned().unwrap_or_default()
 }
 
 /// One medium for all things that the same edges use, numbered after the automata; and the number of processes.
-fn group(uses: &[Vec<Uses>], shared: &BTreeSet<Thing>, automata: usize) -> (BTreeMap<Thing, u16>, usize) {
+fn group(
+    uses: &[Vec<ResourceAccesses>],
+    shared: &BTreeSet<SharedResource>,
+    automata: usize,
+) -> (BTreeMap<SharedResource, u16>, usize) {
     let mut numbers: BTreeMap<Vec<(usize, usize)>, u16> = BTreeMap::new();
     let mut groups = BTreeMap::new();
     for &thing in shared {
@@ -209,35 +214,35 @@ fn group(uses: &[Vec<Uses>], shared: &BTreeSet<Thing>, automata: usize) -> (BTre
     (groups, automata + numbers.len())
 }
 
-fn media_of(u: &Uses, groups: &BTreeMap<Thing, u16>) -> Vec<u16> {
+fn media_of(u: &ResourceAccesses, groups: &BTreeMap<SharedResource, u16>) -> Vec<u16> {
     u.all.iter().filter_map(|t| groups.get(t)).copied().collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// A shared clock's medium, or the one automaton that uses it.
 fn shared_owner(
-    clock: Thing,
-    uses: &[Vec<Uses>],
-    invariants: &[Vec<Uses>],
-    groups: &BTreeMap<Thing, u16>,
+    clock: SharedResource,
+    uses: &[Vec<ResourceAccesses>],
+    invariants: &[Vec<ResourceAccesses>],
+    groups: &BTreeMap<SharedResource, u16>,
 ) -> Option<u16> {
-    let by = |of: &[Uses]| of.iter().any(|u| u.all.contains(&clock));
+    let by = |of: &[ResourceAccesses]| of.iter().any(|u| u.all.contains(&clock));
     let one = || (0..uses.len()).find(|&i| by(&uses[i]) || by(&invariants[i])).map(|i| i as u16);
     groups.get(&clock).copied().or_else(one)
 }
 
 /// Collects what expressions and functions use.
-struct Walker<'p> {
+struct AccessCollector<'p> {
     program: &'p Program,
-    uses: Uses,
+    uses: ResourceAccesses,
     seen: BTreeSet<FunctionId>,
 }
 
-impl<'p> Walker<'p> {
+impl<'p> AccessCollector<'p> {
     fn new(program: &'p Program) -> Self {
-        Self { program, uses: Uses::default(), seen: BTreeSet::new() }
+        Self { program, uses: ResourceAccesses::default(), seen: BTreeSet::new() }
     }
 
-    fn edge(mut self, e: &Edge) -> Uses {
+    fn edge(mut self, e: &Edge) -> ResourceAccesses {
         e.clock_guard.iter().for_each(|c| self.constraint(c));
         e.guard.iter().for_each(|g| self.expr(g));
         match &e.sync {
@@ -261,7 +266,7 @@ impl<'p> Walker<'p> {
         self.uses
     }
 
-    fn location(mut self, l: &Location) -> Uses {
+    fn location(mut self, l: &Location) -> ResourceAccesses {
         l.invariant.iter().for_each(|c| self.constraint(c));
         l.holds.iter().for_each(|e| self.expr(e));
         self.uses
@@ -275,9 +280,9 @@ impl<'p> Walker<'p> {
 
     fn clock(&mut self, clock: ClockId, written: bool) {
         if usize::from(clock.0) < self.program.clocks.len() {
-            self.uses.all.insert(Thing::Clock(clock.0));
+            self.uses.all.insert(SharedResource::Clock(clock.0));
             if written {
-                self.uses.written.insert(Thing::Clock(clock.0));
+                self.uses.written.insert(SharedResource::Clock(clock.0));
             }
         }
     }
@@ -288,7 +293,7 @@ impl<'p> Walker<'p> {
 
     fn var(&mut self, slot: u16) {
         if usize::from(slot) < self.program.shared.len() {
-            self.uses.all.insert(Thing::Var(slot));
+            self.uses.all.insert(SharedResource::Var(slot));
         }
     }
 
@@ -300,7 +305,7 @@ impl<'p> Walker<'p> {
             slots = slots.iter().flat_map(|s| (0..index.count).map(move |n| s + n * index.stride)).collect();
         }
         for slot in slots.into_iter().filter(|&s| usize::from(s) < self.program.shared.len()) {
-            self.uses.written.insert(Thing::Var(slot));
+            self.uses.written.insert(SharedResource::Var(slot));
         }
     }
 

@@ -24,12 +24,12 @@
 //! - *Finite.* There are finitely many sets aLU(Z) of standard zones Z (Herbreteau, Srivathsan, Walukiewicz, LICS 2012).
 //!
 //! # When it serves a network
-//! - *Hand-shakes and joint channels without optional parties* involve those that move. Nothing else matters to them.
+//! - *Binary synchronisations and joint channels without optional parties* involve those that move. Nothing else matters to them.
 //! - *Events, broadcast channels, joint channels with optional parties* also involve everybody who has an edge for them
 //!   anywhere, with the media of these edges: that somebody stays away is a step of its own, from its location to itself,
-//!   under the guard that it cannot take part. So they are hand-shakes of many, sound but with little to commute.
+//!   under the guard that it cannot take part. So they are synchronisations of many, sound but with little to commute.
 //! - *Shared variables and clocks.* A variable is an automaton with one location that takes part in each transition that
-//!   reads or writes it; so is a clock. With [`Options::media`] off, a network that shares any is refused instead, for there
+//!   reads or writes it; so is a clock. With [`LocalSearchOptions::media`] off, a network that shares any is refused instead, for there
 //!   is little to gain. What nobody writes, or one automaton alone uses, is not shared. Goals may read everything: they are
 //!   asked of states in which all have one time.
 //! - *Invariants* must speak of what their automaton alone changes, so that time may pass for it without a look at others.
@@ -48,80 +48,10 @@
 
 mod access;
 mod order;
+mod refusal;
 mod search;
 mod space;
 mod zone;
 
-use crate::{Budget, Error, Goal, Model, Order, Progress, Report};
-
-/// Why local time does not serve a network. The standard search does.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotApplicable {
-    /// Whether time may pass for one automaton depends on the others.
-    #[error("channel `{0}` is urgent")]
-    Urgent(String),
-    /// Abstraction aLU does not know such bounds.
-    #[error("`{0}` has a bound on a difference of clocks")]
-    Difference(String),
-    /// Whether time may pass for one automaton depends on what another does.
-    #[error(
-        "the invariant of `{location}` of `{automaton}` depends on `{shared}`, which other automata change or share"
-    )]
-    Invariant { automaton: String, location: String, shared: String },
-    /// Automata share it, and the options say that no medium may stand for it.
-    #[error("automata share `{0}`")]
-    Shared(String),
-    /// The order of its witness would have to depend on the clocks at its end.
-    #[error("a goal speaks of clocks")]
-    ClockGoal,
-    /// The constants, or the sums of them on some path, are too large for the matrices.
-    #[error("the time constants are too far apart")]
-    Constants,
-}
-
-impl From<zone::TooLarge> for NotApplicable {
-    fn from(_: zone::TooLarge) -> Self {
-        NotApplicable::Constants
-    }
-}
-
-/// Why a search with local time gave no report.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
-    #[error("local time does not serve this network: {0}")]
-    NotApplicable(#[from] NotApplicable),
-    #[error(transparent)]
-    Search(#[from] Error),
-}
-
-/// How to search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
-    pub order: Order,
-    /// Of an order that draws.
-    pub seed: u64,
-    pub budget: Budget,
-    /// Shared variables and clocks become processes of their own, so that transitions that use the same do not commute.
-    /// Otherwise networks that share any are refused.
-    pub media: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { order: Order::default(), seed: 0, budget: Budget::default(), media: true }
-    }
-}
-
-/// Searches a network with local time. The report is that of [`crate::explore`] with fewer states. `go_on` is asked now
-/// and then whether to.
-///
-/// # Errors
-/// If local time does not serve the network; else as [`crate::explore`].
-pub fn explore(
-    model: &Model,
-    goals: &[Goal],
-    options: &Options,
-    go_on: &dyn Fn(&Progress) -> bool,
-) -> Result<Report, Failure> {
-    search::explore(model, goals, options, go_on)
-}
+pub use refusal::{LocalSearchError, NotApplicableError};
+pub use search::{LocalSearchOptions, explore};

@@ -1,36 +1,43 @@
 //! Makes a local run a global one: its transitions in the order of their times.
 
+use std::ops::ControlFlow;
+
 use super::{
-    Failure,
-    space::{Meets, Space, Work, clock_bound},
+    refusal::LocalSearchError,
+    space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter, clock_bound},
     zone::ClockBound,
 };
-use crate::{Error, expand::Taken, semantics::Scratch};
-use std::ops::ControlFlow;
+use crate::{
+    network::{
+        actions::PathTransition,
+        semantics::{EnumerationScratch, FiringOrError},
+    },
+    witness::error::SearchError,
+};
 
 /// Units, then infinitely small steps for strict bounds.
 type Time = (i64, i64);
 
 /// `later ≥ earlier + by`, of transitions counted from 1; 0 is the start.
-struct AtLeast {
+struct TransitionSeparation {
     later: usize,
     earlier: usize,
     by: Time,
 }
 
 /// The constraints on a path's times, as it goes on.
-struct Clocks<'s, 'm, 'p> {
-    space: &'s Space<'m, 'p>,
-    constraints: Vec<AtLeast>,
+struct PathClocks<'s, 'm, 'p> {
+    space: &'s LocalStateSpace<'m, 'p>,
+    constraints: Vec<TransitionSeparation>,
     /// The last transition of each process.
     last: Vec<usize>,
     /// The transition that last set each clock, and what it had then.
     set: Vec<(usize, i64)>,
 }
 
-impl Clocks<'_, '_, '_> {
+impl PathClocks<'_, '_, '_> {
     fn at_least(&mut self, later: usize, earlier: usize, by: Time) {
-        self.constraints.push(AtLeast { later, earlier, by });
+        self.constraints.push(TransitionSeparation { later, earlier, by });
     }
 
     /// A bound on a clock at the transition `now`.
@@ -47,7 +54,7 @@ impl Clocks<'_, '_, '_> {
     }
 
     /// A process goes from its last transition to `now`.
-    fn pass(&mut self, state: &mut [i64], process: usize, now: usize) -> Result<(), Failure> {
+    fn pass(&mut self, state: &mut [i64], process: usize, now: usize) -> Result<(), LocalSearchError> {
         self.at_least(now, self.last[process], (0, 0));
         if process < self.space.model.members.len() {
             if self.space.is_still(state, process) {
@@ -56,7 +63,7 @@ impl Clocks<'_, '_, '_> {
             // INVARIANT: invariants are convex: they hold all the while if they hold at both ends.
             let mut bounds = Vec::new();
             let known = self.space.invariant(process, state, &mut Vec::new(), &mut bounds);
-            known.map_err(|_| Error::Internal("a path leads through a fault".into()))?;
+            known.map_err(|_| SearchError::Internal("a path leads through a fault".into()))?;
             for c in &bounds {
                 self.bound(&clock_bound(c)?, now);
             }
@@ -66,7 +73,7 @@ impl Clocks<'_, '_, '_> {
     }
 
     /// The transition in `w` is taken.
-    fn take(&mut self, w: &Work, state: &mut [i64], now: usize) -> Result<(), Failure> {
+    fn take(&mut self, w: &LocalWorkspace, state: &mut [i64], now: usize) -> Result<(), LocalSearchError> {
         for &p in &w.who {
             self.pass(state, usize::from(p), now)?;
         }
@@ -89,15 +96,19 @@ impl Clocks<'_, '_, '_> {
 /// INVARIANT: the sort is stable, and the times of a process do not fall along the path. So each process keeps the order of
 /// its transitions, and no transition overtakes one that it depends on: the sorted path has the same end. What happens
 /// while a location is committed has one time, so it stays together.
-pub(super) fn by_time(space: &Space, path: &[u32], to_last: bool) -> Result<Vec<Taken>, Error> {
+pub(super) fn by_time(
+    space: &LocalStateSpace,
+    path: &[u32],
+    to_last: bool,
+) -> Result<Vec<PathTransition>, SearchError> {
     let (taken, constraints) = walk(space, path).map_err(|f| match f {
-        Failure::Search(error) => error,
-        Failure::NotApplicable(why) => Error::Internal(why.to_string()),
+        LocalSearchError::Search(error) => error,
+        LocalSearchError::NotApplicable(why) => SearchError::Internal(why.to_string()),
     })?;
     let times = least(taken.len() + 2, &constraints)
-        .ok_or_else(|| Error::Internal("the local zones reach a goal that no run reaches".into()))?;
+        .ok_or_else(|| SearchError::Internal("the local zones reach a goal that no run reaches".into()))?;
     let last = times.get(taken.len()).copied();
-    let mut ordered: Vec<(Time, Taken)> = times.into_iter().skip(1).zip(taken).collect();
+    let mut ordered: Vec<(Time, PathTransition)> = times.into_iter().skip(1).zip(taken).collect();
     ordered.sort_by_key(|(time, _)| *time);
     if to_last {
         // The sort is stable: of those of its time it is the last.
@@ -106,10 +117,13 @@ pub(super) fn by_time(space: &Space, path: &[u32], to_last: bool) -> Result<Vec<
     Ok(ordered.into_iter().map(|(_, taken)| taken).collect())
 }
 
-fn walk(space: &Space, path: &[u32]) -> Result<(Vec<Taken>, Vec<AtLeast>), Failure> {
-    let (mut w, mut scratch) = (Work::default(), Scratch::default());
+fn walk(
+    space: &LocalStateSpace,
+    path: &[u32],
+) -> Result<(Vec<PathTransition>, Vec<TransitionSeparation>), LocalSearchError> {
+    let (mut w, mut scratch) = (LocalWorkspace::default(), EnumerationScratch::default());
     space.start(&mut w)?;
-    let mut clocks = Clocks {
+    let mut clocks = PathClocks {
         space,
         constraints: Vec::new(),
         last: vec![0; space.processes.count],
@@ -130,16 +144,16 @@ fn walk(space: &Space, path: &[u32]) -> Result<(Vec<Taken>, Vec<AtLeast>), Failu
 
 /// Takes the successor of this number.
 fn advance(
-    space: &Space,
-    w: &mut Work,
-    scratch: &mut Scratch,
+    space: &LocalStateSpace,
+    w: &mut LocalWorkspace,
+    scratch: &mut EnumerationScratch,
     state: &mut [i64],
     zone: &super::zone::LocalZone,
     number: u32,
-) -> Result<Taken, Failure> {
+) -> Result<PathTransition, LocalSearchError> {
     let (before, mut left) = (state.to_vec(), number);
     let mut end = None;
-    let may = Meets { zone, processes: &space.processes };
+    let may = LocalZoneFilter { zone, processes: &space.processes };
     let _ = space.model.enumerate(state, &may, scratch, &mut |found| {
         match space.found(w, &before, zone, &found) {
             Ok(false) => return ControlFlow::Continue(()),
@@ -150,8 +164,8 @@ fn advance(
             Ok(true) => {}
             Err(failure) => end = Some(Err(failure)),
         }
-        if let (None, crate::semantics::Found::Firing(firing)) = (&end, &found) {
-            end = Some(Ok(Taken {
+        if let (None, FiringOrError::Firing(firing)) = (&end, &found) {
+            end = Some(Ok(PathTransition {
                 parts: firing.parts.to_vec(),
                 medium: firing.medium,
                 args: firing.args.to_vec(),
@@ -161,11 +175,13 @@ fn advance(
         }
         ControlFlow::Break(())
     });
-    end.unwrap_or_else(|| Err(Error::Internal("a path takes a transition that is not there".into()).into()))
+    end.unwrap_or_else(|| {
+        Err(SearchError::Internal("a path takes a transition that is not there".into()).into())
+    })
 }
 
 /// The least times that keep all constraints, from 0 for the start; `None`: there are none.
-fn least(count: usize, constraints: &[AtLeast]) -> Option<Vec<Time>> {
+fn least(count: usize, constraints: &[TransitionSeparation]) -> Option<Vec<Time>> {
     let mut times = vec![(0, 0); count];
     for _ in 0..=count {
         let mut changed = false;

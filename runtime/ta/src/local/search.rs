@@ -3,39 +3,66 @@
 use std::{ops::ControlFlow, rc::Rc};
 
 use super::{
-    Failure, NotApplicable, Options, order,
-    space::{Meets, Space, Work},
+    order,
+    refusal::{LocalSearchError, NotApplicableError},
+    space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
     zone::{self, Bound, LocalZone},
 };
 use crate::{
-    Error, Exhausted, Goal, Model, ModelError, Outcome, Progress, Report, Witness,
-    goals::Goals,
-    order::{Waiting, level, levels},
-    semantics::{Firing, Found, Scratch},
-    slice,
-    store::{Layout, NIL, Store, hash_words},
-    witness,
+    network::{
+        error::ModelError,
+        model::CompiledNetwork,
+        query::{ReachabilityGoal, SearchBudget},
+        semantics::{EnumerationScratch, Firing, FiringOrError},
+    },
+    search::{
+        goals::CompiledGoals,
+        options::SearchOrder,
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        slice,
+        store::{NIL, PassedList, StateLayout, hash_words},
+        waiting::{WaitingList, level, levels},
+    },
+    witness::{build, error::SearchError, run::WitnessRun, schedule::ScheduleOptions},
 };
 
-/// A way to a goal: a node, then perhaps one successor more.
+/// How to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LocalSearchOptions {
+    pub order: SearchOrder,
+    /// Of an order that draws.
+    pub seed: u64,
+    pub budget: SearchBudget,
+    /// Shared variables and clocks become processes of their own, so that transitions that use the same do not commute.
+    /// Otherwise networks that share any are refused.
+    pub media: bool,
+}
+
+impl Default for LocalSearchOptions {
+    fn default() -> Self {
+        Self { order: SearchOrder::default(), seed: 0, budget: SearchBudget::default(), media: true }
+    }
+}
+
+/// A path to a goal: a node, then perhaps one successor more.
 #[derive(Clone, Copy)]
-struct Path {
+struct LocalGoalPath {
     node: u32,
     last: Option<u32>,
 }
 
-struct Search<'m, 'p> {
-    space: Space<'m, 'p>,
-    goals: &'m [Goal],
-    compiled: Goals,
-    hits: Vec<Option<Path>>,
+struct LocalSearch<'m, 'p> {
+    space: LocalStateSpace<'m, 'p>,
+    goals: &'m [ReachabilityGoal],
+    compiled: CompiledGoals,
+    hits: Vec<Option<LocalGoalPath>>,
     open: Vec<bool>,
     left: usize,
     /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
-    store: Store<Bound>,
+    store: PassedList<Bound>,
     /// By node: its zone, until its successors are computed.
     zones: Vec<Option<LocalZone>>,
-    waiting: Waiting,
+    waiting: WaitingList,
     levels: Vec<Vec<u32>>,
     packed: Vec<u64>,
     met: Vec<usize>,
@@ -49,24 +76,28 @@ struct Search<'m, 'p> {
     transitions: usize,
 }
 
-/// Searches a network that local time serves.
-pub(super) fn explore(
-    model: &Model,
-    goals: &[Goal],
-    options: &Options,
-    go_on: &dyn Fn(&Progress) -> bool,
-) -> Result<Report, Failure> {
-    let mut search = Search::new(Space::new(model, options.media)?, goals, options)?;
+/// Searches a network with local time. The report is that of [`crate::explore`] with fewer states. `go_on` is asked now
+/// and then whether to.
+///
+/// # Errors
+/// If local time does not serve the network; else as [`crate::explore`].
+pub fn explore(
+    model: &CompiledNetwork,
+    goals: &[ReachabilityGoal],
+    options: &LocalSearchOptions,
+    go_on: &dyn Fn(&SearchProgress) -> bool,
+) -> Result<SearchReport, LocalSearchError> {
+    let mut search = LocalSearch::new(LocalStateSpace::new(model, options.media)?, goals, options)?;
     let exhausted = search.run(options, go_on)?;
     let mut outcomes = Vec::new();
     for (goal, hit) in goals.iter().zip(&search.hits) {
         outcomes.push(match (hit, exhausted) {
-            (Some(path), _) => Outcome::Reached(Box::new(search.witness(path, Some(goal))?)),
-            (None, Some(what)) => Outcome::Open(what),
-            (None, None) => Outcome::Unreachable,
+            (Some(path), _) => GoalOutcome::Reached(Box::new(search.witness(path, Some(goal))?)),
+            (None, Some(what)) => GoalOutcome::Inconclusive(what),
+            (None, None) => GoalOutcome::Unreachable,
         });
     }
-    Ok(Report {
+    Ok(SearchReport {
         goals: outcomes,
         states_stored: search.store.stored,
         states_visited: search.visited,
@@ -78,14 +109,18 @@ pub(super) fn explore(
     })
 }
 
-impl<'m, 'p> Search<'m, 'p> {
-    fn new(space: Space<'m, 'p>, goals: &'m [Goal], options: &Options) -> Result<Self, Failure> {
+impl<'m, 'p> LocalSearch<'m, 'p> {
+    fn new(
+        space: LocalStateSpace<'m, 'p>,
+        goals: &'m [ReachabilityGoal],
+        options: &LocalSearchOptions,
+    ) -> Result<Self, LocalSearchError> {
         let model = space.model;
-        let compiled = Goals::new(model, goals).map_err(Error::from)?;
+        let compiled = CompiledGoals::new(model, goals).map_err(SearchError::from)?;
         if !compiled.symbolic.is_empty() {
-            return Err(NotApplicable::ClockGoal.into());
+            return Err(NotApplicableError::ClockGoal.into());
         }
-        let layout = Layout::new(model.ranges(), &slice::relevant(model, &compiled));
+        let layout = StateLayout::new(model.ranges(), &slice::relevant(model, &compiled));
         Ok(Self {
             space,
             goals,
@@ -93,9 +128,9 @@ impl<'m, 'p> Search<'m, 'p> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: Store::new(layout),
+            store: PassedList::new(layout),
             zones: Vec::new(),
-            waiting: Waiting::new(model, options.order, options.seed),
+            waiting: WaitingList::new(model, options.order, options.seed),
             levels: levels(model),
             packed: Vec::new(),
             met: Vec::new(),
@@ -110,10 +145,10 @@ impl<'m, 'p> Search<'m, 'p> {
 
     fn run(
         &mut self,
-        options: &Options,
-        go_on: &dyn Fn(&Progress) -> bool,
-    ) -> Result<Option<Exhausted>, Failure> {
-        let (mut w, mut scratch) = (Work::default(), Scratch::default());
+        options: &LocalSearchOptions,
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Result<Option<SearchCutoff>, LocalSearchError> {
+        let (mut w, mut scratch) = (LocalWorkspace::default(), EnumerationScratch::default());
         self.space.start(&mut w)?;
         self.insert(&mut w, NIL, 0)?;
         let (mut state, mut round, mut ask) = (Vec::new(), Vec::new(), 0);
@@ -125,15 +160,15 @@ impl<'m, 'p> Search<'m, 'p> {
             let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
             self.peak = self.peak.max(bytes);
             if self.store.nodes.len() >= options.budget.states || !self.store.has_room(self.space.room()) {
-                return Ok(Some(Exhausted::States));
+                return Ok(Some(SearchCutoff::States));
             }
             if bytes >= options.budget.bytes {
-                return Ok(Some(Exhausted::Memory));
+                return Ok(Some(SearchCutoff::Memory));
             }
             if self.visited >= ask {
                 ask = self.visited + ROUND;
                 if !go_on(&self.progress(bytes)) {
-                    return Ok(Some(Exhausted::Stopped));
+                    return Ok(Some(SearchCutoff::Stopped));
                 }
             }
             self.waiting.take(&self.store.nodes, FEW, &mut round);
@@ -150,8 +185,8 @@ impl<'m, 'p> Search<'m, 'p> {
         }
     }
 
-    fn progress(&self, bytes: usize) -> Progress {
-        Progress {
+    fn progress(&self, bytes: usize) -> SearchProgress {
+        SearchProgress {
             stored: self.store.stored,
             visited: self.visited,
             waiting: self.waiting.len(),
@@ -165,17 +200,17 @@ impl<'m, 'p> Search<'m, 'p> {
         id: u32,
         state: &mut [i64],
         zone: &LocalZone,
-        w: &mut Work,
-        scratch: &mut Scratch,
-    ) -> Result<(), Failure> {
+        w: &mut LocalWorkspace,
+        scratch: &mut EnumerationScratch,
+    ) -> Result<(), LocalSearchError> {
         let (before, model) = (state.to_vec(), self.space.model);
         let processes = Rc::clone(&self.space.processes);
-        let may = Meets { zone, processes: &processes };
+        let may = LocalZoneFilter { zone, processes: &processes };
         let (mut number, mut end) = (0, Ok(()));
         let _ = model.enumerate(state, &may, scratch, &mut |found| {
             let next = self.space.found(w, &before, zone, &found);
             let done = match (next, &found) {
-                (Ok(true), Found::Firing(firing)) => {
+                (Ok(true), FiringOrError::Firing(firing)) => {
                     number += 1;
                     self.transitions += 1;
                     self.taken(&before, firing, (id, number - 1));
@@ -203,11 +238,11 @@ impl<'m, 'p> Search<'m, 'p> {
             let last = model.pairs.then(|| model.last_edge_at(m));
             self.compiled.taken(edge, before, last, &mut |goal| self.met.push(goal));
         }
-        self.hit(Path { node, last: Some(number) });
+        self.hit(LocalGoalPath { node, last: Some(number) });
     }
 
     /// The goals that were met are so by this path, unless they were met before.
-    fn hit(&mut self, path: Path) {
+    fn hit(&mut self, path: LocalGoalPath) {
         for &goal in &self.met {
             if std::mem::replace(&mut self.open[goal], false) {
                 self.hits[goal] = Some(path);
@@ -217,7 +252,7 @@ impl<'m, 'p> Search<'m, 'p> {
     }
 
     /// Stores the symbolic state in `w`, unless a stored one simulates it.
-    fn insert(&mut self, w: &mut Work, parent: u32, number: u32) -> Result<(), Failure> {
+    fn insert(&mut self, w: &mut LocalWorkspace, parent: u32, number: u32) -> Result<(), LocalSearchError> {
         self.store.layout.pack(&w.effect.target, &mut self.packed);
         let hash = hash_words(&self.packed);
         let known = self.store.find(hash, &self.packed);
@@ -242,7 +277,7 @@ impl<'m, 'p> Search<'m, 'p> {
     }
 
     /// Whether a stored state simulates that in `w`; otherwise those that it simulates are in `driven_out`.
-    fn compare(&mut self, discrete: u32, w: &Work) -> bool {
+    fn compare(&mut self, discrete: u32, w: &LocalWorkspace) -> bool {
         self.driven_out.clear();
         let mut at = self.store.head(discrete);
         while at != NIL {
@@ -276,7 +311,7 @@ impl<'m, 'p> Search<'m, 'p> {
     }
 
     /// Looks at the goals that a state meets: all have one time in it.
-    fn look(&mut self, w: &mut Work, new: bool, node: u32) -> Result<(), Failure> {
+    fn look(&mut self, w: &mut LocalWorkspace, new: bool, node: u32) -> Result<(), LocalSearchError> {
         if self.left == 0 {
             return Ok(());
         }
@@ -286,28 +321,34 @@ impl<'m, 'p> Search<'m, 'p> {
         let state = &mut w.effect.target;
         if new {
             let states = self.compiled.states(state, &mut w.stack, model, settled, &self.open, &mut self.met);
-            states.map_err(Error::from)?;
+            states.map_err(SearchError::from)?;
         }
-        self.hit(Path { node, last: None });
+        self.hit(LocalGoalPath { node, last: None });
         Ok(())
     }
 
-    /// A fault of the model with the way to it.
-    fn led_to(&self, id: u32, failure: Failure) -> Failure {
+    /// A fault of the model with the path to it.
+    fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
         match failure {
-            Failure::Search(Error::Model { error, witness: None }) => match self.faulty(id, error) {
-                Ok(error) | Err(error) => error.into(),
-            },
+            LocalSearchError::Search(SearchError::Model { error, witness: None }) => {
+                match self.faulty(id, error) {
+                    Ok(error) | Err(error) => error.into(),
+                }
+            }
             other => other,
         }
     }
 
-    fn faulty(&self, id: u32, error: ModelError) -> Result<Error, Error> {
-        let witness = self.witness(&Path { node: id, last: None }, None)?;
-        Ok(Error::Model { error, witness: Some(Box::new(witness)) })
+    fn faulty(&self, id: u32, error: ModelError) -> Result<SearchError, SearchError> {
+        let witness = self.witness(&LocalGoalPath { node: id, last: None }, None)?;
+        Ok(SearchError::Model { error, witness: Some(Box::new(witness)) })
     }
 
-    fn witness(&self, path: &Path, goal: Option<&Goal>) -> Result<Witness, Error> {
+    fn witness(
+        &self,
+        path: &LocalGoalPath,
+        goal: Option<&ReachabilityGoal>,
+    ) -> Result<WitnessRun, SearchError> {
         let mut numbers: Vec<u32> = path.last.into_iter().collect();
         let mut at = self.store.nodes[path.node as usize];
         while at.parent != NIL {
@@ -316,7 +357,7 @@ impl<'m, 'p> Search<'m, 'p> {
         }
         numbers.reverse();
         let taken = order::by_time(&self.space, &numbers, path.last.is_some())?;
-        witness::build(self.space.model, taken, goal, crate::Timing::default())
+        build::witness(self.space.model, taken, goal, ScheduleOptions::default())
     }
 }
 

@@ -5,56 +5,64 @@ use std::rc::Rc;
 use hrdsl_ir::ta::LocationKind;
 
 use super::{
-    Failure, NotApplicable,
-    access::Processes,
-    zone::{self, Bound, ClockBound, LocalZone, Lu, Meeting, Set, TooLarge},
+    access::NetworkProcesses,
+    refusal::{LocalSearchError, NotApplicableError},
+    zone::{
+        self, Bound, BoundOverflowError, ClockAssignment, ClockBound, LocalLuBounds, LocalZone, MeetingBounds,
+    },
 };
 use crate::{
-    Abstraction, Error, Model, ModelError,
-    code::{Env, Fault},
-    extrapolation::{Frame, NONE},
-    network::Constraint,
-    semantics::{Effect, Firing, Found, May},
+    network::{
+        code::{CodeEvalContext, CodeEvalError},
+        error::ModelError,
+        model::CompiledNetwork,
+        semantics::{ConstraintFilter, Firing, FiringOrError, TransitionEffect},
+    },
+    witness::error::SearchError,
+    zone::{
+        constraint::DifferenceConstraint,
+        extrapolation::{Abstraction, ActiveClocks, NONE},
+    },
 };
 
 /// A network made ready for local time.
-pub(super) struct Space<'m, 'p> {
-    pub model: &'m Model<'p>,
-    pub processes: Rc<Processes>,
+pub(super) struct LocalStateSpace<'m, 'p> {
+    pub model: &'m CompiledNetwork<'p>,
+    pub processes: Rc<NetworkProcesses>,
     /// All of them.
     everybody: Vec<u16>,
 }
 
 /// The last transition that was looked at, and where it leads; used again and again.
 #[derive(Default)]
-pub(super) struct Work {
-    pub effect: Effect,
+pub(super) struct LocalWorkspace {
+    pub effect: TransitionEffect,
     /// The processes that have one time in it, in order.
     pub who: Vec<u16>,
     /// Its guard, and the invariants that those who move enter, as bounds before it.
     pub bounds: Vec<ClockBound>,
-    pub sets: Vec<Set>,
+    pub sets: Vec<ClockAssignment>,
     pub zone: LocalZone,
     /// The zone as far as all processes have one time, of the clocks that matter.
     pub together: Vec<Bound>,
-    pub frame: Frame,
+    pub frame: ActiveClocks,
     /// The clocks of the frame, counted from 0, without the reference, and their bounds.
     pub clocks: Vec<u16>,
-    pub lu: Vec<Lu>,
+    pub lu: Vec<LocalLuBounds>,
     pub stack: Vec<i64>,
-    meeting: Meeting,
-    invariant: Vec<Constraint>,
+    meeting: MeetingBounds,
+    invariant: Vec<DifferenceConstraint>,
     passing: Vec<ClockBound>,
 }
 
 /// Whether single bounds on clocks meet a zone.
-pub(super) struct Meets<'a> {
+pub(super) struct LocalZoneFilter<'a> {
     pub zone: &'a LocalZone,
-    pub processes: &'a Processes,
+    pub processes: &'a NetworkProcesses,
 }
 
-impl May for Meets<'_> {
-    fn may(&self, c: Constraint) -> bool {
+impl ConstraintFilter for LocalZoneFilter<'_> {
+    fn may(&self, c: DifferenceConstraint) -> bool {
         match (clock_bound(&c), self.processes.owner(c.i.max(c.j))) {
             (Ok(b), Some(owner)) if c.i == 0 || c.j == 0 => self.zone.meets(b, owner),
             _ => true,
@@ -62,9 +70,9 @@ impl May for Meets<'_> {
     }
 }
 
-impl<'m, 'p> Space<'m, 'p> {
-    pub(super) fn new(model: &'m Model<'p>, media: bool) -> Result<Self, NotApplicable> {
-        let processes = Rc::new(Processes::of(model, media)?);
+impl<'m, 'p> LocalStateSpace<'m, 'p> {
+    pub(super) fn new(model: &'m CompiledNetwork<'p>, media: bool) -> Result<Self, NotApplicableError> {
+        let processes = Rc::new(NetworkProcesses::of(model, media)?);
         let everybody = (0..processes.count as u16).collect();
         Ok(Self { model, processes, everybody })
     }
@@ -79,7 +87,7 @@ impl<'m, 'p> Space<'m, 'p> {
     }
 
     /// The start, with the time that passes there.
-    pub(super) fn start(&self, w: &mut Work) -> Result<(), Failure> {
+    pub(super) fn start(&self, w: &mut LocalWorkspace) -> Result<(), LocalSearchError> {
         w.effect.target = self.model.initial();
         w.zone = LocalZone::start(self.processes.count, self.clocks());
         for m in 0..self.model.members.len() {
@@ -101,25 +109,25 @@ impl<'m, 'p> Space<'m, 'p> {
     /// Looks at a transition; whether it is one of the zone: then its effect is in `w`.
     pub(super) fn found(
         &self,
-        w: &mut Work,
+        w: &mut LocalWorkspace,
         state: &[i64],
         zone: &LocalZone,
-        found: &Found,
-    ) -> Result<bool, Failure> {
-        let (Found::Firing(Firing { guard, .. }) | Found::Fault { guard, .. }) = found;
+        found: &FiringOrError,
+    ) -> Result<bool, LocalSearchError> {
+        let (FiringOrError::Firing(Firing { guard, .. }) | FiringOrError::Fault { guard, .. }) = found;
         w.bounds.clear();
         for c in *guard {
             w.bounds.push(clock_bound(c)?);
         }
         let firing = match found {
-            Found::Firing(firing) => firing,
-            Found::Fault { member, edge, fault, .. } => {
+            FiringOrError::Firing(firing) => firing,
+            FiringOrError::Fault { member, edge, fault, .. } => {
                 let error = self.model.fault(usize::from(*member), usize::from(*edge), *fault);
                 return self.unless_met(w, zone, error);
             }
         };
         self.processes.involved(firing.parts, &mut w.who);
-        if !w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicable::from)? {
+        if !w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicableError::from)? {
             return Ok(false);
         }
         match self.model.effect(state, firing, &mut w.stack, &mut w.effect) {
@@ -144,18 +152,24 @@ impl<'m, 'p> Space<'m, 'p> {
     }
 
     /// The fault, if all processes can have one time at which the bounds hold: then the network can be there.
-    fn unless_met(&self, w: &mut Work, zone: &LocalZone, error: ModelError) -> Result<bool, Failure> {
-        let met = w.meeting.of(zone, &self.everybody, &w.bounds).map_err(NotApplicable::from)?;
+    fn unless_met(
+        &self,
+        w: &mut LocalWorkspace,
+        zone: &LocalZone,
+        error: ModelError,
+    ) -> Result<bool, LocalSearchError> {
+        let met = w.meeting.of(zone, &self.everybody, &w.bounds).map_err(NotApplicableError::from)?;
         if met { Err(broken(error)) } else { Ok(false) }
     }
 
     /// Whether an update may make a clock negative.
-    fn negative(&self, w: &mut Work, zone: &LocalZone) -> Result<(), Failure> {
+    fn negative(&self, w: &mut LocalWorkspace, zone: &LocalZone) -> Result<(), LocalSearchError> {
         for i in 0..w.effect.below.len() {
             let below = w.effect.below[i];
-            let bound = zone::lt(-below.reset.by).ok_or(TooLarge).map_err(NotApplicable::from)?;
+            let bound =
+                zone::lt(-below.reset.by).ok_or(BoundOverflowError).map_err(NotApplicableError::from)?;
             w.bounds.push(ClockBound { clock: below.reset.from - 1, upper: true, bound });
-            let fault = Fault::Negative { clock: below.reset.clock };
+            let fault = CodeEvalError::Negative { clock: below.reset.clock };
             let error = self.model.fault(usize::from(below.member), usize::from(below.edge), fault);
             self.unless_met(w, zone, error)?;
             w.bounds.pop();
@@ -164,11 +178,16 @@ impl<'m, 'p> Space<'m, 'p> {
     }
 
     /// What the transition sets, and its meeting with the invariants that it enters; `false`: they forbid it.
-    fn enters(&self, w: &mut Work, zone: &LocalZone, firing: &Firing) -> Result<bool, Failure> {
+    fn enters(
+        &self,
+        w: &mut LocalWorkspace,
+        zone: &LocalZone,
+        firing: &Firing,
+    ) -> Result<bool, LocalSearchError> {
         w.sets.clear();
         for r in &w.effect.resets {
-            let by = zone::le(r.by).ok_or(TooLarge).map_err(NotApplicable::from)?;
-            w.sets.push(Set { clock: r.clock - 1, from: r.from.checked_sub(1), by });
+            let by = zone::le(r.by).ok_or(BoundOverflowError).map_err(NotApplicableError::from)?;
+            w.sets.push(ClockAssignment { clock: r.clock - 1, from: r.from.checked_sub(1), by });
         }
         let guards = w.bounds.len();
         for part in firing.parts {
@@ -192,22 +211,22 @@ impl<'m, 'p> Space<'m, 'p> {
                         }
                     }
                     Some(r) => {
-                        let shift = zone::le(if b.upper { -r.by } else { r.by }).ok_or(TooLarge);
-                        let bound = zone::plus(b.bound, shift.map_err(NotApplicable::from)?);
+                        let shift = zone::le(if b.upper { -r.by } else { r.by }).ok_or(BoundOverflowError);
+                        let bound = zone::plus(b.bound, shift.map_err(NotApplicableError::from)?);
                         w.bounds.push(ClockBound { clock: r.from - 1, upper: b.upper, bound });
                     }
                 }
             }
         }
         if w.bounds.len() > guards || !w.effect.below.is_empty() {
-            return Ok(w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicable::from)?);
+            return Ok(w.meeting.of(zone, &w.who, &w.bounds).map_err(NotApplicableError::from)?);
         }
         Ok(true)
     }
 
     /// Lets time pass for those who were part of a transition to the target, with only the clocks that matter there.
     /// Whether all processes can have one time then.
-    fn enter(&self, w: &mut Work, who: &[u16]) -> Result<bool, Failure> {
+    fn enter(&self, w: &mut LocalWorkspace, who: &[u16]) -> Result<bool, LocalSearchError> {
         self.model.extrapolation.frame(&w.effect.target, Abstraction::LowerUpper, &mut w.frame);
         w.clocks.clear();
         w.lu.clear();
@@ -215,10 +234,10 @@ impl<'m, 'p> Space<'m, 'p> {
             let lower = if lu.lower == NONE { Some(zone::INF) } else { zone::lt(-lu.lower) };
             let upper = if lu.upper == NONE { Some(zone::INF) } else { zone::le(-lu.upper) };
             let (Some(lower), Some(upper)) = (lower, upper) else {
-                return Err(NotApplicable::Constants.into());
+                return Err(NotApplicableError::Constants.into());
             };
             w.clocks.push(clock - 1);
-            w.lu.push(Lu { lower, upper });
+            w.lu.push(LocalLuBounds { lower, upper });
         }
         w.zone.forget(&w.clocks);
         for &p in who {
@@ -238,10 +257,10 @@ impl<'m, 'p> Space<'m, 'p> {
             w.zone.elapse(m, &w.passing);
         }
         let met = w.zone.synchronised(&w.clocks, &mut w.meeting, &mut w.together);
-        Ok(met.map_err(NotApplicable::from)?)
+        Ok(met.map_err(NotApplicableError::from)?)
     }
 
-    fn fault(&self, member: usize, state: &[i64], fault: Fault) -> ModelError {
+    fn fault(&self, member: usize, state: &[i64], fault: CodeEvalError) -> ModelError {
         self.model.invariant_fault(member, state[member] as usize, fault)
     }
 
@@ -256,15 +275,15 @@ impl<'m, 'p> Space<'m, 'p> {
         member: usize,
         state: &mut [i64],
         stack: &mut Vec<i64>,
-        out: &mut Vec<Constraint>,
-    ) -> Result<bool, Fault> {
+        out: &mut Vec<DifferenceConstraint>,
+    ) -> Result<bool, CodeEvalError> {
         out.clear();
         let spot = self.model.place(state, member);
         if spot.holds.is_none() && spot.invariant.moving.is_empty() {
             out.extend_from_slice(&spot.invariant.fixed);
             return Ok(true);
         }
-        let mut env = Env::new(&self.model.library, state, stack);
+        let mut env = CodeEvalContext::new(&self.model.library, state, stack);
         if let Some(holds) = &spot.holds
             && holds.eval(&mut env)? == 0
         {
@@ -275,14 +294,14 @@ impl<'m, 'p> Space<'m, 'p> {
     }
 }
 
-fn broken(error: ModelError) -> Failure {
-    Failure::Search(Error::from(error))
+fn broken(error: ModelError) -> LocalSearchError {
+    LocalSearchError::Search(SearchError::from(error))
 }
 
 /// A constraint as a bound on one clock.
-pub(super) fn clock_bound(c: &Constraint) -> Result<ClockBound, NotApplicable> {
+pub(super) fn clock_bound(c: &DifferenceConstraint) -> Result<ClockBound, NotApplicableError> {
     let n = if c.bound.is_strict() { zone::lt } else { zone::le };
-    let bound = n(c.bound.value()).ok_or(TooLarge)?;
+    let bound = n(c.bound.value()).ok_or(BoundOverflowError)?;
     // INVARIANT: networks with bounds on differences were refused.
     Ok(ClockBound { clock: c.i.max(c.j) - 1, upper: c.i > 0, bound })
 }

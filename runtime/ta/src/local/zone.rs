@@ -43,7 +43,7 @@ pub(crate) struct ClockBound {
 
 /// A clock becomes another's value, or zero, plus a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Set {
+pub(crate) struct ClockAssignment {
     /// The clock, from 0.
     pub clock: u16,
     pub from: Option<u16>,
@@ -53,7 +53,7 @@ pub(crate) struct Set {
 
 /// The numbers of a path have grown too large for the matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TooLarge;
+pub(crate) struct BoundOverflowError;
 
 /// A canonical set of local valuations that is not empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub(crate) struct LocalZone {
 
 /// The bounds on the common time of processes that meet.
 #[derive(Default)]
-pub(crate) struct Meeting {
+pub(crate) struct MeetingBounds {
     /// On `time - variable`.
     row: Vec<Bound>,
     /// On `variable - time`.
@@ -98,7 +98,7 @@ impl LocalZone {
     /// Becomes `from`, restricted to where the meeting's processes have one time and its clock bounds hold.
     ///
     /// INVARIANT: `from` is canonical, so a shortest path that is new leads through the common time once.
-    pub(crate) fn restrict(&mut self, from: &LocalZone, meeting: &Meeting) {
+    pub(crate) fn restrict(&mut self, from: &LocalZone, meeting: &MeetingBounds) {
         let n = from.n;
         (self.processes, self.n) = (from.processes, n);
         self.d.resize(n * n, INF);
@@ -117,7 +117,7 @@ impl LocalZone {
     }
 
     /// Sets clocks at the time of process `now`, all at once.
-    pub(crate) fn assign(&mut self, sets: &[Set], now: usize) {
+    pub(crate) fn assign(&mut self, sets: &[ClockAssignment], now: usize) {
         if sets.iter().any(|s| s.from.is_some()) {
             return self.copy(sets, now);
         }
@@ -135,7 +135,7 @@ impl LocalZone {
     }
 
     /// As [`assign`](Self::assign), where clocks become others.
-    fn copy(&mut self, sets: &[Set], now: usize) {
+    fn copy(&mut self, sets: &[ClockAssignment], now: usize) {
         let (n, p, old) = (self.n, self.processes, self.d.clone());
         // Each variable after it is one before it, less a number.
         let mut from: Vec<(usize, Bound)> = (0..n).map(|i| (i, ZERO)).collect();
@@ -192,9 +192,9 @@ impl LocalZone {
     pub(crate) fn synchronised(
         &self,
         clocks: &[u16],
-        meeting: &mut Meeting,
+        meeting: &mut MeetingBounds,
         out: &mut Vec<Bound>,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, BoundOverflowError> {
         if !meeting.gather_all(self, clocks) {
             return Ok(false);
         }
@@ -216,7 +216,7 @@ impl LocalZone {
     }
 }
 
-impl Meeting {
+impl MeetingBounds {
     /// Restricts the times of `processes`, at least one, to a common one, at which the clock bounds hold. Clocks must be
     /// those of these processes. `false`: there is no such time.
     pub(crate) fn of(
@@ -224,7 +224,7 @@ impl Meeting {
         zone: &LocalZone,
         processes: &[u16],
         bounds: &[ClockBound],
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, BoundOverflowError> {
         if !self.gather(zone, processes.iter().map(|&p| usize::from(p))) {
             return Ok(false);
         }
@@ -300,7 +300,7 @@ impl Meeting {
     }
 
     /// Makes the bounds ready to be added without looking for [`INF`] in rows.
-    fn finish(&mut self) -> Result<(), TooLarge> {
+    fn finish(&mut self) -> Result<(), BoundOverflowError> {
         let mut most = 0;
         for at in &mut self.row {
             let there = *at < INF;
@@ -310,13 +310,13 @@ impl Meeting {
         for &at in &self.col {
             most = most.max(if at < INF { at.abs() } else { 0 });
         }
-        if most > MOST { Err(TooLarge) } else { Ok(()) }
+        if most > MOST { Err(BoundOverflowError) } else { Ok(()) }
     }
 }
 
 /// The greatest constants that a clock is compared with, encoded as bounds, for the abstraction aLU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Lu {
+pub(crate) struct LocalLuBounds {
     /// `< -L`; without a lower bound, [`INF`].
     pub lower: Bound,
     /// `≤ -U`; without an upper bound, [`INF`].
@@ -327,7 +327,7 @@ pub(crate) struct Lu {
 ///
 /// Theorem of Herbreteau, Srivathsan and Walukiewicz, "Better abstractions for timed automata" (LICS 2012): it is not so
 /// iff for some x and y, `a_x0 ≥ (≤, -U_x)`, `b_xy < a_xy` and `b_xy + (<, -L_y) < a_x0`, where `z_xy` bounds `y - x`.
-pub(crate) fn is_simulated(a: &[Bound], b: &[Bound], lu: &[Lu]) -> bool {
+pub(crate) fn is_simulated(a: &[Bound], b: &[Bound], lu: &[LocalLuBounds]) -> bool {
     let dim = lu.len() + 1;
     for x in 0..dim {
         let low = a[x * dim];

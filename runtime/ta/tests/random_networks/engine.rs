@@ -2,12 +2,14 @@
 
 use hrdsl_ir::{
     Program, Span,
+    ta::NetworkId,
     ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, Query, Time},
     value::SECOND,
 };
 use hrdsl_ta::{
-    Abstraction, Error, Goal, GoalKind, Manner, Model, ModelError, Observe, Options, Order, Outcome, Report,
-    Subsumption, Verdict, answer, explore as search,
+    Abstraction, CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, QueryOptions,
+    QueryVerdict, ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SearchReport, Subsumption,
+    answer, explore as search,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -52,12 +54,12 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
             name: "q".into(),
             title: String::new(),
             text: String::new(),
-            network: 0,
+            network: NetworkId(0),
             ask,
             origin: Span::default(),
         };
-        match answer(p, &p.networks[0], &query, &Manner::default()) {
-            Ok(a) if a.verdict == if expected { Verdict::Holds } else { Verdict::Fails } => {}
+        match answer(p, &p.networks[0], &query, &QueryOptions::default()) {
+            Ok(a) if a.verdict == if expected { QueryVerdict::Holds } else { QueryVerdict::Fails } => {}
             other => return Ok(Some(format!("{:?} should be {expected}: {other:?}", query.ask))),
         }
     }
@@ -65,35 +67,38 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
 }
 
 /// All orders, one thread and two, with and without what makes it fast.
-fn modes() -> Vec<(&'static str, Options)> {
-    let with = |order, threads| Options { order, threads, ..Options::default() };
+fn modes() -> Vec<(&'static str, SearchOptions)> {
+    let with = |order, threads| SearchOptions { order, threads, ..SearchOptions::default() };
     vec![
-        ("reference", Options::reference()),
-        ("equality", Options { subsumption: Subsumption::Equality, ..Options::reference() }),
-        ("greatest constants", Options { abstraction: Abstraction::Greatest, ..Options::reference() }),
-        ("shortest", Options::shortest()),
-        ("breadth", with(Order::Breadth, 1)),
-        ("topological", with(Order::Topological, 1)),
-        ("depth", with(Order::Depth, 1)),
-        ("random depth", Options { seed: 7, ..with(Order::RandomDepth, 1) }),
-        ("two threads", with(Order::Topological, 2)),
-        ("two threads, depth", with(Order::Depth, 2)),
-        ("everything kept", Options { reduce: false, ..with(Order::Depth, 1) }),
-        ("committed states passed", Options { keep_committed: false, ..with(Order::Depth, 1) }),
+        ("reference", SearchOptions::reference()),
+        ("equality", SearchOptions { subsumption: Subsumption::Equality, ..SearchOptions::reference() }),
+        (
+            "greatest constants",
+            SearchOptions { abstraction: Abstraction::Greatest, ..SearchOptions::reference() },
+        ),
+        ("shortest", SearchOptions::shortest()),
+        ("breadth", with(SearchOrder::Breadth, 1)),
+        ("topological", with(SearchOrder::Topological, 1)),
+        ("depth", with(SearchOrder::Depth, 1)),
+        ("random depth", SearchOptions { seed: 7, ..with(SearchOrder::RandomDepth, 1) }),
+        ("two threads", with(SearchOrder::Topological, 2)),
+        ("two threads, depth", with(SearchOrder::Depth, 2)),
+        ("everything kept", SearchOptions { reduce: false, ..with(SearchOrder::Depth, 1) }),
+        ("committed states passed", SearchOptions { keep_committed: false, ..with(SearchOrder::Depth, 1) }),
     ]
 }
 
-fn goals(p: &Program) -> Vec<Goal> {
+fn goals(p: &Program) -> Vec<ReachabilityGoal> {
     let mut goals = Vec::new();
     for (automaton, id) in p.networks[0].automata.iter().enumerate() {
         let a = &p.automata[usize::from(id.0)];
         let locations =
             (0..a.locations.len()).map(|l| GoalKind::Location { automaton, location: LocationId(l as u16) });
         let edges = (0..a.edges.len()).map(|edge| GoalKind::Edge { automaton, edge });
-        goals.extend(locations.chain(edges).map(|what| Goal { what, settled: false }));
+        goals.extend(locations.chain(edges).map(|what| ReachabilityGoal { what, settled: false }));
     }
     let formulas = formulas(p).into_iter().map(GoalKind::Formula);
-    goals.extend(formulas.map(|what| Goal { what, settled: false }));
+    goals.extend(formulas.map(|what| ReachabilityGoal { what, settled: false }));
     goals
 }
 
@@ -154,7 +159,11 @@ fn way(graph: &Graph, goal: &GoalKind) -> String {
     first.map_or(String::new(), |s| graph.path(s))
 }
 
-fn asked(p: &Program, goals: &[Goal], options: &Options) -> Result<Report, Error> {
+fn asked(
+    p: &Program,
+    goals: &[ReachabilityGoal],
+    options: &SearchOptions,
+) -> Result<SearchReport, SearchError> {
     let formulas = goals.iter().filter_map(|g| match &g.what {
         GoalKind::Formula(f) => Some(f.clone()),
         GoalKind::Location { .. }
@@ -163,21 +172,21 @@ fn asked(p: &Program, goals: &[Goal], options: &Options) -> Result<Report, Error
         | GoalKind::Use { .. }
         | GoalKind::Condition(_) => None,
     });
-    let observe = Observe { formulas: formulas.collect(), ..Observe::default() };
-    let model = Model::new(p, &p.networks[0], &observe)?;
+    let observe = ObservationOptions { formulas: formulas.collect(), ..ObservationOptions::default() };
+    let model = CompiledNetwork::new(p, &p.networks[0], &observe)?;
     search(&model, goals, options, &|_| true)
 }
 
 fn compared(
     p: &Program,
     graph: &Graph,
-    goals: &[Goal],
+    goals: &[ReachabilityGoal],
     expected: &[bool],
-    options: &Options,
+    options: &SearchOptions,
 ) -> Result<(), String> {
     let report = match asked(p, goals, options) {
-        Err(Error::Model { error: ModelError::Initial, .. }) if !graph.starts => return Ok(()),
-        Err(Error::Model { .. }) if !graph.faults.is_empty() => return Ok(()),
+        Err(SearchError::Model { error: ModelError::Initial, .. }) if !graph.starts => return Ok(()),
+        Err(SearchError::Model { .. }) if !graph.faults.is_empty() => return Ok(()),
         Err(error) => return Err(format!("the engine alone: {error:?}")),
         Ok(_) if !graph.starts => return Err("the engine starts".to_owned()),
         Ok(report) => report,
@@ -185,21 +194,21 @@ fn compared(
     let fault = graph.faults.first();
     for ((goal, outcome), &expected) in goals.iter().zip(&report.goals).zip(expected) {
         match outcome {
-            Outcome::Reached(w) if !expected => {
+            GoalOutcome::Reached(w) if !expected => {
                 return Err(format!("{goal:?} is not reachable: {}", w.text(p, &p.networks[0])));
             }
-            Outcome::Unreachable if expected => {
+            GoalOutcome::Unreachable if expected => {
                 return Err(format!("{goal:?} is reachable:\n{}", way(graph, &goal.what)));
             }
-            Outcome::Unreachable if fault.is_some() => {
+            GoalOutcome::Unreachable if fault.is_some() => {
                 return Err(format!("a fault is not told: {fault:?}\n{}", graph.path(graph.faults[0].0)));
             }
-            Outcome::Reached(_) | Outcome::Unreachable => {}
-            Outcome::Open(_) => return Err("the budget is used up".to_owned()),
+            GoalOutcome::Reached(_) | GoalOutcome::Unreachable => {}
+            GoalOutcome::Inconclusive(_) => return Err("the budget is used up".to_owned()),
         }
     }
     if options.threads > 1 {
-        let alone = asked(p, goals, &Options { threads: 1, ..*options });
+        let alone = asked(p, goals, &SearchOptions { threads: 1, ..*options });
         if alone.as_ref() != Ok(&report) {
             return Err("one thread gives another report".to_owned());
         }

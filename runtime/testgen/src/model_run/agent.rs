@@ -2,25 +2,27 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{Action, ActionToken, Society, Standing, Status};
+use hrdsl_bdi::{ActionToken, AgentAction, IntentionSummary, RunStatus, Society};
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use hrdsl_harness::{Context, Fault, Message, Performance, Player, draw_samples, is_perceived};
+use hrdsl_harness::{
+    HarnessError, Performance, Player, PlayerContext, PlayerMessage, draw_samples, is_perceived,
+};
 
 /// From so many agents on they reason on several threads.
 const MANY: usize = 32;
 
 /// All agents of a run; each has a player of its own, but they reason together.
-pub struct Company<'p> {
+pub struct AgentCompany<'p> {
     program: &'p Program,
     pub society: Society<'p>,
-    members: Vec<Member>,
+    members: Vec<AgentPerformer>,
     /// The delivery that they have all heard.
     heard: u64,
     /// If it is wanted: how they stand at the end of each instant at which they reasoned.
-    pub snapshots: Option<Snapshots>,
+    pub snapshots: Option<SnapshotLog>,
 }
 
 /// So many intentions are noted in all snapshots of a run; after that only how the agents stand in the end.
@@ -28,14 +30,14 @@ const NOTED: usize = 200_000;
 
 /// How the agents stand from instant to instant.
 #[derive(Default)]
-pub struct Snapshots {
-    all: Vec<Snapshot>,
+pub struct SnapshotLog {
+    all: Vec<AgentSnapshot>,
     noted: usize,
     /// At which there was no room for another.
     missed: Option<Nanos>,
 }
 
-impl Snapshots {
+impl SnapshotLog {
     /// How they stand at the end of this instant.
     fn note(&mut self, time: Nanos, society: &Society<'_>) {
         if self.noted >= NOTED {
@@ -45,23 +47,23 @@ impl Snapshots {
         if let Some(same) = self.all.pop_if(|s| s.time == time) {
             self.noted -= same.agents.iter().map(Vec::len).sum::<usize>();
         }
-        let snapshot = Snapshot::of(time, society);
+        let snapshot = AgentSnapshot::of(time, society);
         self.noted += snapshot.agents.iter().map(Vec::len).sum::<usize>();
         self.all.push(snapshot);
     }
 
     /// All of them, the last one as the agents stand now.
     #[must_use]
-    pub fn finish(mut self, society: &Society<'_>) -> Vec<Snapshot> {
+    pub fn finish(mut self, society: &Society<'_>) -> Vec<AgentSnapshot> {
         if let Some(time) = self.missed {
             self.all.pop_if(|s| s.time == time);
-            self.all.push(Snapshot::of(time, society));
+            self.all.push(AgentSnapshot::of(time, society));
         }
         self.all
     }
 }
 
-impl Snapshot {
+impl AgentSnapshot {
     fn of(time: Nanos, society: &Society<'_>) -> Self {
         let count = society.agents().count();
         Self { time, agents: (0..count).map(|agent| society.standing(agent)).collect() }
@@ -70,32 +72,33 @@ impl Snapshot {
 
 /// What the agents intend at the end of an instant.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Snapshot {
+pub struct AgentSnapshot {
     /// In nanoseconds.
     pub time: Nanos,
     /// By agent, in their order.
-    pub agents: Vec<Vec<Standing>>,
+    pub agents: Vec<Vec<IntentionSummary>>,
 }
 
 /// What an agent is doing in the world.
-struct Member {
+struct AgentPerformer {
     actor: ActorId,
     performances: Vec<(ActionToken, Performance)>,
     /// Draws the samples of its stimuli.
     rng: ChaCha8Rng,
 }
 
-impl<'p> Company<'p> {
+impl<'p> AgentCompany<'p> {
     #[must_use]
     pub fn new(program: &'p Program, mut society: Society<'p>) -> Rc<RefCell<Self>> {
-        let member = |actor| Member { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
-        let members: Vec<Member> = society.actors().map(member).collect();
+        let member =
+            |actor| AgentPerformer { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
+        let members: Vec<AgentPerformer> = society.actors().map(member).collect();
         society.set_parallel(members.len() >= MANY);
         Rc::new(RefCell::new(Self { program, society, members, heard: 0, snapshots: None }))
     }
 
     /// Rounds, until nobody says or does anything more.
-    fn reason_in_rounds(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn reason_in_rounds(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         let mut actions = Vec::new();
         loop {
             self.society.settle(cx.now, &mut actions);
@@ -109,17 +112,22 @@ impl<'p> Company<'p> {
     }
 
     /// The same, and how they stand then is noted.
-    fn reason(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn reason(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         let done = self.reason_in_rounds(cx);
         let Some(snapshots) = &mut self.snapshots else { return done };
         snapshots.note(cx.now, &self.society);
         done
     }
 
-    fn begin(&mut self, agent: usize, action: Action, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
-        let Action { token, event, args } = action;
+    fn begin(
+        &mut self,
+        agent: usize,
+        action: AgentAction,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
+        let AgentAction { token, event, args } = action;
         if !self.program.event(event).is_stimulus() {
-            cx.out.push(Message::Event { event, args });
+            cx.out.push(PlayerMessage::Event { event, args });
             self.society.stimulus_done(agent, token, cx.now);
             return Ok(());
         }
@@ -134,25 +142,25 @@ impl<'p> Company<'p> {
         Ok(())
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), HarnessError> {
         let what = match self.society.status() {
-            Status::Ready | Status::Waiting | Status::Idle => return Ok(()),
-            Status::Livelock => {
+            RunStatus::Ready | RunStatus::Waiting | RunStatus::Idle => return Ok(()),
+            RunStatus::Livelock => {
                 "livelock: at one instant its state repeats, so time can never pass".to_owned()
             }
-            Status::Endless => format!(
+            RunStatus::Endless => format!(
                 "cycle bound: more than {} cycles at one instant, without coming to rest",
                 self.society.cycle_limit()
             ),
-            Status::Overfull(_) => self.society.overfull().unwrap_or_default(),
-            Status::Malformed => {
+            RunStatus::Overfull(_) => self.society.overfull().unwrap_or_default(),
+            RunStatus::Malformed => {
                 self.society.fault().map_or_else(|| "cannot be run".to_owned(), ToString::to_string)
             }
         };
-        Err(Fault::Model(format!("agent `{}`: {what}", self.society.at_fault().join("`, `"))))
+        Err(HarnessError::Model(format!("agent `{}`: {what}", self.society.at_fault().join("`, `"))))
     }
 
-    fn wake(&mut self, agent: usize, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn wake(&mut self, agent: usize, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         let mut under_way = Vec::new();
         for (token, mut performance) in std::mem::take(&mut self.members[agent].performances) {
             performance.go_on(cx);
@@ -171,7 +179,12 @@ impl<'p> Company<'p> {
     }
 
     /// The first of them that hears of an event tells all whom it reaches.
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
         if self.heard == cx.delivery {
             return Ok(());
         }
@@ -193,7 +206,7 @@ impl<'p> Company<'p> {
 
 /// One agent of a company.
 pub struct AgentPlayer<'p> {
-    company: Rc<RefCell<Company<'p>>>,
+    company: Rc<RefCell<AgentCompany<'p>>>,
     agent: usize,
     actors: [ActorId; 1],
 }
@@ -201,7 +214,7 @@ pub struct AgentPlayer<'p> {
 impl<'p> AgentPlayer<'p> {
     /// The players of all agents of a company, in their order.
     #[must_use]
-    pub fn all(company: &Rc<RefCell<Company<'p>>>) -> Vec<Self> {
+    pub fn all(company: &Rc<RefCell<AgentCompany<'p>>>) -> Vec<Self> {
         let actors: Vec<ActorId> = company.borrow().members.iter().map(|m| m.actor).collect();
         let player = |(agent, actor)| Self { company: Rc::clone(company), agent, actors: [actor] };
         actors.into_iter().enumerate().map(player).collect()
@@ -213,11 +226,16 @@ impl Player for AgentPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.company.borrow_mut().wake(self.agent, cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
         self.company.borrow_mut().hear(event, args, cx)
     }
 

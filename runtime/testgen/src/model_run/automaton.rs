@@ -1,9 +1,9 @@
 //! The player that is a timed automaton: the model of the code, run as fast as its guards allow.
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, ta::AutomatonId};
-use hrdsl_ta::Player as Machine;
+use hrdsl_ta::VirtualTimePlayer as Machine;
 
-use hrdsl_harness::{Context, Fault, Message, Player};
+use hrdsl_harness::{HarnessError, Player, PlayerContext, PlayerMessage};
 
 pub struct AutomatonPlayer<'p> {
     program: &'p Program,
@@ -21,14 +21,14 @@ impl<'p> AutomatonPlayer<'p> {
         Self { program, name: &declared.name, actors: declared.actor.into_iter().collect(), machine }
     }
 
-    fn go_on(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn go_on(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         let mut sent = Vec::new();
         self.machine
             .run(cx.now, &mut sent)
-            .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;
+            .map_err(|e| HarnessError::Model(format!("automaton `{}`: {e}", self.name)))?;
         for (event, args) in sent {
             debug_assert!(self.actors.contains(&self.program.event(event).from));
-            cx.out.push(Message::Event { event, args });
+            cx.out.push(PlayerMessage::Event { event, args });
         }
         Ok(())
     }
@@ -39,14 +39,19 @@ impl Player for AutomatonPlayer<'_> {
         &self.actors
     }
 
-    fn wake(&mut self, cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.go_on(cx)
     }
 
-    fn hear(&mut self, event: EventId, args: &[Value], cx: &mut Context<'_, '_>) -> Result<(), Fault> {
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
         self.machine
             .receive(event, args, cx.now)
-            .map_err(|e| Fault::Model(format!("automaton `{}`: {e}", self.name)))?;
+            .map_err(|e| HarnessError::Model(format!("automaton `{}`: {e}", self.name)))?;
         self.go_on(cx)
     }
 

@@ -5,9 +5,9 @@ mod automaton;
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{CYCLE_LIMIT, Logged, Society, measure::Measured};
-pub use hrdsl_bdi::{Detail, Standing, Status, show};
-use hrdsl_harness::{Ended, Harness, Player, Run};
+use hrdsl_bdi::{CYCLE_LIMIT, LogItem, Society, measure::AgentCounts};
+pub use hrdsl_bdi::{IntentionSummary, LogDetail, RunStatus, show};
+use hrdsl_harness::{Harness, HarnessRun, Player, RunTermination};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, Fact},
@@ -15,8 +15,8 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::Trace;
 
-use agent::Snapshots;
-pub use agent::{AgentPlayer, Company, Snapshot};
+use agent::SnapshotLog;
+pub use agent::{AgentCompany, AgentPlayer, AgentSnapshot};
 pub use automaton::AutomatonPlayer;
 
 /// Entries of each agent's log that an inspection keeps.
@@ -25,9 +25,9 @@ const KEPT: usize = 200_000;
 /// What a model run yields.
 pub struct ModelRun {
     pub trace: Trace,
-    pub ended: Ended,
+    pub ended: RunTermination,
     /// What the run took of each agent's program, in the order of the agents.
-    pub measured: Vec<(AgentId, Measured)>,
+    pub measured: Vec<(AgentId, AgentCounts)>,
     /// What a user should know, each once: `Human: …`.
     pub warnings: Vec<String>,
     /// The agents' log, line by line, in the detail asked for.
@@ -44,7 +44,7 @@ pub struct LogLine {
     pub agent: String,
     /// 0: none
     pub intention: u32,
-    /// `tried`, `selected`, `step`, …: [`Logged::kind`].
+    /// `tried`, `selected`, `step`, …: [`LogItem::kind`].
     pub kind: &'static str,
     /// The event that a plan was looked for: `+!leg(1)`; `text` has it, too.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,57 +65,67 @@ impl LogLine {
 
 /// How a model is run.
 #[derive(Clone, Copy, Debug)]
-pub struct How {
+pub struct ModelRunOptions {
     /// Of `.random`.
     pub seed: u64,
     pub horizon: Nanos,
     /// Of the log.
-    pub detail: Detail,
+    pub detail: LogDetail,
     /// So many cycles of an agent at one instant end the run.
     pub cycles: u64,
 }
 
-impl How {
+impl ModelRunOptions {
     /// With the usual bound of cycles.
     #[must_use]
-    pub fn new(seed: u64, horizon: Nanos, detail: Detail) -> Self {
+    pub fn new(seed: u64, horizon: Nanos, detail: LogDetail) -> Self {
         Self { seed, horizon, detail, cycles: CYCLE_LIMIT }
     }
 }
 
 /// Runs the players together, the agents with these facts besides their own.
 #[must_use]
-pub fn model_run(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact)], how: &How) -> ModelRun {
-    let (company, run) = Cast { program, players, facts, how }.run(false);
-    told(&company.borrow(), run, how.detail)
+pub fn model_run(
+    program: &Program,
+    players: &[PlayerRef],
+    facts: &[(AgentId, Fact)],
+    options: &ModelRunOptions,
+) -> ModelRun {
+    let (company, run) = ModelCast { program, players, facts, options }.run(false);
+    told(&company.borrow(), run, options.detail)
 }
 
 /// A model run with all that there is to say about it.
-pub struct Inspection {
+pub struct ModelInspection {
     pub run: ModelRun,
     /// The agents' names, in their order.
     pub agents: Vec<String>,
     /// How the agents stood at the end of each instant at which they reasoned.
-    pub snapshots: Vec<Snapshot>,
+    pub snapshots: Vec<AgentSnapshot>,
     /// What each agent believes at the end.
     pub beliefs: Vec<Vec<String>>,
     /// How the agents stand together at the end.
-    pub status: Status,
+    pub status: RunStatus,
     /// How many entries of the logs were left out, since there are too many.
     pub left_out: u64,
 }
 
 /// Runs the players as [`model_run`] does, and looks at the agents at the end of each instant.
 #[must_use]
-pub fn inspect(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact)], how: &How) -> Inspection {
-    let (company, run) = Cast { program, players, facts, how }.run(true);
+pub fn inspect(
+    program: &Program,
+    players: &[PlayerRef],
+    facts: &[(AgentId, Fact)],
+    options: &ModelRunOptions,
+) -> ModelInspection {
+    let (company, run) = ModelCast { program, players, facts, options }.run(true);
     let mut company = company.borrow_mut();
     let snapshots = company.snapshots.take().unwrap_or_default();
-    let run = told(&company, run, how.detail);
+    let run = told(&company, run, options.detail);
     let society = &company.society;
     let snapshots = snapshots.finish(society);
     let agents: Vec<String> = society.names().map(str::to_owned).collect();
-    Inspection {
+    ModelInspection {
         run,
         snapshots,
         beliefs: (0..agents.len()).map(|agent| society.believed(agent)).collect(),
@@ -126,15 +136,15 @@ pub fn inspect(program: &Program, players: &[PlayerRef], facts: &[(AgentId, Fact
 }
 
 /// Who plays, with what.
-struct Cast<'p, 'a> {
+struct ModelCast<'p, 'a> {
     program: &'p Program,
     players: &'a [PlayerRef],
     facts: &'a [(AgentId, Fact)],
-    how: &'a How,
+    options: &'a ModelRunOptions,
 }
 
-impl<'p> Cast<'p, '_> {
-    fn run(&self, watch: bool) -> (Rc<RefCell<Company<'p>>>, Run) {
+impl<'p> ModelCast<'p, '_> {
+    fn run(&self, watch: bool) -> (Rc<RefCell<AgentCompany<'p>>>, HarnessRun) {
         let program = self.program;
         let agent = |player: &PlayerRef| match player {
             PlayerRef::Agent(id) => {
@@ -144,14 +154,14 @@ impl<'p> Cast<'p, '_> {
             PlayerRef::Automaton(_) => None,
         };
         let agents: Vec<(AgentId, Vec<Fact>)> = self.players.iter().filter_map(agent).collect();
-        let mut society = Society::with_detail(program, &agents, self.how.seed, self.how.detail);
-        society.set_cycle_limit(self.how.cycles);
+        let mut society = Society::with_detail(program, &agents, self.options.seed, self.options.detail);
+        society.set_cycle_limit(self.options.cycles);
         society.measure();
         if watch {
             society.keep_log(KEPT);
         }
-        let company = Company::new(program, society);
-        company.borrow_mut().snapshots = watch.then(Snapshots::default);
+        let company = AgentCompany::new(program, society);
+        company.borrow_mut().snapshots = watch.then(SnapshotLog::default);
         let mut members = AgentPlayer::all(&company).into_iter();
         let play = |player: &PlayerRef| -> Option<Box<dyn Player + 'p>> {
             match player {
@@ -160,31 +170,31 @@ impl<'p> Cast<'p, '_> {
             }
         };
         let cast = self.players.iter().filter_map(play).collect();
-        let run = Harness::new(program, cast, None, self.how.horizon).run();
+        let run = Harness::new(program, cast, None, self.options.horizon).run();
         (company, run)
     }
 }
 
-fn told(company: &Company<'_>, run: Run, detail: Detail) -> ModelRun {
-    let Run { trace, ended } = run;
+fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> ModelRun {
+    let HarnessRun { trace, ended } = run;
     let society = &company.society;
     let names: Vec<&str> = society.names().collect();
     let mut warnings: Vec<String> = Vec::new();
     let mut log = Vec::new();
     for (agent, entry) in society.log() {
         let origin = match &entry.what {
-            Logged::Failed(failure) => Some(failure.origin),
-            Logged::Fault { origin, .. } | Logged::Unhandled { origin, .. } => Some(*origin),
+            LogItem::Failed(failure) => Some(failure.origin),
+            LogItem::Fault { origin, .. } | LogItem::Unhandled { origin, .. } => Some(*origin),
             _ => None,
         };
         let is_warning = matches!(
             entry.what,
-            Logged::Fault { .. }
-                | Logged::FaultyAnswer { .. }
-                | Logged::StillHeld { .. }
-                | Logged::Refused { .. }
+            LogItem::Fault { .. }
+                | LogItem::FaultyAnswer { .. }
+                | LogItem::StillHeld { .. }
+                | LogItem::Refused { .. }
         );
-        if !is_warning && detail < Detail::Steps {
+        if !is_warning && detail < LogDetail::Steps {
             continue;
         }
         let text = society.describe(agent, entry);
@@ -194,7 +204,7 @@ fn told(company: &Company<'_>, run: Run, detail: Detail) -> ModelRun {
                 warnings.push(warning);
             }
         }
-        if detail >= Detail::Steps {
+        if detail >= LogDetail::Steps {
             let (time, round, cycle, intention) = (entry.time, entry.round, entry.cycle, entry.intention);
             let (kind, event) = (entry.what.kind(), society.event_of(agent, entry));
             let agent = names[agent].to_owned();

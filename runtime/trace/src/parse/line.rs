@@ -8,8 +8,8 @@ use serde::{
 };
 use serde_json::{Value as Json, value::RawValue};
 
-use super::Problem;
-use crate::{RunEnd, record::Ending};
+use super::problem::LineProblem;
+use crate::{RunEnd, record::RecordingEnd};
 
 /// The first line. Other programs may say more in it, which is skipped.
 #[derive(Deserialize)]
@@ -25,12 +25,12 @@ pub(super) struct HeaderLine {
 /// Any other line: a step or the end. Times stay text, since they must not become floats.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Line<'a> {
+pub(super) struct StepLine<'a> {
     #[serde(borrow)]
     pub t: Option<&'a RawValue>,
     #[serde(borrow)]
     pub event: Option<Cow<'a, str>>,
-    pub args: Option<Arguments>,
+    pub args: Option<JsonArguments>,
     #[serde(borrow)]
     pub signal: Option<Cow<'a, str>>,
     pub value: Option<Json>,
@@ -43,68 +43,68 @@ pub(super) struct Line<'a> {
 }
 
 /// An event's arguments in the order written, doubles included.
-pub(super) struct Arguments(pub Vec<(String, Json)>);
+pub(super) struct JsonArguments(pub Vec<(String, Json)>);
 
 impl HeaderLine {
-    pub fn read(text: &str) -> Result<Self, Problem> {
+    pub fn read(text: &str) -> Result<Self, LineProblem> {
         serde_json::from_str(text).map_err(|error| problem(&error))
     }
 }
 
-impl<'a> Line<'a> {
-    pub fn read(text: &'a str) -> Result<Self, Problem> {
+impl<'a> StepLine<'a> {
+    pub fn read(text: &'a str) -> Result<Self, LineProblem> {
         serde_json::from_str(text).map_err(|error| problem(&error))
     }
 
     /// How the run ended; fails if there is anything of a step.
-    pub fn ending(self) -> Result<Ending, Problem> {
+    pub fn ending(self) -> Result<RecordingEnd, LineProblem> {
         let more = self.t.is_some()
             || self.event.is_some()
             || self.args.is_some()
             || self.signal.is_some()
             || self.value.is_some();
         if more {
-            return Err(Problem::Form("the last line has `end`, `ended` and `error` only"));
+            return Err(LineProblem::Form("the last line has `end`, `ended` and `error` only"));
         }
-        let how = match &self.ended {
+        let kind = match &self.ended {
             None => RunEnd::default(),
-            Some(word) => RunEnd::of_word(word).ok_or_else(|| Problem::End(word.to_string()))?,
+            Some(word) => RunEnd::of_word(word).ok_or_else(|| LineProblem::End(word.to_string()))?,
         };
         let error = self.error.map(Cow::into_owned);
-        if error.is_some() && how != RunEnd::Error {
-            return Err(Problem::Form("a run has an `error` only if it `ended` in error"));
+        if error.is_some() && kind != RunEnd::Error {
+            return Err(LineProblem::Form("a run has an `error` only if it `ended` in error"));
         }
-        Ok(Ending { how, error })
+        Ok(RecordingEnd { kind, error })
     }
 }
 
 /// The parser sees one line only, so its own line number would mislead.
-fn problem(error: &serde_json::Error) -> Problem {
+fn problem(error: &serde_json::Error) -> LineProblem {
     let full = error.to_string();
     let message = full.rsplit_once(" at line ").map_or(full.as_str(), |(message, _)| message);
-    Problem::Json(format!("{message} (column {})", error.column()))
+    LineProblem::Json(format!("{message} (column {})", error.column()))
 }
 
-impl<'de> Deserialize<'de> for Arguments {
+impl<'de> Deserialize<'de> for JsonArguments {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Pairs;
+        struct ArgumentVisitor;
 
-        impl<'de> Visitor<'de> for Pairs {
-            type Value = Arguments;
+        impl<'de> Visitor<'de> for ArgumentVisitor {
+            type Value = JsonArguments;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("an object of arguments by name")
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Arguments, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<JsonArguments, A::Error> {
                 let mut pairs = Vec::new();
                 while let Some(pair) = map.next_entry()? {
                     pairs.push(pair);
                 }
-                Ok(Arguments(pairs))
+                Ok(JsonArguments(pairs))
             }
         }
 
-        deserializer.deserialize_map(Pairs)
+        deserializer.deserialize_map(ArgumentVisitor)
     }
 }

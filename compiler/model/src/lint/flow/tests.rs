@@ -9,12 +9,13 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    ActorId, Location, Type, Value, Var,
+    ActorId, Location, Place, Type, Value,
     lint::{
         facts::Facts,
         interval::tests::{VARS, condition, holds, number, run},
         overflow,
     },
+    types::starting_var,
 };
 
 const LOCATIONS: u16 = 3;
@@ -30,16 +31,20 @@ fn edge() -> impl Strategy<Value = Edge> {
             clock_guard: Vec::new(),
             guard,
             sync: Sync::Internal,
-            updates: updates.into_iter().map(|(i, e)| Update::Own(i, e)).collect(),
-            span: Span::default(),
+            updates: updates.into_iter().map(assign).collect(),
+            origin: Span::default(),
         },
     )
+}
+
+fn assign((own, value): (u16, Expr)) -> Update {
+    Update::Assign { place: Place::slot(Leaf::Own(own)), value }
 }
 
 fn automaton(mut edges: Vec<Edge>) -> Automaton {
     let updates = edges.iter_mut().flat_map(|e| &mut e.updates);
     for (at, update) in updates.enumerate() {
-        if let Update::Own(_, e) = update {
+        if let Update::Assign { value: e, .. } = update {
             e.span = Span::new(FileId(0), at, at);
         }
     }
@@ -48,20 +53,18 @@ fn automaton(mut edges: Vec<Edge>) -> Automaton {
         kind: LocationKind::Normal,
         invariant: Vec::new(),
         holds: None,
-        span: Span::default(),
+        origin: Span::default(),
     };
     let ty = Type::Int { lo: *RANGE.start(), hi: *RANGE.end() };
     Automaton {
         name: "A".to_owned(),
         actor: Some(ActorId(0)),
         clocks: Vec::new(),
-        vars: (0..VARS)
-            .map(|i| Var { name: format!("v{i}"), ty, init: Value::Int(0), span: Span::default() })
-            .collect(),
+        vars: (0..VARS).map(|i| starting_var(&format!("v{i}"), ty, Value::Int(0))).collect(),
         locations: (0..LOCATIONS).map(location).collect(),
         initial: LocationId(0),
         edges,
-        span: Span::default(),
+        origin: Span::default(),
     }
 }
 
@@ -92,7 +95,7 @@ fn explore(a: &Automaton) -> (BTreeSet<State>, BTreeSet<Span>) {
 /// The variables after an edge; `None`: one has no value, or one outside of its range.
 fn updated(edge: &Edge, mut values: Vec<i64>, out: &mut BTreeSet<Span>) -> Option<Vec<i64>> {
     for update in &edge.updates {
-        let Update::Own(i, e) = update else { continue };
+        let Update::Assign { place: Place { slot: Leaf::Own(i), .. }, value: e } = update else { continue };
         let Some(Value::Int(n)) = run(e, &values) else { return None };
         if !RANGE.contains(&n) {
             // A constant outside of the range is told by the checker.

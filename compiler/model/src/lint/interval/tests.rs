@@ -5,7 +5,6 @@ use hrdsl_source::Span;
 use proptest::prelude::*;
 
 use super::*;
-use crate::value;
 
 pub(crate) const VARS: usize = 3;
 
@@ -32,9 +31,9 @@ pub(crate) fn number() -> impl Strategy<Value = Expr> {
             (ops, two.clone())
                 .prop_map(|(op, (a, b))| expr(ExprKind::Binary(op, a.into(), b.into()), Kind::Int)),
             inner.clone().prop_map(|a| expr(ExprKind::Unary(UnaryOp::Neg, a.into()), Kind::Int)),
-            inner.clone().prop_map(|a| expr(ExprKind::Call(Function::Abs, vec![a]), Kind::Int)),
-            two.clone().prop_map(|(a, b)| expr(ExprKind::Call(Function::Min, vec![a, b]), Kind::Int)),
-            two.clone().prop_map(|(a, b)| expr(ExprKind::Call(Function::Max, vec![a, b]), Kind::Int)),
+            inner.clone().prop_map(|a| expr(ExprKind::Call(NumberFunction::Abs, vec![a]), Kind::Int)),
+            two.clone().prop_map(|(a, b)| expr(ExprKind::Call(NumberFunction::Min, vec![a, b]), Kind::Int)),
+            two.clone().prop_map(|(a, b)| expr(ExprKind::Call(NumberFunction::Max, vec![a, b]), Kind::Int)),
             (two, inner).prop_map(|((a, b), c)| {
                 let condition = expr(ExprKind::Binary(BinaryOp::Lt, a.clone().into(), b.into()), Kind::Bool);
                 expr(ExprKind::If(condition.into(), a.into(), c.into()), Kind::Int)
@@ -77,14 +76,14 @@ pub(crate) fn run(e: &Expr, own: &[i64]) -> Option<Value> {
         | ExprKind::Element(_)
         | ExprKind::Apply(..)
         | ExprKind::Error => None,
-        ExprKind::Unary(op, a) => value::unary(*op, run(a, own)?).ok(),
+        ExprKind::Unary(op, a) => hrdsl_ir::expr::unary(*op, run(a, own)?).ok(),
         ExprKind::Binary(BinaryOp::And, a, b) => Some(Value::Bool(truth(a)? && truth(b)?)),
         ExprKind::Binary(BinaryOp::Or, a, b) => Some(Value::Bool(truth(a)? || truth(b)?)),
-        ExprKind::Binary(op, a, b) => value::binary(*op, run(a, own)?, run(b, own)?).ok(),
+        ExprKind::Binary(op, a, b) => hrdsl_ir::expr::binary(*op, run(a, own)?, run(b, own)?).ok(),
         ExprKind::If(c, a, b) => run(if truth(c)? { a } else { b }, own),
         ExprKind::Call(f, args) => {
             let args: Option<Vec<Value>> = args.iter().map(|a| run(a, own)).collect();
-            value::call(*f, &args?).ok()
+            hrdsl_ir::expr::call(*f, &args?).ok()
         }
     }
 }

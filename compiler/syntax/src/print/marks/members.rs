@@ -1,9 +1,9 @@
-//! The members of agents, automata, suites, tests, systems and worlds.
+//! The members of agents, automata, suites, tests, systems, worlds and devices.
 
 use crate::ast::{
-    Access, AgentMember, AgentMemberKind, Ask, Automaton, AutomatonMember, AutomatonMemberKind, Edge,
-    EdgeActionKind, Function, Plan, Query, RuleOn, Statement, StatementKind, Step, StepKind, SuiteMemberKind,
-    SystemMemberKind, TestMemberKind, Var, WorldMember, WorldMemberKind,
+    Access, AgentMember, AgentMemberKind, Ask, Automaton, AutomatonMember, AutomatonMemberKind, DeviceMember,
+    DeviceMemberKind, Edge, EdgeActionKind, Function, Plan, Query, RuleOn, Statement, StatementKind, Step,
+    StepKind, SuiteMemberKind, SystemMemberKind, TestMemberKind, Var, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, Marker};
 use crate::token::Kind;
@@ -340,12 +340,23 @@ impl Marker<'_> {
             WorldMemberKind::Rule(rule) => {
                 match &rule.on {
                     RuleOn::Event(call) => self.call(call),
-                    RuleOn::Closes(_) | RuleOn::Opens(_) => {}
+                    RuleOn::Commanded { .. } => {}
                 }
                 self.maybe(rule.when.as_ref());
                 self.call(&rule.emit);
             }
             WorldMemberKind::Current { .. } | WorldMemberKind::Allow(_) | WorldMemberKind::Error => {}
+        }
+    }
+
+    pub(super) fn device_member(&mut self, member: &DeviceMember) {
+        self.start(member.span.start);
+        match &member.kind {
+            DeviceMemberKind::Command(command) => {
+                self.call_after(command.name.span.end);
+                command.params.iter().for_each(|p| self.param(&p.param));
+            }
+            DeviceMemberKind::Error => {}
         }
     }
 }

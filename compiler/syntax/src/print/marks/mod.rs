@@ -146,6 +146,7 @@ impl Marker<'_> {
             ItemKind::Cross(_)
             | ItemKind::Suite(_)
             | ItemKind::Part(_)
+            | ItemKind::Device(_)
             | ItemKind::World(_)
             | ItemKind::System(_)
             | ItemKind::Test(_) => {
@@ -173,6 +174,9 @@ impl Marker<'_> {
         if let ItemKind::Part(part) = kind {
             self.params(part.name.span.end, part.params.as_deref().unwrap_or_default());
             part.members.iter().for_each(|m| self.world_member(m));
+        }
+        if let ItemKind::Device(device) = kind {
+            device.members.iter().for_each(|m| self.device_member(m));
         }
         if let ItemKind::World(world) = kind {
             world.members.iter().for_each(|m| self.world_member(m));

@@ -13,7 +13,7 @@ const PROCESSES: usize = 3;
 struct Shot {
     who: Vec<u16>,
     bounds: Vec<ClockBound>,
-    sets: Vec<Set>,
+    sets: Vec<ClockAssignment>,
     /// Upper bounds that hold from then on; those on clocks that are set are not below what they are set to.
     invariant: Vec<ClockBound>,
     /// Time passes for these afterwards.
@@ -39,18 +39,18 @@ fn shot(strict: bool) -> impl Strategy<Value = Shot> {
         bounds.retain(|b| of(b.clock));
         let upper = |&(clock, c): &(u16, i64)| ClockBound { clock, upper: true, bound: le(c).unwrap() };
         let invariant: Vec<_> = invariant.iter().filter(|i| of(i.0)).map(upper).collect();
-        let set = |(clock, (from, by)): (u16, (Option<u16>, i64))| Set {
+        let set = |(clock, (from, by)): (u16, (Option<u16>, i64))| ClockAssignment {
             clock,
             from: from.filter(|y| of(*y)),
             by: le(by).unwrap(),
         };
-        let sets: Vec<Set> = sets.into_iter().filter(|s| of(s.0)).map(set).collect();
+        let sets: Vec<ClockAssignment> = sets.into_iter().filter(|s| of(s.0)).map(set).collect();
         // Where a clock's value is from must meet the invariant that it enters.
         for i in &invariant {
             let (clock, by) = match sets.iter().find(|s| s.clock == i.clock) {
                 None => (i.clock, ZERO),
-                Some(Set { from: Some(y), by, .. }) => (*y, *by),
-                Some(Set { from: None, .. }) => continue,
+                Some(ClockAssignment { from: Some(y), by, .. }) => (*y, *by),
+                Some(ClockAssignment { from: None, .. }) => continue,
             };
             bounds.push(ClockBound { clock, upper: true, bound: plus(i.bound, 2 - by) });
         }
@@ -64,7 +64,7 @@ fn own(invariant: &[ClockBound], process: u16) -> Vec<ClockBound> {
 }
 
 fn fire(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
-    let mut meeting = Meeting::default();
+    let mut meeting = MeetingBounds::default();
     if !meeting.of(zone, &shot.who, &shot.bounds).unwrap() {
         return None;
     }
@@ -210,13 +210,13 @@ proptest! {
             let next = fire(&zone, s);
             prop_assert_eq!(&next, &fire_slowly(&zone, s));
             zone = next.unwrap_or(zone);
-            let any = zone.synchronised(&[0, 1, 2, 3], &mut Meeting::default(), &mut out).unwrap();
+            let any = zone.synchronised(&[0, 1, 2, 3], &mut MeetingBounds::default(), &mut out).unwrap();
             prop_assert_eq!(any.then(|| out.clone()), synchronise_slowly(&zone));
             // What is forgotten leaves the rest as it is.
             let mut less = zone.clone();
             less.forget(&[0, 2]);
             let mut two = Vec::new();
-            prop_assert_eq!(less.synchronised(&[0, 2], &mut Meeting::default(), &mut two).unwrap(), any);
+            prop_assert_eq!(less.synchronised(&[0, 2], &mut MeetingBounds::default(), &mut two).unwrap(), any);
             let all = [0, 1, 3].into_iter().flat_map(|i| [0, 1, 3].map(|j| i * 5 + j));
             prop_assert!(!any || all.zip(&two).all(|(at, b)| out[at] == *b));
             let closed = { let mut d = less.d.clone(); close(&mut d, 7); d };
@@ -231,10 +231,10 @@ proptest! {
             let start = LocalZone::start(PROCESSES, 4);
             let end = shots.iter().fold(start, |z, s| fire(&z, s).unwrap_or(z));
             let mut out = Vec::new();
-            end.synchronised(&[0, 1, 2, 3], &mut Meeting::default(), &mut out).unwrap().then_some(out)
+            end.synchronised(&[0, 1, 2, 3], &mut MeetingBounds::default(), &mut out).unwrap().then_some(out)
         };
         let (Some(a), Some(b)) = (zone(&a), zone(&b)) else { return Ok(()) };
-        let lu = |lower, upper| [Lu { lower, upper }; 4];
+        let lu = |lower, upper| [LocalLuBounds { lower, upper }; 4];
         let includes = a.iter().zip(&b).all(|(a, b)| a <= b);
         let far = lu(lt(-1000).unwrap(), le(-1000).unwrap());
         prop_assert_eq!(is_simulated(&a, &b, &far), includes);
@@ -256,7 +256,7 @@ proptest! {
         for s in &shots {
             // Copies as they are, so that time stamps stay where they are looked for.
             let mut s = s.clone();
-            let lasts = |s: &Set| s.clock == 3 || s.from == Some(3);
+            let lasts = |s: &ClockAssignment| s.clock == 3 || s.from == Some(3);
             s.invariant.retain(|b| s.sets.iter().all(|s| s.clock != b.clock || !lasts(s)));
             s.sets.retain(|s| !lasts(s));
             s.sets.iter_mut().filter(|s| s.from.is_some()).for_each(|s| s.by = ZERO);
@@ -282,7 +282,7 @@ proptest! {
             }
             prop_assert_eq!(&members, &points);
             let mut out = Vec::new();
-            let any = zone.synchronised(&[0, 1, 2, 3], &mut Meeting::default(), &mut out).unwrap();
+            let any = zone.synchronised(&[0, 1, 2, 3], &mut MeetingBounds::default(), &mut out).unwrap();
             for p in points.iter().filter(|p| p[0] == p[1] && p[1] == p[2]) {
                 prop_assert!(any);
                 let v = |i: usize| if i == 0 { 0 } else { value(p, i - 1) };

@@ -1,0 +1,98 @@
+//! Files and streams: text that is read, text that is written.
+
+use std::{
+    fs,
+    io::{Read, Write},
+    path::{Path, PathBuf},
+};
+
+use crate::{fault::Fault, terminal};
+
+/// Reads a text file.
+///
+/// # Errors
+/// The file's name and what is wrong with it.
+pub fn read(path: &Path) -> Result<String, Fault> {
+    let fault = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => format!("no such file: {}", terminal::shown(path)),
+        _ => format!("cannot read {}: {e}", terminal::shown(path)),
+    };
+    let mut bytes = Vec::new();
+    // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.
+    fs::File::open(path)
+        .and_then(|file| file.take(hrdsl_compiler::MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
+        .map_err(fault)?;
+    text(bytes, &terminal::shown(path))
+}
+
+/// Reads all of stdin.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_stdin() -> Result<String, Fault> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .map_err(|e| format!("cannot read standard input: {e}"))?;
+    text(bytes, "standard input")
+}
+
+fn text(bytes: Vec<u8>, name: &str) -> Result<String, Fault> {
+    String::from_utf8(bytes)
+        .map_err(|e| format!("{name} is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()))
+}
+
+/// Writes a file, and the folders above it.
+///
+/// # Errors
+/// The file's name and what is wrong.
+pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(fault)?;
+    }
+    fs::write(path, text).map_err(fault)
+}
+
+/// Puts another text in a file's place, all of it or nothing: it is written beside the file, and renamed.
+///
+/// # Errors
+/// The file's name and what is wrong.
+pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
+    let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
+    // Of a link, what it leads to is replaced.
+    let target = path.canonicalize().map_err(fault)?;
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let beside = target.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+    let written = (|| {
+        let mut file = fs::File::create_new(&beside)?;
+        file.write_all(text.as_bytes())?;
+        file.set_permissions(fs::metadata(&target)?.permissions())?;
+        file.sync_all()?;
+        fs::rename(&beside, &target)
+    })();
+    written.map_err(|e| {
+        // What is left of the attempt is of no use; that it cannot be removed changes nothing.
+        let _ = fs::remove_file(&beside);
+        fault(e)
+    })
+}
+
+/// A document as JSON, for people to read and machines to parse.
+///
+/// # Errors
+/// A number that JSON cannot hold.
+pub fn json(document: &impl serde::Serialize) -> Result<String, Fault> {
+    serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(|e| format!("cannot print: {e}"))
+}
+
+/// The folder of a scenario, where its robot code is.
+#[must_use]
+pub fn folder(scenario: &Path) -> PathBuf {
+    match scenario.parent() {
+        Some(folder) if folder.as_os_str().is_empty() => PathBuf::from("."),
+        Some(folder) => folder.to_owned(),
+        None => PathBuf::from("."),
+    }
+}

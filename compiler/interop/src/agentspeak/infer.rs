@@ -1,0 +1,330 @@
+//! Which values meet where: walks all programs, fact by fact, plan by plan, step by step. What does not fit with what came
+//! before is left out alone.
+
+use hrdsl_source::Span;
+use indexmap::IndexMap;
+
+use super::{
+    ast::{Item, ItemKind, Key, Literal, Op, Plan, Step, StepKind, Term, TermKind, TriggerKind},
+    internal,
+    system::System,
+    term::{Reason, literal, valued},
+    types::{Ty, TyId, Types},
+};
+
+/// The types of a system, and what is left out: the place of a fact, rule, plan or step, and why.
+#[derive(Debug, Default)]
+pub struct Inferred {
+    pub types: Types,
+    pub left_out: IndexMap<Span, Reason>,
+}
+
+/// Infers the types of all programs.
+pub fn infer(system: &System) -> Inferred {
+    let mut types = Types::default();
+    types.agents = system.agents.iter().map(|a| a.name.clone()).collect();
+    let mut walk = Walk { types, left_out: IndexMap::new(), vars: IndexMap::new() };
+    // Facts say most surely what a belief is about, then rules.
+    for rank in 0..3 {
+        for agent in &system.agents {
+            for belief in agent.beliefs.iter().filter(|_| rank == 0) {
+                walk.alone(belief.span, |w| w.belief(belief));
+            }
+            for goal in agent.goals.iter().filter(|_| rank == 2) {
+                walk.alone(goal.span, |w| w.goal(goal));
+            }
+        }
+        for item in system.programs.iter().flat_map(|p| &p.items) {
+            walk.item(item, rank);
+        }
+    }
+    if let Err(clash) = walk.types.settle_concats(true) {
+        // What is open to the end concerns no declared place, or else it is said where it is written.
+        walk.left_out.entry(Span::default()).or_insert(clash);
+    }
+    Inferred { types: walk.types, left_out: walk.left_out }
+}
+
+pub struct Walk {
+    pub types: Types,
+    left_out: IndexMap<Span, Reason>,
+    /// The variables of the present clause.
+    vars: IndexMap<String, TyId>,
+}
+
+impl Walk {
+    /// Tries something; if it does not fit, all is as before, and the place is left out.
+    fn attempt(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), Reason>) -> bool {
+        let (before, vars) = (self.types.mark(), self.vars.len());
+        let result = what(self).and_then(|()| self.types.settle_concats(false));
+        let Err(reason) = result else { return true };
+        self.types.back(before);
+        self.vars.truncate(vars);
+        self.left_out.entry(span).or_insert(reason);
+        false
+    }
+
+    fn alone(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), Reason>) {
+        self.vars.clear();
+        self.attempt(span, what);
+    }
+
+    fn item(&mut self, item: &Item, rank: usize) {
+        match (&item.kind, rank) {
+            (ItemKind::Belief(b), 0) => self.alone(item.span, |w| w.belief(b)),
+            (ItemKind::Rule { head, body }, 1) => self.alone(item.span, |w| {
+                w.belief(head)?;
+                w.formula(body)
+            }),
+            (ItemKind::Goal(goal), 2) => self.alone(item.span, |w| w.goal(literal(goal)?)),
+            (ItemKind::Plan(plan), 2) => self.plan(plan, item.span),
+            (
+                ItemKind::Belief(_)
+                | ItemKind::Rule { .. }
+                | ItemKind::Goal(_)
+                | ItemKind::Plan(_)
+                | ItemKind::Skipped(_),
+                _,
+            ) => {}
+        }
+    }
+
+    fn plan(&mut self, plan: &Plan, span: Span) {
+        self.vars.clear();
+        let fits = self.attempt(span, |w| {
+            let of = literal(&plan.trigger.of).map_err(|_| "the trigger is a variable".to_owned())?;
+            match plan.trigger.kind {
+                TriggerKind::State => return Err("hrdsl has no events `^!`".to_owned()),
+                TriggerKind::Achieve | TriggerKind::Failed => w.goal(of)?,
+                TriggerKind::Added | TriggerKind::Removed | TriggerKind::Test | TriggerKind::TestFailed => {
+                    w.belief(of)?;
+                }
+            }
+            plan.context.as_ref().map_or(Ok(()), |c| w.formula(c))
+        });
+        if fits {
+            self.steps(&plan.body);
+        }
+    }
+
+    fn steps(&mut self, steps: &[Step]) {
+        for step in steps {
+            if self.attempt(step.span, |w| w.step(step)) {
+                self.within(step);
+            }
+        }
+    }
+
+    /// The steps within a step.
+    fn within(&mut self, step: &Step) {
+        match &step.kind {
+            StepKind::If { then, otherwise, .. } => {
+                self.steps(then);
+                self.steps(otherwise);
+            }
+            StepKind::While { body, .. } | StepKind::For { body, .. } | StepKind::Block(body) => {
+                self.steps(body)
+            }
+            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| self.steps(b)),
+            StepKind::Action(action) if action.functor == ".fork" => {
+                for arg in &action.args {
+                    if let TermKind::Body(body) = &arg.kind {
+                        self.steps(body);
+                    }
+                }
+            }
+            StepKind::Achieve(_)
+            | StepKind::Spawn(_)
+            | StepKind::Query(_)
+            | StepKind::Add(..)
+            | StepKind::Remove(_)
+            | StepKind::Replace(_)
+            | StepKind::Action(_)
+            | StepKind::Formula(_) => {}
+        }
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), Reason> {
+        match &step.kind {
+            StepKind::Achieve(of) | StepKind::Spawn(of) => self.goal(literal(of)?),
+            StepKind::Query(of) | StepKind::Formula(of) => self.formula(of),
+            StepKind::Add(of, _) | StepKind::Remove(of) | StepKind::Replace(of) => self.belief_or_var(of),
+            StepKind::Action(action) if action.is_internal() => internal::infer(self, action),
+            StepKind::Action(action) => {
+                if action.negated {
+                    return Err("an action cannot be negated".to_owned());
+                }
+                let places = self.types.action(&action.key());
+                self.args(&action.args, &places)
+            }
+            StepKind::If { condition, .. }
+            | StepKind::While { condition, .. }
+            | StepKind::For { condition, .. } => self.formula(condition),
+            StepKind::Fork { .. } | StepKind::Block(_) => Ok(()),
+        }
+    }
+
+    /// `+X`: a variable that holds a structure stands for the belief of that name.
+    fn belief_or_var(&mut self, of: &Term) -> Result<(), Reason> {
+        let TermKind::Var { .. } = &of.kind else { return self.belief(literal(of)?) };
+        let id = self.term(of)?;
+        let Ty::Struct(functor, args) = self.types.get(id).clone() else {
+            return Err("which belief this is about is known only when it runs".to_owned());
+        };
+        let places = self.types.belief(&(functor, args.len()));
+        args.into_iter().zip(places).try_for_each(|(a, p)| self.types.unify(a, p))
+    }
+
+    pub fn belief(&mut self, of: &Literal) -> Result<(), Reason> {
+        if of.is_internal() {
+            return Err(format!("`{}` is no belief", of.functor));
+        }
+        let key = of.key();
+        let places = self.types.belief(&key);
+        self.args(&of.args, &places)?;
+        self.annotations(of, Some(&key))
+    }
+
+    pub fn goal(&mut self, of: &Literal) -> Result<(), Reason> {
+        if of.negated || of.is_internal() {
+            return Err("this is no goal that a scenario can have".to_owned());
+        }
+        let places = self.types.goal(&of.key());
+        self.args(&of.args, &places)?;
+        self.annotations(of, None)
+    }
+
+    /// Only annotations with one value have a type; others are dropped where they are written.
+    fn annotations(&mut self, of: &Literal, belief: Option<&Key>) -> Result<(), Reason> {
+        for annotation in &of.annotations {
+            let Some((name, value)) = valued(annotation) else { continue };
+            if belief.is_none() && name != "source" {
+                continue;
+            }
+            let none = (String::new(), 0);
+            let place = self.types.annotation(belief.unwrap_or(&none), name);
+            let id = self.term(value)?;
+            self.types.unify(place, id)?;
+        }
+        Ok(())
+    }
+
+    pub fn args(&mut self, args: &[Term], places: &[TyId]) -> Result<(), Reason> {
+        for (arg, place) in args.iter().zip(places) {
+            let id = self.term(arg)?;
+            self.types.unify(*place, id)?;
+        }
+        Ok(())
+    }
+
+    pub fn formula(&mut self, of: &Term) -> Result<(), Reason> {
+        match &of.kind {
+            TermKind::Bool(_) => Ok(()),
+            TermKind::Literal(l) if l.is_internal() => internal::infer(self, l),
+            TermKind::Literal(l) => self.belief(l),
+            TermKind::Not(inner) => self.formula(inner),
+            TermKind::Binary { op: Op::And | Op::Or, left, right } => {
+                self.formula(left)?;
+                self.formula(right)
+            }
+            TermKind::Binary { op: Op::Univ, .. } => Err("hrdsl has no `=..`".to_owned()),
+            TermKind::Binary { op, left, right } if op.is_relation() => {
+                let (l, r) = (self.term(left)?, self.term(right)?);
+                self.types.unify(l, r)?;
+                if matches!(op, Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual) {
+                    let number = self.types.number(false);
+                    self.types.unify(l, number)?;
+                }
+                Ok(())
+            }
+            TermKind::Var { .. } => Err("a variable cannot stand for a formula".to_owned()),
+            TermKind::Int(_)
+            | TermKind::Float(_)
+            | TermKind::Text(_)
+            | TermKind::Any
+            | TermKind::List { .. }
+            | TermKind::Neg(_)
+            | TermKind::Binary { .. }
+            | TermKind::Body(_)
+            | TermKind::Trigger(_)
+            | TermKind::Plan => Err("this is no formula".to_owned()),
+        }
+    }
+
+    /// The class of a term.
+    pub fn term(&mut self, of: &Term) -> Result<TyId, Reason> {
+        let id = match &of.kind {
+            TermKind::Int(_) => self.types.number(false),
+            TermKind::Float(_) => self.types.number(true),
+            TermKind::Text(_) => self.types.add(Ty::Text),
+            TermKind::Bool(_) => self.types.add(Ty::Bool),
+            TermKind::Any => self.types.fresh(),
+            TermKind::Var { name, annotations } => {
+                if !annotations.is_empty() {
+                    return Err("a variable with annotations stands for a literal".to_owned());
+                }
+                match self.vars.get(name) {
+                    Some(id) => *id,
+                    None => {
+                        let id = self.types.fresh();
+                        self.vars.insert(name.clone(), id);
+                        id
+                    }
+                }
+            }
+            TermKind::Literal(l) => self.structure(l)?,
+            TermKind::List { items, rest } => {
+                let element = self.types.fresh();
+                for item in items {
+                    let id = self.term(item)?;
+                    self.types.unify(element, id)?;
+                }
+                let list = self.types.add(Ty::List(element));
+                if let Some(rest) = rest {
+                    let id = self.term(rest)?;
+                    self.types.unify(list, id)?;
+                }
+                list
+            }
+            TermKind::Neg(inner) => {
+                let number = self.types.number(false);
+                let id = self.term(inner)?;
+                self.types.unify(id, number)?;
+                id
+            }
+            TermKind::Binary { op, left, right } if op.is_arithmetic() => {
+                let number = self.types.number(*op == Op::Div);
+                for side in [left, right] {
+                    let id = self.term(side)?;
+                    // What is divided may be whole, and the result is none.
+                    let expected = if *op == Op::Div { self.types.number(false) } else { number };
+                    self.types.unify(expected, id)?;
+                }
+                number
+            }
+            TermKind::Not(_) | TermKind::Binary { .. } => {
+                return Err("a formula stands where a value should".to_owned());
+            }
+            TermKind::Body(_) | TermKind::Trigger(_) | TermKind::Plan => {
+                return Err("plans and steps are no values".to_owned());
+            }
+        };
+        self.types.record(of.span, id)?;
+        Ok(id)
+    }
+
+    fn structure(&mut self, of: &Literal) -> Result<TyId, Reason> {
+        if of.negated || !of.annotations.is_empty() {
+            return Err("a literal with `~` or annotations is no value".to_owned());
+        }
+        if of.is_internal() {
+            return internal::infer_function(self, of);
+        }
+        if of.args.is_empty() {
+            let names = [of.functor.clone()].into_iter().collect();
+            return Ok(self.types.add(Ty::Atoms { names, agent: false }));
+        }
+        let args = of.args.iter().map(|a| self.term(a)).collect::<Result<Vec<_>, _>>()?;
+        Ok(self.types.add(Ty::Struct(of.functor.clone(), args)))
+    }
+}

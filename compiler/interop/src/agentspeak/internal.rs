@@ -1,0 +1,216 @@
+//! The internal actions: what their arguments must be. How they are written is in `write::internal`.
+
+use super::{
+    ast::{Literal, Term, TermKind},
+    infer::Walk,
+    term::{Message, Reason, atom, literal, message, performative},
+    types::{Ty, TyId},
+};
+
+/// The types of an internal action's arguments.
+#[expect(clippy::too_many_lines, reason = "a flat match")]
+pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
+    if of.negated {
+        return Err("an internal action cannot be negated".to_owned());
+    }
+    let number = |walk: &mut Walk, t: &Term| {
+        let number = walk.types.number(false);
+        same(walk, t, number)
+    };
+    match (of.functor.as_str(), of.args.as_slice()) {
+        (".print" | ".println", args) => args.iter().try_for_each(|a| printed(walk, a)),
+        (".send" | ".broadcast", _) => sent(walk, &message(of)?),
+        (".findall" | ".setof", [template, formula, list]) => {
+            let of = walk.term(template)?;
+            walk.formula(formula)?;
+            let expected = walk.types.add(Ty::List(of));
+            same(walk, list, expected)
+        }
+        (".count", [formula, n]) => {
+            walk.formula(formula)?;
+            number(walk, n)
+        }
+        (".length", [list, n]) => {
+            walk.term(list)?;
+            number(walk, n)
+        }
+        (".member", [element, list]) | (".min" | ".max" | ".random", [list, element]) => {
+            in_list(walk, element, list)
+        }
+        (".nth", [index, list, element]) => {
+            number(walk, index)?;
+            in_list(walk, element, list)
+        }
+        (".concat", [args @ .., result]) if args.len() > 1 => {
+            let args = args.iter().map(|a| walk.term(a)).collect::<Result<Vec<TyId>, _>>()?;
+            let result = walk.term(result)?;
+            walk.types.concats.push((args, result));
+            Ok(())
+        }
+        (".reverse", [a, b]) | (".prefix" | ".suffix" | ".sublist", [a, b]) => {
+            let id = walk.term(a)?;
+            same(walk, b, id)
+        }
+        (".sort" | ".shuffle", [a, b]) => lists(walk, &[a, b]),
+        (".union" | ".intersection" | ".difference", [a, b, c]) => lists(walk, &[a, b, c]),
+        (".delete", [element, a, b]) => {
+            let id = walk.term(element)?;
+            if matches!(walk.types.get(id), Ty::Number { .. }) {
+                return Err("with a number `.delete` takes away what is at that place".to_owned());
+            }
+            in_list(walk, element, a)?;
+            lists(walk, &[a, b])
+        }
+        (".empty", [list]) => walk.term(list).map(|_| ()),
+        (".term2string", [value, text]) => {
+            walk.term(value)?;
+            let expected = walk.types.add(Ty::Text);
+            same(walk, text, expected)
+        }
+        (".random", [x]) => {
+            let float = walk.types.number(true);
+            same(walk, x, float)
+        }
+        (".range", [a, b, c]) => [a, b, c].into_iter().try_for_each(|t| number(walk, t)),
+        (".my_name", [a]) => {
+            let agent = walk.types.agent();
+            same(walk, a, agent)
+        }
+        (".all_names", [list]) => {
+            let agent = walk.types.agent();
+            let expected = walk.types.add(Ty::List(agent));
+            same(walk, list, expected)
+        }
+        (".wait", args) => waited(walk, args),
+        (
+            ".intend" | ".desire" | ".suspended" | ".drop_intention" | ".drop_desire" | ".drop_event"
+            | ".succeed_goal" | ".fail_goal" | ".suspend" | ".resume",
+            [goal],
+        ) => walk.goal(literal(goal)?),
+        (".abolish", [belief]) => walk.belief(literal(belief)?),
+        (".drop_all_intentions" | ".drop_all_desires" | ".drop_all_events" | ".suspend", [])
+        | (".fail", _) => Ok(()),
+        (".fork", [kind, bodies @ ..])
+            if matches!(atom(kind), Some("and" | "or"))
+                && bodies.len() > 1
+                && bodies.iter().all(|b| matches!(b.kind, TermKind::Body(_))) =>
+        {
+            Ok(())
+        }
+        (name, args) => {
+            Err(format!("hrdsl has no internal action like `{name}` with {} arguments", args.len()))
+        }
+    }
+}
+
+/// Functions in expressions.
+pub fn infer_function(walk: &mut Walk, of: &Literal) -> Result<TyId, Reason> {
+    match (of.functor.as_str(), of.args.as_slice()) {
+        ("math.abs", [_]) | ("math.min" | "math.max", [_, _]) => {
+            let number = walk.types.number(false);
+            of.args.iter().try_for_each(|a| same(walk, a, number))?;
+            Ok(number)
+        }
+        (name, _) => Err(format!("hrdsl has no function like `{name}`")),
+    }
+}
+
+fn same(walk: &mut Walk, of: &Term, expected: TyId) -> Result<(), Reason> {
+    let id = walk.term(of)?;
+    walk.types.unify(expected, id)
+}
+
+fn in_list(walk: &mut Walk, element: &Term, list: &Term) -> Result<(), Reason> {
+    let of = walk.term(element)?;
+    let expected = walk.types.add(Ty::List(of));
+    same(walk, list, expected)
+}
+
+fn lists(walk: &mut Walk, all: &[&Term]) -> Result<(), Reason> {
+    let of = walk.types.fresh();
+    let expected = walk.types.add(Ty::List(of));
+    all.iter().try_for_each(|t| same(walk, t, expected))
+}
+
+/// What is printed has any type; atoms and structures are printed as text.
+fn printed(walk: &mut Walk, of: &Term) -> Result<(), Reason> {
+    match &of.kind {
+        TermKind::Literal(l) if !l.is_internal() => l.args.iter().try_for_each(|a| printed(walk, a)),
+        _ => walk.term(of).map(|_| ()),
+    }
+}
+
+fn sent(walk: &mut Walk, message: &Message<'_>) -> Result<(), Reason> {
+    if let Some(to) = message.to {
+        match atom(to) {
+            Some(name) if !walk.types.is_agent(name) => return Err(format!("no agent is called `{name}`")),
+            Some(_) if matches!(to.kind, TermKind::Text(_)) => {}
+            _ => {
+                let id = walk.term(to)?;
+                let mut expected = walk.types.agent();
+                if matches!(walk.types.get(id), Ty::List(_)) {
+                    expected = walk.types.add(Ty::List(expected));
+                }
+                walk.types.unify(id, expected)?;
+            }
+        }
+    }
+    let content = literal(message.content)
+        .map_err(|_| "what the message says is known only when it runs".to_owned())?;
+    if performative(message.performative) == Some(true) {
+        return walk.goal(content);
+    }
+    walk.belief(content)?;
+    if let Some(time) = message.rest.get(1) {
+        let number = walk.types.number(false);
+        same(walk, time, number)?;
+    }
+    match message.rest.first() {
+        Some(answer) => answered(walk, message.performative, content, answer),
+        None => Ok(()),
+    }
+}
+
+/// The answer is the literal, with values; or a list of such.
+fn answered(walk: &mut Walk, performative: &str, content: &Literal, answer: &Term) -> Result<(), Reason> {
+    let places = walk.types.belief(&content.key());
+    let one = if places.is_empty() {
+        let names = [content.functor.clone()].into_iter().collect();
+        walk.types.add(Ty::Atoms { names, agent: false })
+    } else {
+        walk.types.add(Ty::Struct(content.functor.clone(), places))
+    };
+    if performative == "askAll" {
+        let expected = walk.types.add(Ty::List(one));
+        return same(walk, answer, expected);
+    }
+    match &answer.kind {
+        TermKind::Literal(l) => {
+            // Who answered is no part of the value.
+            let plain = Literal { annotations: Vec::new(), ..l.clone() };
+            same(walk, &Term { kind: TermKind::Literal(plain), span: answer.span }, one)
+        }
+        _ => same(walk, answer, one),
+    }
+}
+
+fn waited(walk: &mut Walk, args: &[Term]) -> Result<(), Reason> {
+    let Some((what, rest)) = args.split_first() else { return Err("`.wait` has no argument".to_owned()) };
+    for time in rest {
+        let number = walk.types.number(false);
+        same(walk, time, number)?;
+    }
+    match &what.kind {
+        TermKind::Trigger(t) if t.kind == super::ast::TriggerKind::Added => walk.belief(literal(&t.of)?),
+        TermKind::Trigger(_) | TermKind::Text(_) => {
+            Err("hrdsl cannot wait for this; it waits for a time, a belief or an event".to_owned())
+        }
+        TermKind::Literal(l) if !l.is_internal() => walk.belief(l),
+        TermKind::Not(_) => walk.formula(what),
+        TermKind::Binary { op, .. } if !op.is_arithmetic() => walk.formula(what),
+        _ => {
+            let number = walk.types.number(false);
+            same(walk, what, number)
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! All agents and their programs: what every step after reading starts from.
+
+use hrdsl_source::{Files, Span};
+
+use super::{
+    ast::{Literal, Program},
+    parse::place,
+};
+
+/// One agent of the system.
+#[derive(Debug)]
+pub(crate) struct Entry {
+    pub name: String,
+    /// Index into [`System::programs`].
+    pub program: usize,
+    /// What the project gives it besides its program.
+    pub beliefs: Vec<Literal>,
+    pub goals: Vec<Literal>,
+}
+
+/// All agents and their programs.
+#[derive(Debug, Default)]
+pub(crate) struct System {
+    pub name: String,
+    pub files: Files,
+    pub programs: Vec<Program>,
+    pub agents: Vec<Entry>,
+    pub skipped: Vec<(Span, String)>,
+}
+
+impl System {
+    /// The comment at the place of something that is left out, with its text.
+    pub fn comment(&self, span: Span, reason: &str) -> String {
+        let (file, line, _) = place(&self.files, span);
+        let mut comment = format!("// not carried over: {file}:{line}: {reason}");
+        for line in self.files.text(span).lines().filter(|l| !l.trim().is_empty()) {
+            comment += &format!("\n//   {}", line.trim().replace('\t', " "));
+        }
+        comment
+    }
+}

@@ -1,0 +1,84 @@
+//! What a term is: a literal, an atom, an annotation with a value, a message.
+
+use super::ast::{Literal, Term, TermKind};
+
+/// Why something cannot be carried over.
+pub type Reason = String;
+
+/// The literal that a term is.
+pub fn literal(of: &Term) -> Result<&Literal, Reason> {
+    match &of.kind {
+        TermKind::Literal(l) => Ok(l),
+        TermKind::Int(_)
+        | TermKind::Float(_)
+        | TermKind::Text(_)
+        | TermKind::Bool(_)
+        | TermKind::Any
+        | TermKind::Var { .. }
+        | TermKind::List { .. }
+        | TermKind::Not(_)
+        | TermKind::Neg(_)
+        | TermKind::Binary { .. }
+        | TermKind::Body(_)
+        | TermKind::Trigger(_)
+        | TermKind::Plan => Err("what this is about is known only when it runs".to_owned()),
+    }
+}
+
+/// `name(value)` of an annotation.
+pub fn valued(annotation: &Term) -> Option<(&str, &Term)> {
+    match &annotation.kind {
+        TermKind::Literal(l) if !l.is_internal() && !l.negated => match l.args.as_slice() {
+            [value] => Some((&l.functor, value)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The performatives that a scenario has; with `true` those about goals.
+pub fn performative(name: &str) -> Option<bool> {
+    match name {
+        "tell" | "untell" | "askOne" | "askAll" => Some(false),
+        "achieve" | "unachieve" => Some(true),
+        _ => None,
+    }
+}
+
+/// The atom that a term is; a string counts as one.
+pub fn atom(of: &Term) -> Option<&str> {
+    match &of.kind {
+        TermKind::Literal(l) if l.args.is_empty() && !l.negated => Some(&l.functor),
+        TermKind::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// What one or more agents are told.
+pub struct Message<'a> {
+    /// `None`: all others.
+    pub to: Option<&'a Term>,
+    pub performative: &'a str,
+    pub content: &'a Term,
+    /// The answer, the time to wait for it in milliseconds.
+    pub rest: &'a [Term],
+}
+
+/// The message that `.send` or `.broadcast` sends.
+pub fn message(of: &Literal) -> Result<Message<'_>, Reason> {
+    let parts = match (of.functor.as_str(), of.args.as_slice()) {
+        (".send", [to, performative, content, rest @ ..]) => Some((Some(to), performative, content, rest)),
+        (".broadcast", [performative, content]) => Some((None, performative, content, [].as_slice())),
+        _ => None,
+    };
+    let Some((to, said, content, rest)) = parts else {
+        return Err(format!("`{}` has other arguments", of.functor));
+    };
+    let Some(name) = atom(said).filter(|p| performative(p).is_some()) else {
+        return Err(format!("hrdsl has no messages of the sort `{}`", atom(said).unwrap_or("?")));
+    };
+    if !rest.is_empty() && !matches!(name, "askOne" | "askAll") {
+        return Err(format!("a message of the sort `{name}` has no answer"));
+    }
+    Ok(Message { to, performative: name, content, rest })
+}

@@ -1,0 +1,462 @@
+//! A plan, rule or fact in the scenario's words: terms and formulas, with what has a value where.
+
+use std::collections::BTreeSet;
+
+use hrdsl_source::Span;
+use indexmap::{IndexMap, IndexSet};
+
+use super::super::{
+    ast::{Key, Literal, Op, Term, TermKind, each_term},
+    names::{Names, ident, unused, variable},
+    system::System,
+    term::{Reason, valued},
+    types::{Ty, TyId, Types},
+};
+
+/// What all clauses of a program need to know.
+pub struct Context<'a> {
+    pub system: &'a System,
+    pub types: &'a Types,
+    pub left_out: &'a IndexMap<Span, Reason>,
+    pub names: &'a Names,
+    /// Of beliefs with rules, the arguments that must have a value.
+    pub inputs: &'a IndexMap<Key, BTreeSet<usize>>,
+}
+
+/// Why something cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// A variable without a value is read.
+    Unbound(String),
+    Other(Reason),
+}
+
+impl Stop {
+    pub fn reason(&self) -> Reason {
+        match self {
+            Self::Unbound(name) if name == "_" => "`_` has no value, and one is needed here".to_owned(),
+            Self::Unbound(name) => format!("`{name}` has no value here"),
+            Self::Other(reason) => reason.clone(),
+        }
+    }
+}
+
+impl From<String> for Stop {
+    fn from(reason: String) -> Self {
+        Self::Other(reason)
+    }
+}
+
+impl From<&str> for Stop {
+    fn from(reason: &str) -> Self {
+        Self::Other(reason.to_owned())
+    }
+}
+
+pub type Written<T> = Result<T, Stop>;
+
+/// What an agent's clauses speak of, as far as they are carried over.
+#[derive(Clone, Debug, Default)]
+pub struct Usage {
+    pub beliefs: IndexSet<Key>,
+    pub annotations: IndexSet<(Key, String)>,
+    /// Goals that are adopted, or asked about.
+    pub adopted: IndexSet<Key>,
+    /// Goals with a plan.
+    pub planned: IndexSet<Key>,
+    pub actions: IndexSet<Key>,
+    /// To whom, whether of a goal, about what.
+    pub sent: IndexSet<(Option<String>, bool, Key)>,
+    /// Whether the rule of whole numbers from one to another is needed.
+    pub between: bool,
+}
+
+/// Whether terms may bind variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    Pattern,
+    Value,
+}
+
+/// A piece of text, and how tight its loosest operator is.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    pub text: String,
+    pub level: u8,
+}
+
+pub const OR: u8 = 1;
+pub const AND: u8 = 2;
+pub const NOT: u8 = 3;
+pub const COMPARE: u8 = 4;
+pub const SUM: u8 = 5;
+pub const PRODUCT: u8 = 6;
+pub const ATOM: u8 = 8;
+
+impl Piece {
+    pub fn new(text: impl Into<String>, level: u8) -> Self {
+        Self { text: text.into(), level }
+    }
+
+    /// In parentheses, if it is looser than `level`.
+    pub fn at(self, level: u8) -> String {
+        if self.level < level { format!("({})", self.text) } else { self.text }
+    }
+
+    /// Several, all of which must hold.
+    pub fn all(parts: Vec<Self>) -> Self {
+        match <[Self; 1]>::try_from(parts) {
+            Ok([one]) => one,
+            Err(parts) if parts.is_empty() => Self::new("true", ATOM),
+            Err(parts) => {
+                let parts: Vec<String> = parts.into_iter().map(|p| p.at(AND)).collect();
+                Self::new(parts.join(" && "), AND)
+            }
+        }
+    }
+}
+
+pub struct Clause<'a> {
+    pub cx: &'a Context<'a>,
+    pub agent: &'a str,
+    /// Variables that have a value.
+    pub bound: BTreeSet<String>,
+    vars: IndexMap<String, String>,
+    fresh: usize,
+    pub used: Usage,
+    /// Places that are carried over otherwise than they were meant, with what is to be said.
+    pub remarks: Vec<(Span, String)>,
+}
+
+impl<'a> Clause<'a> {
+    pub fn new(cx: &'a Context<'a>, agent: &'a str, used: Usage) -> Self {
+        let (bound, vars) = (BTreeSet::new(), IndexMap::new());
+        Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new() }
+    }
+
+    /// A variable that the program does not have.
+    pub fn fresh(&mut self, hint: &str) -> String {
+        self.fresh += 1;
+        let used = self.vars.values().cloned().collect();
+        let name = unused(format!("{hint}{}", self.fresh), &used);
+        self.vars.insert(format!(" {name}"), name.clone());
+        name
+    }
+
+    fn var(&mut self, name: &str) -> String {
+        if let Some(found) = self.vars.get(name) {
+            return found.clone();
+        }
+        let used = self.vars.values().cloned().collect();
+        let written = unused(variable(name), &used);
+        self.vars.insert(name.to_owned(), written.clone());
+        written
+    }
+
+    pub fn type_of(&self, of: &Term) -> Written<TyId> {
+        self.cx.types.terms.get(&of.span).copied().ok_or_else(|| Stop::from("this has no type"))
+    }
+
+    /// Whether all variables of a term have values.
+    pub fn is_bound(&self, of: &Term) -> bool {
+        let mut all = true;
+        each_term(of, &mut |t| match &t.kind {
+            TermKind::Any => all = false,
+            TermKind::Var { name, .. } => all &= self.bound.contains(name),
+            _ => {}
+        });
+        all
+    }
+
+    /// The single values of which a term consists.
+    pub fn values(&mut self, of: &Term, want: Want) -> Written<Vec<String>> {
+        let id = self.type_of(of)?;
+        let types = self.cx.types;
+        match &of.kind {
+            TermKind::Any if want == Want::Value => Err(Stop::Unbound("_".to_owned())),
+            TermKind::Any => Ok(vec!["_".to_owned(); types.leaves(id).len()]),
+            TermKind::Var { name, .. } => {
+                if !self.bound.contains(name) {
+                    if want == Want::Value {
+                        return Err(Stop::Unbound(name.clone()));
+                    }
+                    self.bound.insert(name.clone());
+                }
+                let name = self.var(name);
+                let count = types.leaves(id).len();
+                Ok(if count == 1 { vec![name] } else { (1..=count).map(|i| format!("{name}_{i}")).collect() })
+            }
+            TermKind::Literal(l) if matches!(types.get(id), Ty::Struct(..)) => {
+                let parts = l.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?;
+                Ok(parts.concat())
+            }
+            TermKind::List { items, rest } => {
+                let items = items.iter().map(|i| self.values(i, want)).collect::<Written<Vec<_>>>()?;
+                let rest = rest.as_ref().map(|r| self.values(r, want)).transpose()?;
+                let leaf = |k: usize| {
+                    let items: Vec<&str> = items.iter().map(|i| i[k].as_str()).collect();
+                    match &rest {
+                        Some(rest) => format!("[{} | {}]", items.join(", "), rest[k]),
+                        None => format!("[{}]", items.join(", ")),
+                    }
+                };
+                Ok((0..types.leaves(id).len()).map(leaf).collect())
+            }
+            _ => Ok(vec![self.expr(of)?.text]),
+        }
+    }
+
+    /// A term that is a single value.
+    pub fn value(&mut self, of: &Term, want: Want) -> Written<String> {
+        match <[String; 1]>::try_from(self.values(of, want)?) {
+            Ok([one]) => Ok(one),
+            Err(_) => Err("a structure cannot stand here".into()),
+        }
+    }
+
+    /// An expression, whose variables have values.
+    pub fn expr(&mut self, of: &Term) -> Written<Piece> {
+        let id = self.type_of(of)?;
+        let float = matches!(self.cx.types.get(id), Ty::Number { float: true });
+        let signed =
+            |text: String| if text.starts_with('-') { Piece::new(text, SUM) } else { Piece::new(text, ATOM) };
+        Ok(match &of.kind {
+            TermKind::Int(n) if float => signed(format!("{n}.0")),
+            TermKind::Int(n) => signed(n.to_string()),
+            TermKind::Float(x) => signed(float_text(*x)),
+            TermKind::Text(text) => Piece::new(quoted(text), ATOM),
+            TermKind::Bool(b) => Piece::new(b.to_string(), ATOM),
+            TermKind::Neg(inner) => Piece::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
+            TermKind::Literal(l) if l.is_internal() => {
+                let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<Written<Vec<_>>>()?;
+                let name = l.functor.trim_start_matches("math.");
+                Piece::new(format!("{name}({})", args.join(", ")), ATOM)
+            }
+            TermKind::Literal(l) if l.args.is_empty() => {
+                Piece::new(self.cx.names.atom(self.cx.types, id, &l.functor), ATOM)
+            }
+            TermKind::Binary { op, left, right } if op.is_arithmetic() => {
+                self.arithmetic(*op, left, right, float)?
+            }
+            TermKind::Var { .. } | TermKind::Any | TermKind::List { .. } => {
+                Piece::new(self.value(of, Want::Value)?, ATOM)
+            }
+            TermKind::Literal(_)
+            | TermKind::Binary { .. }
+            | TermKind::Not(_)
+            | TermKind::Body(_)
+            | TermKind::Trigger(_)
+            | TermKind::Plan => return Err("this is no single value".into()),
+        })
+    }
+
+    fn arithmetic(&mut self, op: Op, left: &Term, right: &Term, float: bool) -> Written<Piece> {
+        if op == Op::Pow {
+            return self.power(left, right);
+        }
+        let (mut l, mut r) = (self.expr(left)?, self.expr(right)?);
+        if op == Op::Div {
+            // Whole numbers would be divided without a rest.
+            for (piece, of) in [(&mut l, left), (&mut r, right)] {
+                if matches!(of.kind, TermKind::Int(_)) && !piece.text.contains('.') {
+                    piece.text += ".0";
+                }
+            }
+        }
+        Ok(match op {
+            Op::Add => Piece::new(format!("{} + {}", l.at(SUM), r.at(PRODUCT)), SUM),
+            Op::Sub => Piece::new(format!("{} - {}", l.at(SUM), r.at(PRODUCT)), SUM),
+            Op::Mul => Piece::new(format!("{} * {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
+            Op::Mod => Piece::new(format!("{} % {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
+            Op::IntDiv if float => return Err("`div` of numbers that may have decimals".into()),
+            Op::IntDiv => Piece::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
+            Op::Div if [left, right].iter().all(|t| !is_number(t)) => {
+                Piece::new(format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM)), PRODUCT)
+            }
+            Op::Div => Piece::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
+            Op::Pow
+            | Op::Or
+            | Op::And
+            | Op::Less
+            | Op::LessEqual
+            | Op::Greater
+            | Op::GreaterEqual
+            | Op::Equal
+            | Op::Different
+            | Op::Unify
+            | Op::NotUnify
+            | Op::Univ => return Err("a formula stands where a value should".into()),
+        })
+    }
+
+    fn power(&mut self, base: &Term, exponent: &Term) -> Written<Piece> {
+        match exponent.kind {
+            TermKind::Int(n @ 1..=4) => {
+                let base = self.expr(base)?.at(ATOM);
+                Ok(Piece::new(vec![base; n as usize].join(" * "), PRODUCT))
+            }
+            _ => Err("hrdsl has no `**`, except with a small number as its exponent".into()),
+        }
+    }
+
+    // ── Formulas ──
+
+    pub fn formula(&mut self, of: &Term) -> Written<Piece> {
+        match &of.kind {
+            TermKind::Bool(b) => Ok(Piece::new(b.to_string(), ATOM)),
+            TermKind::Literal(l) if l.is_internal() => self.internal_formula(l),
+            TermKind::Literal(l) => Ok(Piece::new(self.belief(l, Want::Pattern)?, ATOM)),
+            TermKind::Not(inner) => {
+                let before = self.bound.clone();
+                let inner = self.formula(inner);
+                self.bound = before;
+                Ok(Piece::new(format!("not {}", inner?.at(ATOM)), NOT))
+            }
+            TermKind::Binary { op: Op::And, left, right } => {
+                let (l, r) = (self.formula(left)?, self.formula(right)?);
+                Ok(Piece::new(format!("{} && {}", l.at(AND), r.at(AND)), AND))
+            }
+            TermKind::Binary { op: Op::Or, left, right } => {
+                let before = self.bound.clone();
+                let l = self.formula(left)?;
+                let after = std::mem::replace(&mut self.bound, before);
+                let r = self.formula(right)?;
+                self.bound = self.bound.intersection(&after).cloned().collect();
+                Ok(Piece::new(format!("{} || {}", l.at(OR), r.at(OR)), OR))
+            }
+            TermKind::Binary { op: Op::Unify, left, right } => self.unify(left, right),
+            TermKind::Binary { op, left, right } => self.compare(*op, left, right),
+            _ => Err("this is no formula".into()),
+        }
+    }
+
+    fn compare(&mut self, op: Op, left: &Term, right: &Term) -> Written<Piece> {
+        let sign = match op {
+            Op::Less => "<",
+            Op::LessEqual => "<=",
+            Op::Greater => ">",
+            Op::GreaterEqual => ">=",
+            Op::Equal => "==",
+            Op::Different | Op::NotUnify => "!=",
+            _ => return Err("this is no formula".into()),
+        };
+        let is_empty = |t: &Term| matches!(&t.kind, TermKind::List { items, rest: None } if items.is_empty());
+        if let Some(list) = [(left, right), (right, left)].iter().find(|(_, r)| is_empty(r)).map(|(l, _)| *l)
+        {
+            let empty = Piece::new(format!(".empty({})", self.values(list, Want::Value)?[0]), ATOM);
+            return Ok(if sign == "==" { empty } else { Piece::new(format!("not {}", empty.text), NOT) });
+        }
+        let id = self.type_of(left)?;
+        if !self.cx.types.is_compound(id) {
+            let (l, r) = (self.expr(left)?, self.expr(right)?);
+            return Ok(Piece::new(format!("{} {sign} {}", l.at(SUM), r.at(SUM)), COMPARE));
+        }
+        let (l, r) = (self.values(left, Want::Value)?, self.values(right, Want::Value)?);
+        let pairs = l.iter().zip(&r).map(|(l, r)| Piece::new(format!("{l} {sign} {r}"), COMPARE)).collect();
+        if sign == "==" {
+            return Ok(Piece::all(pairs));
+        }
+        let pairs: Vec<String> = pairs.into_iter().map(|p: Piece| p.text).collect();
+        Ok(Piece::new(pairs.join(" || "), OR))
+    }
+
+    /// `l = r`: one of them has a value, the other is matched with it.
+    pub fn unify(&mut self, left: &Term, right: &Term) -> Written<Piece> {
+        // If neither has a value, what is to be computed is at fault.
+        let computed = |t: &Term| matches!(t.kind, TermKind::Binary { .. } | TermKind::Neg(_));
+        let swap = !self.is_bound(right) && (self.is_bound(left) || computed(left));
+        let (pattern, value) = if swap { (right, left) } else { (left, right) };
+        let values = self.values(value, Want::Value)?;
+        let patterns = self.values(pattern, Want::Pattern)?;
+        let pairs = patterns.iter().zip(&values).filter(|(p, v)| p != v);
+        Ok(Piece::all(pairs.map(|(p, v)| Piece::new(format!("{p} = {v}"), COMPARE)).collect()))
+    }
+
+    /// `~b(…)[…]`
+    pub fn belief(&mut self, of: &Literal, want: Want) -> Written<String> {
+        let key = of.key();
+        if want == Want::Pattern
+            && let Some(inputs) = self.cx.inputs.get(&key)
+        {
+            for arg in inputs.iter().filter_map(|i| of.args.get(*i)) {
+                if !self.is_bound(arg) {
+                    self.values(arg, Want::Value)?;
+                }
+            }
+        }
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?.concat();
+        self.used.beliefs.insert(key.clone());
+        let annotations = self.annotations(of, &key, want)?;
+        let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        Ok(format!("{}{}{annotations}", if of.negated { "~" } else { "" }, call(&name, &args)))
+    }
+
+    fn annotations(&mut self, of: &Literal, key: &Key, want: Want) -> Written<String> {
+        let mut all = Vec::new();
+        for annotation in &of.annotations {
+            let Some((name, value)) = valued(annotation) else {
+                self.remarks.push((annotation.span, "an annotation without one value is dropped".to_owned()));
+                continue;
+            };
+            let written = if name == "source" { name.to_owned() } else { ident(name) };
+            if name != "source" {
+                self.used.annotations.insert((key.clone(), name.to_owned()));
+            }
+            all.push(format!("{written}({})", self.value(value, want)?));
+        }
+        Ok(if all.is_empty() { String::new() } else { format!("[{}]", all.join(", ")) })
+    }
+
+    /// `g(…)`, without its sign. Annotations but the source are dropped.
+    pub fn goal(&mut self, of: &Literal, want: Want) -> Written<String> {
+        let key = of.key();
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?.concat();
+        let mut source = String::new();
+        for annotation in &of.annotations {
+            match valued(annotation) {
+                Some(("source", value)) if want == Want::Pattern => {
+                    source = format!("[source({})]", self.value(value, want)?);
+                }
+                Some(("source", _)) => {}
+                _ => self.remarks.push((
+                    annotation.span,
+                    "of a goal's annotations only the source is carried over".to_owned(),
+                )),
+            }
+        }
+        let name = self.cx.names.goals.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        Ok(call(&name, &args) + &source)
+    }
+}
+
+/// `f(a, b)`, or `f`
+pub fn call(name: &str, args: &[String]) -> String {
+    if args.is_empty() { name.to_owned() } else { format!("{name}({})", args.join(", ")) }
+}
+
+/// A text as the scenario writes it.
+pub fn quoted(text: &str) -> String {
+    let mut out = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
+
+fn float_text(x: f64) -> String {
+    let text = format!("{x:?}");
+    match text.split_once('e') {
+        Some((number, exponent)) if !number.contains('.') => format!("{number}.0e{exponent}"),
+        _ => text,
+    }
+}
+
+fn is_number(of: &Term) -> bool {
+    matches!(of.kind, TermKind::Int(_) | TermKind::Float(_))
+}

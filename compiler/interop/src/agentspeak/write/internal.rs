@@ -1,0 +1,454 @@
+//! Internal actions in the scenario's words.
+
+use hrdsl_source::Span;
+
+use super::{
+    super::{
+        ast::{Literal, Term, TermKind},
+        term::{Message, atom, literal, message, performative},
+        types::Ty,
+    },
+    clause::{AND, ATOM, Clause, NOT, PRODUCT, Piece, Stop, Want, Written, quoted},
+};
+
+impl Clause<'_> {
+    /// One that asks.
+    pub(super) fn internal_formula(&mut self, of: &Literal) -> Written<Piece> {
+        let name = of.functor.as_str();
+        let text = match (name, of.args.as_slice()) {
+            (".findall" | ".setof", [template, formula, list]) => {
+                return self.find_all(name, template, formula, list);
+            }
+            (".count", [formula, n]) => {
+                let before = self.bound.clone();
+                let formula = self.formula(formula);
+                self.bound = before;
+                format!(".count({}, {})", formula?.text, self.value(n, Want::Pattern)?)
+            }
+            (".member", [element, list]) => return self.member(element, list),
+            (".nth", [index, list, element]) => {
+                let index = self.expr(index)?.text;
+                let lists = self.values(list, Want::Value)?;
+                let elements = self.values(element, Want::Pattern)?;
+                let each = lists.iter().zip(&elements).map(|(l, e)| format!(".nth({index}, {l}, {e})"));
+                return Ok(Piece::all(each.map(|t| Piece::new(t, ATOM)).collect()));
+            }
+            (".min" | ".max", [list, element]) => return self.extreme(name, list, element),
+            (".length", [list, n]) => {
+                format!(".length({}, {})", self.values(list, Want::Value)?[0], self.value(n, Want::Pattern)?)
+            }
+            (".empty", [list]) => format!(".empty({})", self.values(list, Want::Value)?[0]),
+            (".concat", [args @ .., result]) => return self.componentwise(name, args, result),
+            (".reverse", [list, result]) => {
+                return self.componentwise(name, std::slice::from_ref(list), result);
+            }
+            (".term2string", [value, result]) => {
+                format!(".string({}, {})", self.expr(value)?.text, self.value(result, Want::Pattern)?)
+            }
+            (".range", [x, lo, hi]) => {
+                let (lo, hi) = (self.expr(lo)?.text, self.expr(hi)?.text);
+                let x = self.value(x, Want::Pattern)?;
+                self.between(&x, &lo, &hi)
+            }
+            (
+                ".sort" | ".shuffle" | ".union" | ".intersection" | ".difference" | ".delete",
+                [args @ .., result],
+            ) => {
+                let args = args.iter().map(|a| self.value(a, Want::Value)).collect::<Written<Vec<_>>>()?;
+                format!("{name}({}, {})", args.join(", "), self.value(result, Want::Pattern)?)
+            }
+            (".prefix" | ".suffix" | ".sublist", [a, b]) => {
+                format!("{name}({}, {})", self.value(a, Want::Value)?, self.value(b, Want::Value)?)
+            }
+            (".random", [list, x]) => {
+                format!(".random({}, {})", self.value(list, Want::Value)?, self.value(x, Want::Pattern)?)
+            }
+            (".random" | ".my_name" | ".all_names", [x]) => {
+                format!("{name}({})", self.value(x, Want::Pattern)?)
+            }
+            (".intend" | ".desire" | ".suspended", [goal]) => format!("{name}({})", self.asked_goal(goal)?),
+            _ => return Err(format!("`{name}` cannot stand in a condition").into()),
+        };
+        Ok(Piece::new(text, ATOM))
+    }
+
+    /// A goal that is matched; what it would bind stays open.
+    fn asked_goal(&mut self, of: &Term) -> Written<String> {
+        let goal = literal(of)?;
+        let before = self.bound.clone();
+        let text = self.goal(goal, Want::Pattern);
+        self.bound = before;
+        self.used.adopted.insert(goal.key());
+        text
+    }
+
+    /// A list of structures is as many lists.
+    fn find_all(&mut self, name: &str, template: &Term, formula: &Term, list: &Term) -> Written<Piece> {
+        let before = self.bound.clone();
+        let found = self.formula(formula).and_then(|f| Ok((f.text, self.values(template, Want::Value)?)));
+        self.bound = before;
+        let (formula, values) = found?;
+        if name == ".setof" && values.len() > 1 {
+            return Err("a list of structures cannot be sorted".into());
+        }
+        let lists = self.values(list, Want::Pattern)?;
+        let each =
+            values.iter().zip(&lists).map(|(v, l)| Piece::new(format!("{name}({v}, {formula}, {l})"), ATOM));
+        Ok(Piece::all(each.collect()))
+    }
+
+    /// Of a list of structures, the elements of its lists at one place.
+    fn member(&mut self, element: &Term, list: &Term) -> Written<Piece> {
+        let lists = self.values(list, Want::Value)?;
+        let elements = self.values(element, Want::Pattern)?;
+        match (elements.as_slice(), lists.as_slice()) {
+            ([x], [l]) => Ok(Piece::new(format!(".member({x}, {l})"), ATOM)),
+            _ => Ok(self.at_one_place(&elements, &lists, Vec::new())),
+        }
+    }
+
+    fn extreme(&mut self, name: &str, list: &Term, element: &Term) -> Written<Piece> {
+        let lists = self.values(list, Want::Value)?;
+        let mut elements = self.values(element, Want::Pattern)?;
+        if let ([x], [l]) = (elements.as_slice(), lists.as_slice()) {
+            return Ok(Piece::new(format!("{name}({l}, {x})"), ATOM));
+        }
+        if elements[0] == "_" {
+            elements[0] = self.fresh("Best");
+        }
+        let first = Piece::new(format!("{name}({}, {})", lists[0], elements[0]), ATOM);
+        Ok(self.at_one_place(&elements, &lists, vec![first]))
+    }
+
+    fn at_one_place(&mut self, elements: &[String], lists: &[String], mut parts: Vec<Piece>) -> Piece {
+        let (length, index) = (self.fresh("Length"), self.fresh("Index"));
+        parts.push(Piece::new(format!(".length({}, {length})", lists[0]), ATOM));
+        parts.push(Piece::new(self.between(&index, "0", &format!("{length} - 1")), ATOM));
+        let each = elements.iter().zip(lists).filter(|(e, _)| *e != "_");
+        parts.extend(each.map(|(e, l)| Piece::new(format!(".nth({index}, {l}, {e})"), ATOM)));
+        Piece::all(parts)
+    }
+
+    fn between(&mut self, x: &str, lo: &str, hi: &str) -> String {
+        self.used.between = true;
+        format!("{}({x}, {lo}, {hi})", super::writer::between(self.cx.names))
+    }
+
+    fn componentwise(&mut self, name: &str, args: &[Term], result: &Term) -> Written<Piece> {
+        let args = args.iter().map(|a| self.values(a, Want::Value)).collect::<Written<Vec<_>>>()?;
+        let results = self.values(result, Want::Pattern)?;
+        let one = |k: usize, result: &String| -> Option<Piece> {
+            let args = args.iter().map(|a| a.get(k).cloned()).collect::<Option<Vec<_>>>()?;
+            Some(Piece::new(format!("{name}({}, {result})", args.join(", ")), ATOM))
+        };
+        let each: Option<Vec<Piece>> = results.iter().enumerate().map(|(k, r)| one(k, r)).collect();
+        each.map(Piece::all).ok_or_else(|| Stop::from("a structure cannot stand here"))
+    }
+
+    // ── Steps ──
+
+    pub(super) fn internal_step(
+        &mut self,
+        of: &Literal,
+        span: Span,
+        out: &mut Vec<(Span, String)>,
+    ) -> Written<Vec<String>> {
+        let name = of.functor.as_str();
+        Ok(match (name, of.args.as_slice()) {
+            (".print" | ".println", args) => vec![self.print(args)?],
+            (".send" | ".broadcast", _) => self.send(&message(of)?)?,
+            (".wait", [what, rest @ ..]) => self.wait(what, rest, span)?,
+            (".fail", args) => {
+                if !args.is_empty() {
+                    self.remarks.push((span, "why `.fail` fails is not carried over".to_owned()));
+                }
+                vec![".fail".to_owned()]
+            }
+            (
+                ".drop_intention" | ".drop_desire" | ".drop_event" | ".succeed_goal" | ".fail_goal"
+                | ".suspend" | ".resume",
+                [goal],
+            ) => vec![format!("{name}({})", self.asked_goal(goal)?)],
+            (".drop_all_intentions" | ".drop_all_desires" | ".drop_all_events" | ".suspend", []) => {
+                vec![name.to_owned()]
+            }
+            (".abolish", [belief]) => {
+                let before = self.bound.clone();
+                let text = self.belief(literal(belief)?, Want::Pattern);
+                self.bound = before;
+                vec![format!(".abolish({})", text?)]
+            }
+            (".fork", [kind, bodies @ ..]) => {
+                let all = atom(kind) == Some("and");
+                let bodies = bodies.iter().filter_map(|b| match &b.kind {
+                    TermKind::Body(steps) => Some(steps.as_slice()),
+                    _ => None,
+                });
+                vec![self.fork(bodies, all, out)]
+            }
+            _ => {
+                let piece = self.internal_formula(of)?;
+                let plain = piece.level == ATOM && piece.text.starts_with('.');
+                vec![if plain { piece.text } else { format!("?({})", piece.text) }]
+            }
+        })
+    }
+
+    fn print(&mut self, args: &[Term]) -> Written<String> {
+        let mut parts: Vec<Result<String, String>> = Vec::new();
+        for arg in args {
+            self.printed(arg, &mut parts)?;
+        }
+        // Texts next to each other are one.
+        let mut merged: Vec<Result<String, String>> = Vec::new();
+        for part in parts {
+            match (merged.last_mut(), part) {
+                (Some(Ok(text)), Ok(more)) => text.push_str(&more),
+                (_, part) => merged.push(part),
+            }
+        }
+        let args: Vec<String> = merged.into_iter().map(|p| p.map_or_else(|e| e, |t| quoted(&t))).collect();
+        Ok(format!(".print({})", args.join(", ")))
+    }
+
+    /// What is printed of a term: texts, and expressions as errors.
+    fn printed(&mut self, of: &Term, parts: &mut Vec<Result<String, String>>) -> Written<()> {
+        match &of.kind {
+            TermKind::Text(text) => parts.push(Ok(text.clone())),
+            TermKind::Literal(l) if !l.is_internal() => {
+                parts.push(Ok(format!("{}{}", if l.negated { "~" } else { "" }, l.functor)));
+                for (i, arg) in l.args.iter().enumerate() {
+                    parts.push(Ok(if i == 0 { "(" } else { "," }.to_owned()));
+                    self.printed(arg, parts)?;
+                }
+                if !l.args.is_empty() {
+                    parts.push(Ok(")".to_owned()));
+                }
+            }
+            TermKind::Any => parts.push(Ok("_".to_owned())),
+            TermKind::Var { name, .. } if !self.bound.contains(name) => parts.push(Ok("_".to_owned())),
+            TermKind::Binary { .. } | TermKind::Neg(_) => parts.push(Err(self.expr(of)?.text)),
+            _ => {
+                let id = self.type_of(of)?;
+                let functor = match self.cx.types.get(id) {
+                    Ty::Struct(functor, _) => Some(functor.clone()),
+                    _ => None,
+                };
+                parts.extend(functor.iter().map(|f| Ok(format!("{f}("))));
+                for (i, value) in self.values(of, Want::Value)?.into_iter().enumerate() {
+                    if i > 0 {
+                        parts.push(Ok(",".to_owned()));
+                    }
+                    parts.push(Err(value));
+                }
+                parts.extend(functor.iter().map(|_| Ok(")".to_owned())));
+            }
+        }
+        Ok(())
+    }
+
+    // ── Messages ──
+
+    fn send(&mut self, message: &Message<'_>) -> Written<Vec<String>> {
+        let named =
+            message.to.is_some_and(|to| atom(to).is_some() || matches!(to.kind, TermKind::List { .. }));
+        if !named && self.cx.system.agents.len() < 2 {
+            return Err("there is no other agent to send this to".into());
+        }
+        let Some(to) = message.to else {
+            let content = self.content(message, None)?;
+            return Ok(vec![format!(".broadcast({}, {content})", message.performative)]);
+        };
+        if let TermKind::List { items, rest: None } = &to.kind {
+            let each = items.iter().map(|item| self.send_to(item, message)).collect::<Written<Vec<_>>>()?;
+            return Ok(each.concat());
+        }
+        let listed = atom(to).is_none()
+            && self.cx.types.leaves(self.type_of(to)?).first().is_some_and(|l| l.lists > 0);
+        if !listed {
+            return self.send_to(to, message);
+        }
+        let list = self.value(to, Want::Value)?;
+        let one = self.fresh("Each");
+        let content = self.content(message, None)?;
+        if !message.rest.is_empty() {
+            return Err("several agents cannot be asked at once".into());
+        }
+        Ok(vec![format!(
+            "for .member({one}, {list}) {{ .send({one}, {}, {content}) }}",
+            message.performative
+        )])
+    }
+
+    fn send_to(&mut self, to: &Term, message: &Message<'_>) -> Written<Vec<String>> {
+        let known = atom(to).filter(|name| *name != "self").map(str::to_owned);
+        let whom = match atom(to) {
+            Some(name) => self.cx.names.agents.get(name).cloned().unwrap_or_else(|| name.to_owned()),
+            None => self.value(to, Want::Value)?,
+        };
+        match (message.performative, message.rest) {
+            ("askOne", [answer, time @ ..]) => self.ask(&whom, known, message, answer, time),
+            ("askAll", [answer, time @ ..]) => self.ask_all(&whom, known, message, answer, time),
+            (performative, _) => {
+                let content = self.content(message, known)?;
+                Ok(vec![format!(".send({whom}, {performative}, {content})")])
+            }
+        }
+    }
+
+    fn content(&mut self, message: &Message<'_>, to: Option<String>) -> Written<String> {
+        let of = literal(message.content)?;
+        let goal = performative(message.performative) == Some(true);
+        self.used.sent.insert((to, goal, of.key()));
+        let want =
+            if matches!(message.performative, "tell" | "achieve") { Want::Value } else { Want::Pattern };
+        let before = self.bound.clone();
+        let (mentioned, text) = if goal {
+            (true, self.goal(of, want))
+        } else {
+            let declared = self.used.beliefs.contains(&of.key());
+            (declared, self.belief(of, want))
+        };
+        // What is sent is declared where it arrives.
+        if !mentioned {
+            self.used.beliefs.shift_remove(&of.key());
+        }
+        self.bound = before;
+        text
+    }
+
+    fn timeout(&mut self, time: &[Term]) -> Written<String> {
+        time.first().map_or(Ok(String::new()), |t| Ok(format!(", {}", self.milliseconds(t)?)))
+    }
+
+    fn milliseconds(&mut self, of: &Term) -> Written<String> {
+        Ok(match of.kind {
+            TermKind::Int(n) if n % 1000 == 0 => format!("{} s", n / 1000),
+            TermKind::Int(n) => format!("{n} ms"),
+            _ => format!("{} * 1 ms", self.expr(of)?.at(PRODUCT)),
+        })
+    }
+
+    /// The answer and the question are one literal: an open place of the question is the answer's.
+    fn ask(
+        &mut self,
+        whom: &str,
+        known: Option<String>,
+        message: &Message<'_>,
+        answer: &Term,
+        time: &[Term],
+    ) -> Written<Vec<String>> {
+        let question = literal(message.content)?;
+        let time = self.timeout(time)?;
+        self.used.sent.insert((known, false, question.key()));
+        let answers: Vec<Option<&Term>> = match &answer.kind {
+            TermKind::Literal(l) if l.key() == question.key() => l.args.iter().map(Some).collect(),
+            TermKind::Var { .. } | TermKind::Any => vec![None; question.args.len()],
+            _ => return Err("the answer is not of the form of the question".into()),
+        };
+        let whole = match &answer.kind {
+            TermKind::Var { .. } if !question.args.is_empty() => self.values(answer, Want::Pattern)?,
+            _ => Vec::new(),
+        };
+        let (mut args, mut after, mut at) = (Vec::new(), Vec::new(), 0);
+        for (asked, answered) in question.args.iter().zip(answers) {
+            let count = self.cx.types.leaves(self.type_of(asked)?).len();
+            let mine: Vec<String> = whole.iter().skip(at).take(count).cloned().collect();
+            at += count;
+            match (self.is_bound(asked), answered) {
+                (true, Some(answered)) => {
+                    args.extend(self.values(asked, Want::Value)?);
+                    if !matches!(answered.kind, TermKind::Any) && answered.span != asked.span {
+                        after.extend(Some(self.unify(answered, asked)?).filter(|p| p.text != "true"));
+                    }
+                }
+                (true, None) => {
+                    let values = self.values(asked, Want::Value)?;
+                    after
+                        .extend(mine.iter().zip(&values).map(|(m, v)| Piece::new(format!("{m} = {v}"), AND)));
+                    args.extend(values);
+                }
+                (false, Some(answered)) => args.extend(self.values(answered, Want::Pattern)?),
+                (false, None) if mine.is_empty() => {
+                    let before = self.bound.clone();
+                    let values = self.values(asked, Want::Pattern);
+                    self.bound = before;
+                    args.extend(values?);
+                }
+                (false, None) => args.extend(mine),
+            }
+        }
+        let name = self.cx.names.beliefs.get(&question.key()).cloned().unwrap_or_default();
+        let sign = if question.negated { "~" } else { "" };
+        let mut steps = vec![format!(".ask({whom}, {sign}{}{time})", super::clause::call(&name, &args))];
+        if !after.is_empty() {
+            let after = Piece::all(after);
+            steps.push(format!("?({})", after.text));
+        }
+        Ok(steps)
+    }
+
+    fn ask_all(
+        &mut self,
+        whom: &str,
+        known: Option<String>,
+        message: &Message<'_>,
+        answer: &Term,
+        time: &[Term],
+    ) -> Written<Vec<String>> {
+        let question = literal(message.content)?;
+        let [asked] = question.args.as_slice() else {
+            return Err("all answers are asked for at once only if the question has one place".into());
+        };
+        let time = self.timeout(time)?;
+        self.used.sent.insert((known, false, question.key()));
+        let before = self.bound.clone();
+        let mut template = self.value(asked, Want::Pattern)?;
+        self.bound = before;
+        if template == "_" {
+            template = self.fresh("Each");
+        }
+        let list = self.value(answer, Want::Pattern)?;
+        let name = self.cx.names.beliefs.get(&question.key()).cloned().unwrap_or_default();
+        Ok(vec![format!(".ask_all({whom}, {template}, {name}({template}), {list}{time})")])
+    }
+
+    /// For a time; or until something is believed, which is looked at every 100 ms.
+    fn wait(&mut self, what: &Term, rest: &[Term], span: Span) -> Written<Vec<String>> {
+        let trigger = match &what.kind {
+            TermKind::Trigger(t) => Some(&t.of),
+            _ => None,
+        };
+        let is_formula = match &what.kind {
+            TermKind::Literal(l) => !l.is_internal(),
+            TermKind::Binary { op, .. } => !op.is_arithmetic(),
+            TermKind::Not(_) => true,
+            _ => false,
+        };
+        let what = match trigger {
+            None if !is_formula => return Ok(vec![format!("wait {}", self.milliseconds(what)?)]),
+            None => what,
+            Some(of) => of,
+        };
+        let open = !self.is_bound(what);
+        let time = rest.first().map(|t| self.milliseconds(t)).transpose()?;
+        let before = self.bound.clone();
+        let condition = self.formula(what)?;
+        if time.is_none() && !open {
+            self.bound = before;
+        }
+        let until = format!("not {}", Piece::new(condition.text.clone(), condition.level).at(NOT + 1));
+        let mut steps = vec![match &time {
+            None => format!("while {until} {{ wait 100 ms }}"),
+            Some(time) => format!("fork {{ while {until} {{ wait 100 ms }} }} or {{ wait {time} }}"),
+        }];
+        // With a place for the time that it took, it goes on after the time-out.
+        if open || (time.is_some() && rest.len() == 1) {
+            steps.push(format!("?({})", condition.text));
+        }
+        let at_once =
+            if trigger.is_some() { "; it goes on at once if the belief is held already" } else { "" };
+        self.remarks.push((span, format!("this looks every 100 ms whether it is so{at_once}")));
+        Ok(steps)
+    }
+}

@@ -1,0 +1,166 @@
+//! Rules: which can be written, and which arguments of a belief with rules must have a value. A fixed point: at first none
+//! must; what a clause reads before it has a value, or never gives one, must.
+
+use std::collections::BTreeSet;
+
+use hrdsl_source::Span;
+use indexmap::IndexMap;
+
+use super::{
+    clause::{COMPARE, Clause, Context, Piece, Stop, Usage, Want, Written},
+    writer::Writer,
+};
+use crate::agentspeak::{
+    ast::{Item, ItemKind, Key, Literal, Program, Term, TermKind, each_term},
+    system::Entry,
+};
+
+pub type Inputs = IndexMap<Key, BTreeSet<usize>>;
+
+/// What became of the rules: the text of each, or why it is left out.
+pub type Rules = IndexMap<Span, Result<(String, Usage), String>>;
+
+/// The rules of a program.
+pub fn rules(writer: &Writer<'_>, entry: &Entry, program: &Program) -> (Inputs, Rules) {
+    let all: Vec<Clauses<'_>> = program.items.iter().filter_map(clause_of).collect();
+    let mut done: Rules = IndexMap::new();
+    for (span, ..) in &all {
+        if let Some(reason) = writer.inferred.left_out.get(span) {
+            done.insert(*span, Err(reason.clone()));
+        }
+    }
+    loop {
+        let mut inputs = Inputs::new();
+        let written = fixed_point(writer, entry, &all, &done, &mut inputs);
+        let failed: Vec<_> =
+            written.iter().filter_map(|(s, w)| Some((*s, w.as_ref().err()?.reason()))).collect();
+        if failed.is_empty() {
+            done.extend(written.into_iter().filter_map(|(s, w)| Some((s, Ok(w.ok()?)))));
+            return (inputs, done);
+        }
+        done.extend(failed.into_iter().map(|(s, reason)| (s, Err(reason))));
+    }
+}
+
+/// The place, head and body of a rule.
+type Clauses<'p> = (Span, &'p Literal, Option<&'p Term>);
+
+/// A belief with open places holds whatever is there: it is a rule without a body.
+fn clause_of(item: &Item) -> Option<Clauses<'_>> {
+    match &item.kind {
+        ItemKind::Rule { head, body } => Some((item.span, head, Some(body))),
+        ItemKind::Belief(head) if head.args.iter().any(|a| has_any(a) || !variables(a).is_empty()) => {
+            Some((item.span, head, None))
+        }
+        ItemKind::Belief(_) | ItemKind::Goal(_) | ItemKind::Plan(_) | ItemKind::Skipped(_) => None,
+    }
+}
+
+type Tried = Vec<(Span, Written<(String, Usage)>)>;
+
+fn fixed_point(
+    writer: &Writer<'_>,
+    entry: &Entry,
+    all: &[Clauses<'_>],
+    done: &Rules,
+    inputs: &mut Inputs,
+) -> Tried {
+    loop {
+        let before = inputs.clone();
+        let mut written = Vec::new();
+        for (span, head, body) in all.iter().filter(|(s, ..)| !done.contains_key(s)) {
+            let known = inputs.clone();
+            let cx = Context {
+                system: writer.system,
+                types: &writer.inferred.types,
+                left_out: &writer.inferred.left_out,
+                names: writer.names,
+                inputs: &known,
+            };
+            let mut clause = Clause::new(&cx, &entry.name, Usage::default());
+            let needed = inputs.entry(head.key()).or_default();
+            let result = rule(&mut clause, head, *body, needed);
+            written.push((*span, result.map(|text| (text, clause.used))));
+        }
+        if *inputs == before {
+            return written;
+        }
+    }
+}
+
+/// Writes a rule; what must have a value that was not known to goes into `inputs`.
+fn rule(
+    clause: &mut Clause<'_>,
+    head: &Literal,
+    body: Option<&Term>,
+    inputs: &mut BTreeSet<usize>,
+) -> Written<String> {
+    for (i, arg) in head.args.iter().enumerate() {
+        if inputs.contains(&i) {
+            clause.bound.extend(variables(arg));
+        }
+    }
+    let body = body.filter(|b| !matches!(b.kind, TermKind::Bool(true)));
+    let written = body.map(|b| clause.formula(b)).transpose();
+    if let Err(Stop::Unbound(name)) = &written {
+        inputs.extend(
+            head.args.iter().enumerate().filter(|(_, a)| variables(a).contains(name)).map(|(i, _)| i),
+        );
+    }
+    let mut parts: Vec<Piece> = written?.into_iter().collect();
+    for (i, arg) in head.args.iter().enumerate() {
+        if variables(arg).iter().any(|v| !clause.bound.contains(v)) || has_any(arg) {
+            inputs.insert(i);
+            clause.bound.extend(variables(arg));
+        }
+    }
+    let text = clause.head(head, &mut parts)?;
+    let body = if parts.is_empty() { String::new() } else { format!(" when {}", Piece::all(parts).text) };
+    Ok(format!("rule {text}{body}"))
+}
+
+impl Clause<'_> {
+    /// A rule's head: what is open there gets a name, and a variable that is there twice is compared after the body.
+    fn head(&mut self, head: &Literal, parts: &mut Vec<Piece>) -> Written<String> {
+        if !head.annotations.is_empty() {
+            return Err("the head of a rule has no annotations in hrdsl".into());
+        }
+        let mut args: Vec<String> = Vec::new();
+        let mut seen: Vec<String> = Vec::new();
+        for arg in &head.args {
+            let again = matches!(&arg.kind, TermKind::Var { name, .. } if seen.contains(name));
+            seen.extend(variables(arg));
+            for value in self.values(arg, Want::Pattern)? {
+                if value == "_" {
+                    args.push(self.fresh("Any"));
+                } else if again {
+                    let same = self.fresh("Same");
+                    parts.push(Piece::new(format!("{same} = {value}"), COMPARE));
+                    args.push(same);
+                } else {
+                    args.push(value);
+                }
+            }
+        }
+        let key = head.key();
+        let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_default();
+        self.used.beliefs.insert(key);
+        Ok(format!("{}{}", if head.negated { "~" } else { "" }, super::clause::call(&name, &args)))
+    }
+}
+
+fn variables(of: &Term) -> Vec<String> {
+    let mut all = Vec::new();
+    each_term(of, &mut |t| {
+        if let TermKind::Var { name, .. } = &t.kind {
+            all.push(name.clone());
+        }
+    });
+    all
+}
+
+fn has_any(of: &Term) -> bool {
+    let mut any = false;
+    each_term(of, &mut |t| any |= matches!(t.kind, TermKind::Any));
+    any
+}

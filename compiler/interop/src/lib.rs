@@ -1,0 +1,22 @@
+//! Models that go to and fro between hrdsl and other tools, one folder for each tool. It is pure: files come from a [`Loader`].
+//!
+//! - [`agentspeak`]: Jason's `.asl` and `.mas2j` to scenarios
+//! - [`uppaal`]: UPPAAL's models in XML and their queries, to scenarios and from networks
+//! - [`tchecker`]: the text format of TChecker, to scenarios and from networks
+//! - [`picture`]: networks in Graphviz's DOT and as Mermaid's state diagrams
+//! - `exchange`: what they share: sources, notes and obstacles, names, times
+//!
+//! No tool knows another. What a scenario cannot say is left out, with a comment at its place and a [`Note`]; what keeps a
+//! network from another tool is an [`Obstacle`]; nothing is left out silently.
+
+pub mod agentspeak;
+mod exchange;
+pub mod picture;
+pub mod tchecker;
+pub mod uppaal;
+
+pub use exchange::{
+    note::{Imported, Note, Severity, SyntaxError},
+    obstacle::Obstacle,
+    source::{Loader, MAX_BYTES, NoFiles, Source},
+};

@@ -1,0 +1,218 @@
+//! Expressions and updates of a program as the language writes them, for the labels of pictures.
+
+use hrdsl_ir::{
+    Expr, Program, Value,
+    expr::{BinaryOp, Function, Place, UnaryOp},
+    ta::{Automaton, ClockConstraint, ClockId, ClockOp, Edge, ReceiveArg, Sync, Time, Update, Var},
+};
+
+use crate::exchange::time::seconds;
+
+/// Shows what an automaton's expressions mean.
+pub(crate) struct Show<'p> {
+    pub program: &'p Program,
+    pub automaton: &'p Automaton,
+    /// The names that an edge binds, in the order of its binders.
+    pub binders: Vec<String>,
+}
+
+impl<'p> Show<'p> {
+    pub fn of(program: &'p Program, automaton: &'p Automaton) -> Self {
+        Self { program, automaton, binders: Vec::new() }
+    }
+
+    /// In an edge: with the names of its selects, and of the parameters of what it takes.
+    pub fn edge(&self, edge: &Edge) -> Self {
+        let mut binders: Vec<String> = edge.selects.iter().map(|s| s.name.clone()).collect();
+        let (args, names): (&[ReceiveArg], Vec<&str>) = match &edge.sync {
+            Sync::Receive { event, args } => {
+                (args, self.program.event(*event).params.iter().map(|p| p.name.as_str()).collect())
+            }
+            Sync::Accept { channel, args } => {
+                let channel = &self.program.channels[usize::from(channel.0)];
+                (args, channel.params.iter().map(|p| p.name.as_str()).collect())
+            }
+            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => (&[], Vec::new()),
+        };
+        for (arg, name) in args.iter().zip(names) {
+            match arg {
+                ReceiveArg::Bind => binders.push(name.to_owned()),
+                ReceiveArg::Match(_) => {}
+            }
+        }
+        Self { binders, ..*self }
+    }
+
+    fn var(&self, slot: u16) -> &str {
+        let slot = usize::from(slot);
+        let own = slot.wrapping_sub(self.program.shared.len());
+        let bound = own.wrapping_sub(self.automaton.vars.len());
+        let of = |v: &'p Var| v.name.as_str();
+        let shared = self.program.shared.get(slot).map(of);
+        let found = shared.or_else(|| self.automaton.vars.get(own).map(of));
+        found.or_else(|| self.binders.get(bound).map(String::as_str)).unwrap_or("?")
+    }
+
+    pub fn clock(&self, clock: ClockId) -> &str {
+        let at = usize::from(clock.0);
+        let own = at.wrapping_sub(self.program.clocks.len());
+        let found = self.program.clocks.get(at).or_else(|| self.automaton.clocks.get(own));
+        found.map_or("?", String::as_str)
+    }
+
+    fn place(&self, place: &Place) -> String {
+        if place.indices.is_empty() {
+            return self.var(place.slot).to_owned();
+        }
+        // `q[0].x` is the first of the array: its name without the indices.
+        let first = self.var(place.slot);
+        let base = first.split('[').next().unwrap_or(first);
+        let tail = first.rsplit(']').next().filter(|t| t.starts_with('.')).unwrap_or_default();
+        let indices: String = place.indices.iter().map(|i| format!("[{}]", self.expr(&i.at))).collect();
+        format!("{base}{indices}{tail}")
+    }
+
+    pub fn expr(&self, e: &Expr) -> String {
+        self.within(e, 0)
+    }
+
+    fn within(&self, e: &Expr, around: u8) -> String {
+        let (text, level) = match e {
+            Expr::Const(v) => (value(*v), 9),
+            Expr::Var(i) => (self.var(*i).to_owned(), 9),
+            Expr::Unary(UnaryOp::Not, a) => (format!("not {}", self.within(a, 3)), 3),
+            Expr::Unary(UnaryOp::Neg, a) => (format!("-{}", self.within(a, 7)), 6),
+            Expr::Binary(op, a, b) => {
+                let (sign, level) = operator(*op);
+                let left = if level == 4 { 5 } else { level };
+                (format!("{} {sign} {}", self.within(a, left), self.within(b, level + 1)), level)
+            }
+            Expr::If(c, a, b) => {
+                (format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b)), 9)
+            }
+            Expr::Call(f, args) => (self.call(function(*f), args), 9),
+            Expr::List(items, _) => {
+                let items: Vec<String> = items.iter().map(|i| self.expr(i)).collect();
+                (format!("[{}]", items.join(", ")), 9)
+            }
+            Expr::Element(place) => (self.place(place), 9),
+            Expr::Apply(f, args) => {
+                let name = self.program.functions.get(usize::from(f.0)).map_or("?", |f| f.name.as_str());
+                (self.call(name, args), 9)
+            }
+        };
+        if level < around { format!("({text})") } else { text }
+    }
+
+    pub fn call(&self, name: &str, args: &[Expr]) -> String {
+        let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
+        format!("{name}({})", args.join(", "))
+    }
+
+    fn time(&self, time: &Time) -> String {
+        let mut parts: Vec<String> = time
+            .terms
+            .iter()
+            .map(|t| format!("{} * {}", self.within(&t.value, 6), seconds(t.factor)))
+            .collect();
+        if time.nanos != 0 || parts.is_empty() {
+            parts.push(seconds(time.nanos));
+        }
+        parts.join(" + ")
+    }
+
+    pub fn bound(&self, c: &ClockConstraint) -> String {
+        let minus = c.minus.map_or(String::new(), |m| format!(" - {}", self.clock(m)));
+        let op = match c.op {
+            ClockOp::Lt => "<",
+            ClockOp::Le => "<=",
+            ClockOp::Eq => "==",
+            ClockOp::Ge => ">=",
+            ClockOp::Gt => ">",
+        };
+        format!("{}{minus} {op} {}", self.clock(c.clock), self.time(&c.bound))
+    }
+
+    pub fn guard(&self, edge: &Edge) -> Vec<String> {
+        let mut parts: Vec<String> = edge.clock_guard.iter().map(|c| self.bound(c)).collect();
+        // Beside others it is a part of a conjunction.
+        let around = if parts.is_empty() { 0 } else { 2 };
+        parts.extend(edge.guard.iter().map(|g| self.within(g, around)));
+        parts
+    }
+
+    /// `take(1)!`, `take(_)?`, `done`; nothing for an internal edge.
+    pub fn sync(&self, edge: &Edge) -> Option<String> {
+        let named = |name: &str, args: Vec<String>, sign: &str| {
+            let args = if args.is_empty() { String::new() } else { format!("({})", args.join(", ")) };
+            Some(format!("{name}{args}{sign}"))
+        };
+        let sent = |args: &[Expr]| args.iter().map(|a| self.expr(a)).collect();
+        let mut bound = self.binders[edge.selects.len().min(self.binders.len())..].iter();
+        let mut taken = |args: &[ReceiveArg]| -> Vec<String> {
+            let one = |a: &ReceiveArg| match a {
+                ReceiveArg::Bind => bound.next().cloned().unwrap_or_default(),
+                ReceiveArg::Match(hrdsl_ir::ArgPattern::Any) => "_".to_owned(),
+                ReceiveArg::Match(hrdsl_ir::ArgPattern::Is(v)) => value(*v),
+            };
+            args.iter().map(one).collect()
+        };
+        let channel = |c: &hrdsl_ir::ta::ChannelId| self.program.channels[usize::from(c.0)].name.as_str();
+        match &edge.sync {
+            Sync::Internal => None,
+            Sync::Send { event, args } => named(&self.program.event(*event).name, sent(args), "!"),
+            Sync::Receive { event, args } => named(&self.program.event(*event).name, taken(args), "?"),
+            Sync::Offer { channel: c, args } => named(channel(c), sent(args), "!"),
+            Sync::Accept { channel: c, args } => named(channel(c), taken(args), "?"),
+            Sync::Join { channel: c } => named(channel(c), Vec::new(), ""),
+        }
+    }
+
+    pub fn update(&self, update: &Update) -> String {
+        match update {
+            Update::Assign { place, value } => format!("{} = {}", self.place(place), self.expr(value)),
+            Update::Reset { clock, from: None, to } if *to == Time::ZERO => {
+                format!("{} = 0", self.clock(*clock))
+            }
+            Update::Reset { clock, from, to } => {
+                let from = from.map_or(String::new(), |f| format!("{} + ", self.clock(f)));
+                format!("{} = {from}{}", self.clock(*clock), self.time(to))
+            }
+            Update::Call { function, args } => {
+                let name = &self.program.functions[usize::from(function.0)].name;
+                self.call(name, args)
+            }
+        }
+    }
+}
+
+fn value(v: Value) -> String {
+    v.to_string()
+}
+
+fn operator(op: BinaryOp) -> (&'static str, u8) {
+    match op {
+        BinaryOp::Or => ("||", 1),
+        BinaryOp::And => ("&&", 2),
+        BinaryOp::Eq => ("==", 4),
+        BinaryOp::Ne => ("!=", 4),
+        BinaryOp::Lt => ("<", 4),
+        BinaryOp::Le => ("<=", 4),
+        BinaryOp::Gt => (">", 4),
+        BinaryOp::Ge => (">=", 4),
+        BinaryOp::Add => ("+", 5),
+        BinaryOp::Sub => ("-", 5),
+        BinaryOp::Mul => ("*", 6),
+        BinaryOp::Div => ("/", 6),
+        BinaryOp::Rem => ("%", 6),
+    }
+}
+
+fn function(f: Function) -> &'static str {
+    match f {
+        Function::Abs => "abs",
+        Function::Min => "min",
+        Function::Max => "max",
+        Function::Norm => "norm",
+    }
+}

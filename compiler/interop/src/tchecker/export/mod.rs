@@ -1,0 +1,152 @@
+//! A network in TChecker's text format.
+//!
+//! # Steps
+//! 1. `names`: all of TChecker's names are global; processes, clocks and integers get theirs
+//! 2. `edges`: each edge, select and argument of a channel becomes edges with constant arguments
+//! 3. `vectors`: hand-shakes, broadcasts and joint channels become `sync` vectors
+//! 4. `expr`: expressions and statements, without `||` and functions, which TChecker has not
+//!
+//! [`export`] does them all. A unit of time in the file is the greatest in which all constants are whole; a comment at its
+//! head says which. Each location has the label `AUTOMATON_LOCATION`, to ask for it.
+
+mod edges;
+mod expr;
+mod names;
+mod vectors;
+
+use std::fmt::Write;
+
+use hrdsl_ir::{
+    Nanos, Program,
+    ta::{Automaton, LocationKind, Network},
+};
+
+use self::{edges::Instance, expr::Exprs, names::Names};
+use crate::exchange::{
+    obstacle::Obstacle,
+    time::{self, seconds},
+};
+
+/// The network's file, or all that keeps it from being one.
+///
+/// # Errors
+/// What TChecker cannot say: urgent channels, functions that are more than one expression, numbers that do not fit, …
+pub fn export(program: &Program, network: &Network) -> Result<String, Vec<Obstacle>> {
+    let automata: Vec<&Automaton> =
+        network.automata.iter().filter_map(|id| program.automata.get(usize::from(id.0))).collect();
+    let mut writer = Writer {
+        program,
+        network,
+        names: Names::new(program, network, &automata),
+        unit: time::unit(program, &automata),
+        automata,
+        obstacles: Vec::new(),
+        out: String::new(),
+    };
+    writer.write();
+    if writer.obstacles.is_empty() {
+        Ok(writer.out)
+    } else {
+        writer.obstacles.sort_by_key(|o| (o.origin.start, o.message.clone()));
+        writer.obstacles.dedup();
+        Err(writer.obstacles)
+    }
+}
+
+struct Writer<'p> {
+    program: &'p Program,
+    network: &'p Network,
+    automata: Vec<&'p Automaton>,
+    names: Names,
+    unit: Nanos,
+    obstacles: Vec<Obstacle>,
+    out: String,
+}
+
+impl Writer<'_> {
+    fn write(&mut self) {
+        let _ = writeln!(self.out, "# {}: one unit of time is {}", self.network.name, seconds(self.unit));
+        let _ = writeln!(self.out, "system:{}", self.names.system);
+        self.variables();
+        let instances: Vec<Vec<Instance>> = (0..self.automata.len()).map(|a| self.instances(a)).collect();
+        let joined = self.vectors(&instances);
+        let mut events: Vec<&str> = joined.edges.iter().flatten().map(|e| e.event.as_str()).collect();
+        events.sort_unstable();
+        events.dedup();
+        for event in events {
+            let _ = writeln!(self.out, "event:{event}");
+        }
+        for a in 0..self.automata.len() {
+            self.process(a, &joined.edges[a]);
+        }
+        for sync in &joined.syncs {
+            let _ = writeln!(self.out, "sync:{sync}");
+        }
+    }
+
+    fn variables(&mut self) {
+        for clock in &self.names.clocks {
+            let _ = writeln!(self.out, "clock:1:{clock}");
+        }
+        for int in &self.names.ints {
+            let (size, lo, hi) = (int.inits.len(), int.lo, int.hi);
+            let init = int.inits[0];
+            if int.inits.iter().any(|i| *i != init) {
+                let message = format!("the elements of `{}` start with different values", int.name);
+                self.obstacles.push(Obstacle { message, origin: self.network.origin });
+            }
+            let _ = writeln!(self.out, "int:{size}:{lo}:{hi}:{init}:{}", int.name);
+        }
+    }
+
+    fn process(&mut self, a: usize, edges: &[Instance]) {
+        let automaton = self.automata[a];
+        let process = &self.names.processes[a];
+        let _ = writeln!(self.out, "process:{process}");
+        for (l, location) in automaton.locations.iter().enumerate() {
+            let name = &self.names.locations[a][l];
+            let mut attributes = Vec::new();
+            if usize::from(automaton.initial.0) == l {
+                attributes.push("initial:".to_owned());
+            }
+            match location.kind {
+                LocationKind::Normal => {}
+                LocationKind::Urgent => attributes.push("urgent:".to_owned()),
+                LocationKind::Committed => attributes.push("committed:".to_owned()),
+            }
+            let exprs = Exprs::new(self.program, &self.names, a, self.unit, &[]);
+            let mut parts: Vec<String> = Vec::new();
+            for c in &location.invariant {
+                match exprs.bound(c) {
+                    Ok(text) => parts.push(text),
+                    Err(message) => self.obstacles.push(Obstacle { message, origin: location.origin }),
+                }
+            }
+            if let Some(e) = &location.holds {
+                match exprs.conjunction(e) {
+                    Ok(all) => parts.extend(all),
+                    Err(message) => self.obstacles.push(Obstacle { message, origin: location.origin }),
+                }
+            }
+            if !parts.is_empty() {
+                attributes.push(format!("invariant: {}", parts.join(" && ")));
+            }
+            attributes.push(format!("labels: {process}_{name}"));
+            let _ = writeln!(self.out, "location:{process}:{name}{{{}}}", attributes.join(" : "));
+        }
+        for e in edges {
+            let name = |l: usize| &self.names.locations[a][l];
+            let mut attributes = Vec::new();
+            if !e.guard.is_empty() {
+                attributes.push(format!("provided: {}", e.guard.join(" && ")));
+            }
+            if !e.body.is_empty() {
+                attributes.push(format!("do: {}", e.body.join("; ")));
+            }
+            let attributes =
+                if attributes.is_empty() { String::new() } else { format!("{{{}}}", attributes.join(" : ")) };
+            let _ =
+                writeln!(self.out, "edge:{process}:{}:{}:{}{attributes}", name(e.from), name(e.to), e.event);
+        }
+    }
+}

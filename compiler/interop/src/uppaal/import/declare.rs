@@ -1,0 +1,383 @@
+//! Declarations: types, constants, variables, clocks, channels, functions.
+
+use std::rc::Rc;
+
+use hrdsl_source::Span;
+
+use super::{
+    ast::{Base, Decl, Declarator, Dim, ExprKind, Init, Param, Type},
+    fault::{Fault, fault},
+    scope::{
+        ArrayOf, ChanSym, ClockSym, FunctionSym, Level, Out, Owner, Range, Scalar, Sym, Ty, VarSym,
+        combinations, numbered,
+    },
+    translation::Cx,
+};
+
+/// Single values that one declaration may have.
+const MAX_VALUES: i64 = 256;
+
+/// UPPAAL's integers without a range.
+const INT: (i64, i64) = (-32768, 32767);
+
+impl Cx<'_> {
+    // ── Types ──
+
+    pub fn ty(&mut self, ty: &Type) -> Result<Ty, Fault> {
+        match &ty.base {
+            Base::Int(None) => Ok(Ty::Data(Scalar::range(INT.0, INT.1), Vec::new())),
+            Base::Int(Some(bounds)) => {
+                let (lo, hi) = (self.expr(&bounds.0)?.into_int(), self.expr(&bounds.1)?.into_int());
+                let (Some(l), Some(h)) = (lo.value, hi.value) else {
+                    return fault(ty.span, "the bounds of a type must be constant");
+                };
+                if l > h {
+                    return fault(ty.span, format!("the range {l}..{h} is empty"));
+                }
+                let text = format!("{}..{}", lo.at(Level::Sum), hi.at(Level::Sum));
+                Ok(Ty::Data(Scalar { text, ..Scalar::range(l, h) }, Vec::new()))
+            }
+            Base::Bool => Ok(Ty::Data(Scalar::bool(), Vec::new())),
+            Base::Clock => Ok(Ty::Clock(Vec::new())),
+            Base::Chan => {
+                let (urgent, broadcast) = (ty.urgent, ty.broadcast);
+                Ok(Ty::Chan { urgent, broadcast, dims: Vec::new() })
+            }
+            Base::Void => Ok(Ty::Void),
+            Base::Named(name) => match self.find(name).cloned() {
+                Some(Sym::Type(Ty::Chan { urgent, broadcast, dims })) => {
+                    let (urgent, broadcast) = (urgent || ty.urgent, broadcast || ty.broadcast);
+                    Ok(Ty::Chan { urgent, broadcast, dims })
+                }
+                Some(Sym::Type(ty)) => Ok(ty),
+                Some(other) => fault(ty.span, format!("`{name}` is {}, not a type", other.noun())),
+                None => fault(ty.span, format!("there is no type `{name}`")),
+            },
+        }
+    }
+
+    /// A type with the dimensions that stand after the name.
+    pub fn declared(&mut self, ty: &Type, dims: &[Dim]) -> Result<Ty, Fault> {
+        let own = dims.iter().map(|d| self.dim(d)).collect::<Result<Vec<_>, _>>()?;
+        let with = |dims: Vec<Range>| own.iter().copied().chain(dims).collect::<Vec<_>>();
+        let out = match self.ty(ty)? {
+            Ty::Data(scalar, dims) => Ty::Data(scalar, with(dims)),
+            Ty::Clock(dims) => Ty::Clock(with(dims)),
+            Ty::Chan { urgent, broadcast, dims } => Ty::Chan { urgent, broadcast, dims: with(dims) },
+            Ty::Void => Ty::Void,
+        };
+        match &out {
+            Ty::Data(_, dims) | Ty::Clock(dims) => limited(dims, ty.span)?,
+            Ty::Chan { .. } | Ty::Void => {}
+        }
+        Ok(out)
+    }
+
+    fn dim(&mut self, dim: &Dim) -> Result<Range, Fault> {
+        let size = match dim {
+            Dim::Of(ty) => {
+                let scalar = self.scalar(ty)?;
+                return Ok(Range { lo: scalar.lo, hi: scalar.hi });
+            }
+            Dim::Size(e) => e,
+        };
+        if let ExprKind::Name(name) = &size.kind
+            && let Some(Sym::Type(ty)) = self.find(name)
+        {
+            return match ty {
+                Ty::Data(scalar, dims) if dims.is_empty() => Ok(Range { lo: scalar.lo, hi: scalar.hi }),
+                Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
+                    fault(size.span, format!("`{name}` is no type of indices"))
+                }
+            };
+        }
+        match self.constant(size)? {
+            n @ 1.. => Ok(Range { lo: 0, hi: n - 1 }),
+            n => fault(size.span, format!("an array has at least one element, not {n}")),
+        }
+    }
+
+    // ── Declarations ──
+
+    /// Declares for all (`own` is false) or in the process that is being written.
+    pub fn declare(&mut self, decl: &Decl, own: bool) {
+        let declared = match decl {
+            Decl::Vars(ty, declarators) => {
+                for declarator in declarators {
+                    if let Err(fault) = self.variable(ty, declarator, own) {
+                        self.faults.push(fault);
+                    }
+                }
+                Ok(())
+            }
+            Decl::Typedef(ty, declarator) => self.declared(ty, &declarator.dims).map(|ty| {
+                self.bind(&declarator.name, Sym::Type(ty), own);
+            }),
+            Decl::Function(function) => self.declare_function(function, own),
+            Decl::Instance(i) if own => fault(i.span, "a process is made in the system's declarations"),
+            Decl::Instance(_) | Decl::System(_) => Ok(()),
+        };
+        if let Err(fault) = declared {
+            self.faults.push(fault);
+        }
+    }
+
+    pub fn bind(&mut self, name: &str, sym: Sym, own: bool) {
+        let scope = match &mut self.process {
+            Some(process) if own => process,
+            Some(_) | None => &mut self.global,
+        };
+        scope.insert(name.to_owned(), sym);
+    }
+
+    fn owner(own: bool) -> Owner {
+        if own { Owner::Process } else { Owner::All }
+    }
+
+    fn variable(&mut self, ty: &Type, declarator: &Declarator, own: bool) -> Result<(), Fault> {
+        let Declarator { name, span, dims, init } = declarator;
+        let sym = match self.declared(ty, dims)? {
+            Ty::Data(scalar, dims) if ty.constant => self.constant_sym(declarator, scalar, dims, own)?,
+            Ty::Data(scalar, dims) => {
+                let written = self.names.fresh(name, *span, Self::owner(own));
+                let init = self.initial(&scalar, &dims, init.as_ref(), *span)?;
+                let line = var_line(&written, &scalar, &dims, &init);
+                self.add_line(line, own);
+                Sym::Var(VarSym {
+                    name: written,
+                    ty: scalar,
+                    dims,
+                    at: Vec::new(),
+                    values: None,
+                    own,
+                    local: false,
+                    readonly: false,
+                })
+            }
+            Ty::Clock(dims) => self.clock_sym(name, *span, dims, own),
+            Ty::Chan { urgent, broadcast, dims } => {
+                let written = self.names.fresh(name, *span, Owner::All);
+                if own {
+                    return fault(*span, "a channel is declared for all, not in a template");
+                }
+                let chan = ChanSym { name: written, dims, at: Vec::new(), urgent, broadcast };
+                self.channels.push(chan.clone());
+                Sym::Chan(chan)
+            }
+            Ty::Void => return fault(*span, "a variable cannot be `void`"),
+        };
+        self.bind(name, sym, own);
+        Ok(())
+    }
+
+    fn clock_sym(&mut self, name: &str, span: Span, dims: Vec<Range>, own: bool) -> Sym {
+        let written = self.names.fresh(name, span, Self::owner(own));
+        for at in combinations(&dims) {
+            // Elements of arrays are clocks of their own.
+            let clock = numbered(&written, &at);
+            if !at.is_empty() {
+                self.names.unused(&clock, Self::owner(own));
+            }
+            if own {
+                self.own_clocks.push(clock);
+            } else {
+                self.lines.push(format!("var {clock}: clock"));
+            }
+        }
+        Sym::Clock(ClockSym { name: written, dims, own })
+    }
+
+    fn constant_sym(
+        &mut self,
+        declarator: &Declarator,
+        scalar: Scalar,
+        dims: Vec<Range>,
+        own: bool,
+    ) -> Result<Sym, Fault> {
+        let Declarator { name, span, init, .. } = declarator;
+        let Some(init) = init else { return fault(*span, format!("the constant `{name}` has no value")) };
+        if dims.is_empty() {
+            let Init::One(e) = init else { return fault(*span, "expected one value") };
+            let value = self.expr(e)?.of_type(scalar.is_bool);
+            let Some(n) = value.value else { return fault(e.span, "this must be constant") };
+            in_range(&scalar, n, e.span)?;
+            if own {
+                return Ok(Sym::Const(scalar.literal(n)));
+            }
+            let written = self.names.fresh(name, *span, Owner::All);
+            self.lines.push(format!("const {written} = {}", value.text));
+            let out = Out::new(written, Level::Atom, scalar.is_bool);
+            return Ok(Sym::Const(Out { value: Some(n), ..out }));
+        }
+        let written = self.names.fresh(name, *span, Self::owner(own));
+        self.constant_array(written, scalar, dims, init, own, *span)
+    }
+
+    /// A constant array is written as a variable that nothing assigns, if an index is not constant.
+    fn constant_array(
+        &mut self,
+        name: String,
+        scalar: Scalar,
+        dims: Vec<Range>,
+        init: &Init,
+        own: bool,
+        span: Span,
+    ) -> Result<Sym, Fault> {
+        let text = self.initial(&scalar, &dims, Some(init), span)?;
+        let mut values = Vec::new();
+        self.flat(&scalar, &dims, Some(init), span, &mut values)?;
+        let (lo, hi) = (values.iter().min().copied(), values.iter().max().copied());
+        let narrow = match (lo.zip(hi), scalar.is_bool) {
+            (Some((lo, hi)), false) => Scalar::range(lo, hi),
+            (Some(_) | None, _) => scalar,
+        };
+        let line = var_line(&name, &narrow, &dims, &text);
+        let arrays = if own { &mut self.own_arrays } else { &mut self.arrays };
+        arrays.insert(name.clone(), (line, false));
+        let sizes = dims.iter().map(|d| usize::try_from(d.count()).unwrap_or(0)).collect();
+        Ok(Sym::Var(VarSym {
+            name,
+            ty: narrow,
+            dims,
+            at: Vec::new(),
+            values: Some(Rc::new(ArrayOf { sizes, values })),
+            own,
+            local: false,
+            readonly: true,
+        }))
+    }
+
+    /// Notes that a constant array is read with an index that is not constant.
+    pub fn use_array(&mut self, var: &VarSym) {
+        // In queries the name stands after that of the process.
+        let (process, name) = var.name.split_once('.').unwrap_or(("", &var.name));
+        let process = self.processes.iter_mut().find(|p| p.name == process);
+        let arrays = match process {
+            Some(process) => &mut process.arrays,
+            None if var.own => &mut self.own_arrays,
+            None => &mut self.arrays,
+        };
+        if let Some(entry) = arrays.get_mut(name) {
+            entry.1 = true;
+        }
+    }
+
+    fn add_line(&mut self, line: String, own: bool) {
+        if own { self.own_lines.push(line) } else { self.lines.push(line) }
+    }
+
+    /// The value that a variable starts with; tuples for arrays.
+    pub fn initial(
+        &mut self,
+        scalar: &Scalar,
+        dims: &[Range],
+        init: Option<&Init>,
+        span: Span,
+    ) -> Result<String, Fault> {
+        let Some((dim, rest)) = dims.split_first() else {
+            return match init {
+                None => Ok(scalar.literal(scalar.default()).text),
+                Some(Init::One(e)) => {
+                    let value = self.expr(e)?.of_type(scalar.is_bool);
+                    let Some(n) = value.value else { return fault(e.span, "this must be constant") };
+                    in_range(scalar, n, e.span)?;
+                    Ok(value.text)
+                }
+                Some(Init::List(_, span)) => fault(*span, "expected one value, not a list"),
+            };
+        };
+        let items = listed(init, *dim, span)?;
+        let parts = (0..dim.count())
+            .map(|i| {
+                let item = items.and_then(|all| all.get(usize::try_from(i).unwrap_or(0)));
+                self.initial(scalar, rest, item, span)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(if parts.len() == 1 { parts.concat() } else { format!("({})", parts.join(", ")) })
+    }
+
+    fn flat(
+        &mut self,
+        scalar: &Scalar,
+        dims: &[Range],
+        init: Option<&Init>,
+        span: Span,
+        out: &mut Vec<i64>,
+    ) -> Result<(), Fault> {
+        let Some((dim, rest)) = dims.split_first() else {
+            out.push(match init {
+                Some(Init::One(e)) => self.constant(e)?,
+                Some(Init::List(..)) | None => scalar.default(),
+            });
+            return Ok(());
+        };
+        let items = listed(init, *dim, span)?;
+        for i in 0..dim.count() {
+            let item = items.and_then(|all| all.get(usize::try_from(i).unwrap_or(0)));
+            self.flat(scalar, rest, item, span, out)?;
+        }
+        Ok(())
+    }
+
+    // ── Functions ──
+
+    fn declare_function(&mut self, decl: &super::ast::Function, own: bool) -> Result<(), Fault> {
+        let params =
+            decl.params.iter().map(|p| self.declared(&p.ty, &p.dims)).collect::<Result<Vec<_>, _>>()?;
+        let result = match self.ty(&decl.ty)? {
+            Ty::Void => None,
+            Ty::Data(scalar, dims) if dims.is_empty() => Some(scalar),
+            Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } => {
+                return fault(decl.ty.span, "a function gives a single value, or is `void`");
+            }
+        };
+        let is_plain =
+            |(p, ty): (&Param, &Ty)| !p.by_reference && matches!(ty, Ty::Data(_, d) if d.is_empty());
+        let plain = decl.params.iter().zip(&params).all(is_plain);
+        let name = plain.then(|| self.names.fresh(&decl.name, decl.span, Self::owner(own)));
+        let function = Rc::new(FunctionSym { decl: decl.clone(), params, result, own, name: name.clone() });
+        if let Some(name) = name {
+            self.write_function(&function, &name, Vec::new(), own)?;
+        }
+        self.bind(&decl.name, Sym::Function(function), own);
+        Ok(())
+    }
+}
+
+fn listed(init: Option<&Init>, dim: Range, span: Span) -> Result<Option<&[Init]>, Fault> {
+    match init {
+        None => Ok(None),
+        Some(Init::List(all, _)) if all.len() as i64 == dim.count() => Ok(Some(all)),
+        Some(Init::List(all, span)) => {
+            fault(*span, format!("this has {} values, and the array {}", all.len(), dim.count()))
+        }
+        Some(Init::One(_)) => fault(span, "an array is given its values in braces"),
+    }
+}
+
+pub fn in_range(scalar: &Scalar, n: i64, span: Span) -> Result<(), Fault> {
+    if (scalar.lo..=scalar.hi).contains(&n) {
+        return Ok(());
+    }
+    fault(span, format!("{n} is not in the range {}..{}", scalar.lo, scalar.hi))
+}
+
+fn limited(dims: &[Range], span: Span) -> Result<(), Fault> {
+    let count = dims.iter().try_fold(1i64, |n, d| n.checked_mul(d.count()));
+    match count {
+        Some(1..=MAX_VALUES) => Ok(()),
+        Some(_) | None => fault(span, format!("an array of more than {MAX_VALUES} values is not supported")),
+    }
+}
+
+pub fn type_text(scalar: &Scalar, dims: &[Range]) -> String {
+    if dims.is_empty() {
+        return scalar.text.clone();
+    }
+    let of = if scalar.is_bool { scalar.text.clone() } else { format!("({})", scalar.text) };
+    dims.iter().fold(of, |text, d| format!("{text}[{}]", d.count()))
+}
+
+pub fn var_line(name: &str, scalar: &Scalar, dims: &[Range], init: &str) -> String {
+    format!("var {name}: {} = {init}", type_text(scalar, dims))
+}

@@ -1,0 +1,186 @@
+//! Text of labels and declarations to tokens, with their places in the file.
+
+use hrdsl_source::{FileId, Span};
+
+use super::fault::Fault;
+
+/// A piece of a file: its characters with their places. In XML the characters are those that the entities stand for.
+#[derive(Clone, Debug, Default)]
+pub struct Piece {
+    pub file: FileId,
+    pub chars: Vec<(u32, char)>,
+    /// The place after the last character.
+    pub end: u32,
+}
+
+impl Piece {
+    /// A whole file.
+    pub fn of_file(file: FileId, text: &str) -> Self {
+        let chars = text.char_indices().map(|(i, c)| (i as u32, c)).collect();
+        Self { file, chars, end: text.len() as u32 }
+    }
+
+    pub fn span(&self) -> Span {
+        let start = self.chars.first().map_or(self.end, |(at, _)| *at);
+        Span { file: self.file, start, end: self.end }
+    }
+
+    pub fn text(&self) -> String {
+        self.chars.iter().map(|(_, c)| *c).collect()
+    }
+
+    pub fn is_blank(&self) -> bool {
+        self.chars.iter().all(|(_, c)| c.is_whitespace())
+    }
+
+    /// The characters of these indices.
+    pub fn part(&self, from: usize, to: usize) -> Self {
+        let end = self.chars.get(to).map_or(self.end, |(at, _)| *at);
+        let chars = self.chars.get(from..to.min(self.chars.len())).unwrap_or_default().to_vec();
+        Self { file: self.file, chars, end }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Tok {
+    Word(String),
+    Int(i64),
+    Mark(&'static str),
+    End,
+}
+
+impl Tok {
+    pub fn shown(&self) -> String {
+        match self {
+            Tok::Word(w) => format!("`{w}`"),
+            Tok::Int(n) => format!("`{n}`"),
+            Tok::Mark(m) => format!("`{m}`"),
+            Tok::End => "the end".to_owned(),
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Token {
+    pub tok: Tok,
+    pub span: Span,
+}
+
+/// The longest first.
+const MARKS: &[&str] = &[
+    "<<=", ">>=", "-->", ":=", "==", "!=", "<=", ">=", "<?", ">?", "&&", "||", "++", "--", "+=", "-=", "*=",
+    "/=", "%=", "&=", "|=", "^=", "<<", ">>", "->", "=", "<", ">", "+", "-", "*", "/", "%", "!", "?", ":",
+    ";", ",", ".", "(", ")", "[", "]", "{", "}", "&", "|", "^", "'", "~", "@", "#",
+];
+
+/// All tokens, the last of which is the end.
+pub fn lex(piece: &Piece) -> Result<Vec<Token>, Fault> {
+    let mut lexer = Lexer { piece, at: 0 };
+    let mut tokens = Vec::new();
+    loop {
+        lexer.blanks()?;
+        let start = lexer.place();
+        let tok = lexer.token()?;
+        let is_end = tok == Tok::End;
+        tokens.push(Token { tok, span: Span { file: piece.file, start, end: lexer.last() } });
+        if is_end {
+            return Ok(tokens);
+        }
+    }
+}
+
+struct Lexer<'a> {
+    piece: &'a Piece,
+    at: usize,
+}
+
+impl Lexer<'_> {
+    fn char(&self, ahead: usize) -> Option<char> {
+        self.piece.chars.get(self.at + ahead).map(|(_, c)| *c)
+    }
+
+    fn place(&self) -> u32 {
+        self.piece.chars.get(self.at).map_or(self.piece.end, |(at, _)| *at)
+    }
+
+    /// The place after the last character that was taken.
+    fn last(&self) -> u32 {
+        let last = self.at.checked_sub(1).and_then(|i| self.piece.chars.get(i));
+        last.map_or(self.piece.end, |(at, c)| at + c.len_utf8() as u32)
+    }
+
+    fn fault(&self, message: impl Into<String>) -> Fault {
+        let start = self.place();
+        Fault { span: Span { file: self.piece.file, start, end: start }, message: message.into() }
+    }
+
+    fn blanks(&mut self) -> Result<(), Fault> {
+        loop {
+            match (self.char(0), self.char(1)) {
+                (Some(c), _) if c.is_whitespace() => self.at += 1,
+                (Some('\\'), Some('\n')) => self.at += 2,
+                (Some('/'), Some('/')) => {
+                    while self.char(0).is_some_and(|c| c != '\n') {
+                        self.at += 1;
+                    }
+                }
+                (Some('/'), Some('*')) => self.comment()?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn comment(&mut self) -> Result<(), Fault> {
+        let open = self.fault("this comment is not closed: `*/` is missing");
+        self.at += 2;
+        loop {
+            match (self.char(0), self.char(1)) {
+                (Some('*'), Some('/')) => {
+                    self.at += 2;
+                    return Ok(());
+                }
+                (Some(_), _) => self.at += 1,
+                (None, _) => return Err(open),
+            }
+        }
+    }
+
+    fn token(&mut self) -> Result<Tok, Fault> {
+        let Some(c) = self.char(0) else { return Ok(Tok::End) };
+        if c.is_ascii_alphabetic() || c == '_' {
+            return Ok(Tok::Word(self.run(|c| c.is_ascii_alphanumeric() || c == '_' || c == '$')));
+        }
+        if c.is_ascii_digit() {
+            return self.number();
+        }
+        let fits = |mark: &&&str| mark.chars().enumerate().all(|(i, m)| self.char(i) == Some(m));
+        let Some(mark) = MARKS.iter().find(fits) else {
+            return Err(self.fault(format!("`{c}` is not part of the language of UPPAAL's models")));
+        };
+        self.at += mark.len();
+        Ok(Tok::Mark(mark))
+    }
+
+    fn run(&mut self, belongs: impl Fn(char) -> bool) -> String {
+        let mut word = String::new();
+        while let Some(c) = self.char(0).filter(|c| belongs(*c)) {
+            word.push(c);
+            self.at += 1;
+        }
+        word
+    }
+
+    fn number(&mut self) -> Result<Tok, Fault> {
+        let start = self.at;
+        let digits = self.run(|c| c.is_ascii_digit());
+        if self.char(0) == Some('.') && self.char(1).is_some_and(|c| c.is_ascii_digit()) {
+            self.at = start;
+            return Err(self.fault("numbers with a fraction (`double`) are not supported"));
+        }
+        let number = digits.parse::<i64>().ok().filter(|n| *n <= i64::from(i32::MAX));
+        number.map(Tok::Int).ok_or_else(|| {
+            let span = Span { file: self.piece.file, start: self.piece.chars[start].0, end: self.last() };
+            Fault { span, message: format!("{digits} is larger than UPPAAL's integers") }
+        })
+    }
+}

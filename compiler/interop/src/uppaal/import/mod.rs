@@ -1,0 +1,109 @@
+//! UPPAAL's models (`.xml`, flat DTD and newer) and queries (`.q`, or in the model) to a scenario.
+//!
+//! # Steps
+//! 1. `xml`: the file to templates and pieces of text, each character with its place
+//! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
+//! 3. `template`: the labels of each template
+//! 4. `declare`, `statement`: what is declared for all; functions
+//! 5. `process`: the processes of the system, each template with its arguments an automaton of its own
+//! 6. `clocks`: conditions over clocks, split into alternatives where a scenario has conjunctions only
+//! 7. `write`: the text
+//!
+//! From the third step on, all that is known is in one place (`translation`).
+//!
+//! [`import`] does them all. A model that a scenario cannot say is refused, with the name and place of what is in the
+//! way; a query that cannot be asked is left out.
+
+mod ast;
+mod clocks;
+mod declare;
+mod expr;
+mod fault;
+mod lex;
+mod parse;
+mod process;
+mod queries;
+mod scope;
+mod statement;
+mod template;
+mod translation;
+mod write;
+mod xml;
+
+use hrdsl_source::{FileId, Files, Position, Span};
+
+use self::{fault::Fault, translation::Cx};
+use crate::exchange::{
+    note::{Imported, Note, Severity, SyntaxError},
+    source::{Source, too_large},
+};
+
+/// How to import.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The scenario's name; otherwise that of the file.
+    pub name: Option<String>,
+}
+
+/// Makes a scenario of a model and queries about it.
+///
+/// # Errors
+/// What cannot be read, and what a scenario cannot say.
+pub fn import(
+    model: &Source,
+    questions: Option<&Source>,
+    options: &Options,
+) -> Result<Imported, Vec<SyntaxError>> {
+    let large: Vec<SyntaxError> = std::iter::once(model).chain(questions).filter_map(too_large).collect();
+    if !large.is_empty() {
+        return Err(large);
+    }
+    let mut files = Files::default();
+    let file = files.add(&model.name, &model.text);
+    let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
+    if let Some(source) = questions {
+        let file: FileId = files.add(&source.name, &source.text);
+        read.queries.extend(queries::read(file, &source.text));
+    }
+    let mut cx = Cx::new(&read);
+    let written =
+        cx.write(&options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned()), &model.name);
+    if !cx.faults.is_empty() {
+        return Err(errors(&files, cx.faults));
+    }
+    for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
+        cx.notes.push((span, Severity::Info, format!("`{old}` is called `{new}`")));
+    }
+    let skipped = read.skipped.iter().map(|(span, what)| (*span, Severity::LeftOut, what.clone()));
+    let mut notes: Vec<Note> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
+    notes.sort();
+    notes.dedup();
+    let text = hrdsl_syntax::format(&written).unwrap_or(written);
+    Ok(Imported { text, notes })
+}
+
+fn note(files: &Files, (span, severity, message): (Span, Severity, String)) -> Note {
+    let (file, Position { line, column }) = place(files, span);
+    Note { file, line, column, severity, message, help: None }
+}
+
+fn errors(files: &Files, faults: Vec<Fault>) -> Vec<SyntaxError> {
+    let error = |fault: Fault| {
+        let (file, Position { line, column }) = place(files, fault.span);
+        SyntaxError { file, line, column, message: fault.message }
+    };
+    let mut errors: Vec<SyntaxError> = faults.into_iter().map(error).collect();
+    errors.sort();
+    errors.dedup();
+    errors
+}
+
+fn place(files: &Files, span: Span) -> (String, Position) {
+    (files.get(span.file).map(|f| f.name.clone()).unwrap_or_default(), files.position(span))
+}
+
+/// The file's name without its folder and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}

@@ -1,0 +1,239 @@
+//! Tokens to declarations, statements and expressions.
+
+mod declaration;
+mod expression;
+mod statement;
+
+use hrdsl_source::Span;
+
+use super::{
+    ast::{Expr, Select, Sync},
+    fault::{Fault, unsupported},
+    lex::{Piece, Tok, Token, lex},
+};
+
+/// How deep expressions and statements may be nested.
+const MAX_DEPTH: usize = 60;
+
+type Parsed<T> = Result<T, Fault>;
+
+pub struct Parser {
+    tokens: Vec<Token>,
+    at: usize,
+    depth: usize,
+    /// Operators of the expression that is being read: they are as high as the expression can be.
+    operators: usize,
+}
+
+/// Words of declarations that mean things no scenario has.
+const UNSUPPORTED: &[(&str, &str)] = &[
+    ("scalar", "scalar sets (`scalar[n]`)"),
+    ("struct", "records (`struct`)"),
+    ("double", "numbers with a fraction (`double`)"),
+    ("string", "texts (`string`)"),
+    ("meta", "`meta` variables"),
+    ("hybrid", "hybrid clocks (`hybrid`)"),
+    ("dynamic", "dynamic templates (`dynamic`)"),
+    ("spawn", "dynamic templates (`spawn`)"),
+    ("gantt", "Gantt charts (`gantt`)"),
+    ("progress", "progress measures (`progress`)"),
+    ("before_update", "`before_update`"),
+    ("after_update", "`after_update`"),
+    ("import", "functions of libraries (`import`)"),
+    ("switch", "`switch`"),
+    ("break", "`break`"),
+    ("continue", "`continue`"),
+    ("assert", "`assert`"),
+    ("priority", "priorities of channels (`chan priority`)"),
+];
+
+impl Parser {
+    pub fn new(piece: &Piece) -> Parsed<Self> {
+        Ok(Self { tokens: lex(piece)?, at: 0, depth: 0, operators: 0 })
+    }
+
+    // ── Tokens ──
+
+    fn peek(&self) -> &Tok {
+        self.ahead(0)
+    }
+
+    fn ahead(&self, n: usize) -> &Tok {
+        self.tokens.get(self.at + n).map_or(&Tok::End, |t| &t.tok)
+    }
+
+    fn span(&self) -> Span {
+        self.tokens.get(self.at).or(self.tokens.last()).map_or_else(Span::default, |t| t.span)
+    }
+
+    /// The span of the token before.
+    fn last(&self) -> Span {
+        self.at.checked_sub(1).and_then(|i| self.tokens.get(i)).map_or_else(|| self.span(), |t| t.span)
+    }
+
+    fn next(&mut self) {
+        self.at = (self.at + 1).min(self.tokens.len().saturating_sub(1));
+    }
+
+    fn is(&self, mark: &str) -> bool {
+        matches!(self.peek(), Tok::Mark(m) if *m == mark)
+    }
+
+    fn is_word(&self, word: &str) -> bool {
+        matches!(self.peek(), Tok::Word(w) if w == word)
+    }
+
+    fn take(&mut self, mark: &str) -> bool {
+        let found = self.is(mark);
+        if found {
+            self.next();
+        }
+        found
+    }
+
+    fn take_word(&mut self, word: &str) -> bool {
+        let found = self.is_word(word);
+        if found {
+            self.next();
+        }
+        found
+    }
+
+    fn fault(&self, expected: &str) -> Fault {
+        let message = format!("expected {expected}, found {}", self.peek().shown());
+        Fault { span: self.span(), message }
+    }
+
+    fn expect(&mut self, mark: &str) -> Parsed<()> {
+        if self.take(mark) { Ok(()) } else { Err(self.fault(&format!("`{mark}`"))) }
+    }
+
+    fn name(&mut self, what: &str) -> Parsed<(String, Span)> {
+        self.supported()?;
+        match self.peek() {
+            Tok::Word(w) if !is_keyword(w) => {
+                let out = (w.clone(), self.span());
+                self.next();
+                Ok(out)
+            }
+            Tok::Word(_) | Tok::Int(_) | Tok::Mark(_) | Tok::End => Err(self.fault(what)),
+        }
+    }
+
+    /// Nothing follows.
+    pub fn end(&self) -> Parsed<()> {
+        if *self.peek() == Tok::End { Ok(()) } else { Err(self.fault("the end")) }
+    }
+
+    pub fn at_end(&self) -> bool {
+        *self.peek() == Tok::End
+    }
+
+    fn supported(&self) -> Parsed<()> {
+        let Tok::Word(word) = self.peek() else { return Ok(()) };
+        match UNSUPPORTED.iter().find(|(w, _)| w == word) {
+            Some((_, what)) => Err(unsupported(self.span(), what)),
+            None => Ok(()),
+        }
+    }
+
+    fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+        if self.depth == MAX_DEPTH {
+            return Err(Fault { span: self.span(), message: "this is nested too deeply".to_owned() });
+        }
+        self.depth += 1;
+        let out = parse(self);
+        self.depth -= 1;
+        out
+    }
+
+    // ── Labels ──
+
+    /// Expressions separated by commas, none if `close` is next.
+    pub fn list(&mut self, close: &str) -> Parsed<Vec<Expr>> {
+        let mut all = Vec::new();
+        if self.is(close) || self.at_end() {
+            return Ok(all);
+        }
+        loop {
+            all.push(self.expr()?);
+            if !self.take(",") {
+                return Ok(all);
+            }
+        }
+    }
+
+    pub fn selects(&mut self) -> Parsed<Vec<Select>> {
+        let mut all = Vec::new();
+        while !self.at_end() {
+            let (name, span) = self.name("the name of what is selected")?;
+            self.expect(":")?;
+            all.push(Select { name, ty: self.ty()?, span });
+            if !self.take(",") && !self.take(";") {
+                break;
+            }
+        }
+        Ok(all)
+    }
+
+    pub fn sync(&mut self) -> Parsed<Sync> {
+        let channel = self.postfix()?;
+        let offers = self.take("!");
+        if !offers && !self.take("?") {
+            return Err(self.fault("`!` or `?`"));
+        }
+        Ok(Sync { channel, offers })
+    }
+
+    /// `f --> g`, or `f` alone.
+    pub fn leads_to(&mut self) -> Parsed<(Expr, Option<Expr>)> {
+        let left = self.expr()?;
+        let right = if self.take("-->") { Some(self.expr()?) } else { None };
+        Ok((left, right))
+    }
+
+    /// `{ f } : a, b` or `: a, b`
+    pub fn measures(&mut self) -> Parsed<(Option<Expr>, Vec<Expr>)> {
+        let when = if self.take("{") {
+            let f = self.expr()?;
+            self.expect("}")?;
+            Some(f)
+        } else {
+            None
+        };
+        self.expect(":")?;
+        Ok((when, self.list(";")?))
+    }
+}
+
+fn is_keyword(word: &str) -> bool {
+    const WORDS: &[&str] = &[
+        "and",
+        "bool",
+        "broadcast",
+        "chan",
+        "clock",
+        "const",
+        "deadlock",
+        "do",
+        "else",
+        "exists",
+        "false",
+        "for",
+        "forall",
+        "if",
+        "imply",
+        "int",
+        "not",
+        "or",
+        "return",
+        "sum",
+        "system",
+        "true",
+        "typedef",
+        "urgent",
+        "void",
+        "while",
+    ];
+    WORDS.contains(&word)
+}

@@ -1,0 +1,364 @@
+//! The processes of the system: templates with their arguments, their locations and edges.
+
+use hrdsl_source::Span;
+use indexmap::IndexMap;
+
+use super::{
+    ast::{Expr, Instance, Param, Sync},
+    clocks::Conjunction,
+    declare::{in_range, var_line},
+    fault::{Fault, fault},
+    scope::{Out, Owner, Scope, Sym, Ty, VarSym, combinations, numbered},
+    template::ParsedEdge,
+    translation::{Cx, Process},
+    xml::{Kind, Location, Template, Transition},
+};
+
+/// How many processes a system may have.
+const MAX_PROCESSES: usize = 512;
+
+/// What a process is made of, before its automaton is written.
+pub struct Plan {
+    pub model_name: String,
+    pub args: Vec<i64>,
+    pub template: usize,
+    pub scope: Scope,
+    /// The text of its arguments, for people.
+    pub shown: Vec<String>,
+}
+
+impl Cx<'_> {
+    // ── Instances ──
+
+    /// What the name in the `system` line stands for: one process, or one for each value of its parameters.
+    pub fn plans(&mut self, name: &str, span: Span, instances: &[Instance]) -> Result<Vec<Plan>, Fault> {
+        let params = match instances.iter().find(|i| i.name == name) {
+            Some(instance) => instance.params.clone(),
+            None => match self.templates.iter().find(|t| t.name == name) {
+                Some(template) => template.params.clone(),
+                None => return fault(span, format!("there is no template or process `{name}`")),
+            },
+        };
+        let mut scalars = Vec::new();
+        for param in &params {
+            let ty = self.declared(&param.ty, &param.dims)?;
+            match ty {
+                Ty::Data(scalar, dims) if dims.is_empty() && !param.by_reference => scalars.push(scalar),
+                Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
+                    let message = format!(
+                        "`{name}` needs an argument for `{}`: make a process of it first",
+                        param.name
+                    );
+                    return fault(span, message);
+                }
+            }
+        }
+        let ranges: Vec<_> = scalars.iter().map(|s| super::scope::Range { lo: s.lo, hi: s.hi }).collect();
+        let count = ranges.iter().try_fold(1i64, |n, r| n.checked_mul(r.count()));
+        if count.is_none_or(|n| n > MAX_PROCESSES as i64) {
+            return fault(span, format!("`{name}` stands for more than {MAX_PROCESSES} processes"));
+        }
+        let mut plans = Vec::new();
+        for args in combinations(&ranges) {
+            let given = scalars.iter().zip(&args).map(|(s, n)| Sym::Const(s.literal(*n))).collect();
+            let (template, scope, shown) = self.bound(name, given, instances, span)?;
+            plans.push(Plan { model_name: name.to_owned(), args, template, scope, shown });
+        }
+        Ok(plans)
+    }
+
+    /// The template behind a name, with its parameters bound.
+    fn bound(
+        &mut self,
+        name: &str,
+        given: Vec<Sym>,
+        instances: &[Instance],
+        span: Span,
+    ) -> Result<(usize, Scope, Vec<String>), Fault> {
+        if let Some(at) = instances.iter().position(|i| i.name == name) {
+            // An instance is made of what stands before it.
+            let (instance, before) = (&instances[at], &instances[..at]);
+            let scope = instance.params.iter().map(|p| p.name.clone()).zip(given).collect();
+            let params = self.params_of(&instance.of, before, instance.span)?;
+            if params.len() != instance.args.len() {
+                let (want, got) = (params.len(), instance.args.len());
+                let message =
+                    format!("`{}` has {want} parameters, and is given {got} arguments", instance.of);
+                return fault(instance.span, message);
+            }
+            let outer = std::mem::replace(&mut self.locals, vec![scope]);
+            let args = params.iter().zip(&instance.args).map(|(p, a)| self.argument(p, a)).collect();
+            self.locals = outer;
+            let args: Result<Vec<Sym>, Fault> = args;
+            return self.bound(&instance.of, args?, before, instance.span);
+        }
+        let Some(template) = self.templates.iter().position(|t| t.name == name) else {
+            return fault(span, format!("there is no template `{name}`"));
+        };
+        let params = &self.templates[template].params;
+        let shown = params.iter().zip(&given).map(|(p, s)| format!("{} = {}", p.name, shown(s))).collect();
+        Ok((template, params.iter().map(|p| p.name.clone()).zip(given).collect(), shown))
+    }
+
+    fn params_of(&self, name: &str, instances: &[Instance], span: Span) -> Result<Vec<Param>, Fault> {
+        let instance = instances.iter().find(|i| i.name == name).map(|i| &i.params);
+        let template = || self.templates.iter().find(|t| t.name == name).map(|t| &t.params);
+        match instance.or_else(template) {
+            Some(params) => Ok(params.clone()),
+            None => fault(span, format!("there is no template `{name}`")),
+        }
+    }
+
+    fn argument(&mut self, param: &Param, arg: &Expr) -> Result<Sym, Fault> {
+        match self.declared(&param.ty, &param.dims)? {
+            Ty::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
+                let n = self.constant(arg)?;
+                in_range(&scalar, n, arg.span)?;
+                Ok(Sym::Const(scalar.literal(n)))
+            }
+            Ty::Data(scalar, dims) => match self.place(arg)? {
+                Sym::Const(out) if dims.is_empty() && param.ty.constant => Ok(Sym::Const(out)),
+                Sym::Var(mut v) if v.dims.len() == dims.len() && v.ty.is_bool == scalar.is_bool => {
+                    v.readonly |= param.ty.constant || !param.by_reference;
+                    Ok(Sym::Var(v))
+                }
+                other => fault(arg.span, format!("`{}` cannot be {}", param.name, other.noun())),
+            },
+            Ty::Clock(dims) => match self.place(arg)? {
+                Sym::Clock(c) if c.dims.len() == dims.len() => Ok(Sym::Clock(c)),
+                other => fault(arg.span, format!("`{}` is a clock, not {}", param.name, other.noun())),
+            },
+            Ty::Chan { dims, .. } => match self.place(arg)? {
+                Sym::Chan(c) if c.dims.len() == dims.len() => Ok(Sym::Chan(c)),
+                other => fault(arg.span, format!("`{}` is a channel, not {}", param.name, other.noun())),
+            },
+            Ty::Void => fault(param.span, "a parameter cannot be `void`"),
+        }
+    }
+
+    // ── Automata ──
+
+    /// Writes the automaton of a process.
+    pub fn automaton(&mut self, plan: Plan, name: String) {
+        self.names.start_process();
+        self.own_specialised.clear();
+        let template = &self.model.templates[plan.template];
+        self.process = Some(plan.scope);
+        self.own_values(plan.template);
+        let declarations = std::mem::take(&mut self.templates[plan.template].declarations);
+        declarations.iter().for_each(|d| self.declare(d, true));
+        self.templates[plan.template].declarations = declarations;
+        let written: Vec<String> = self.location_names(template);
+        let invariants = std::mem::take(&mut self.templates[plan.template].invariants);
+        let mut locations = Vec::new();
+        for (i, location) in template.locations.iter().enumerate() {
+            let invariant = invariants.get(i).and_then(Option::as_ref);
+            let made = self.location(location, &written[i], i == template.initial, invariant);
+            locations.extend(self.kept(made));
+        }
+        self.templates[plan.template].invariants = invariants;
+        let edges = std::mem::take(&mut self.templates[plan.template].edges);
+        let mut texts = Vec::new();
+        for (transition, edge) in template.transitions.iter().zip(&edges) {
+            let made = self.edge(transition, edge, &written);
+            texts.extend(self.kept(made).unwrap_or_default());
+        }
+        self.templates[plan.template].edges = edges;
+        let mut scope = self.process.take().unwrap_or_default();
+        for (location, written) in template.locations.iter().zip(&written) {
+            if let Some(name) = &location.name {
+                scope.insert(name.clone(), Sym::Location(written.clone()));
+            }
+        }
+        let mut doc = format!("The template `{}`", template.name);
+        if !plan.shown.is_empty() {
+            doc += &format!(", {}", plan.shown.join(", "));
+        }
+        self.processes.push(Process {
+            model_name: plan.model_name,
+            args: plan.args,
+            name,
+            scope,
+            arrays: std::mem::take(&mut self.own_arrays),
+            clocks: std::mem::take(&mut self.own_clocks),
+            lines: std::mem::take(&mut self.own_lines),
+            functions: std::mem::take(&mut self.own_functions),
+            locations,
+            edges: texts,
+            doc,
+        });
+    }
+
+    fn kept<T>(&mut self, made: Result<T, Fault>) -> Option<T> {
+        made.map_err(|fault| self.faults.push(fault)).ok()
+    }
+
+    /// A parameter by value that is assigned is a variable of the process.
+    fn own_values(&mut self, template: usize) {
+        let params = self.templates[template].params.clone();
+        for param in params {
+            let is_assigned = self.templates[template].assigned.contains(&param.name);
+            if param.by_reference || param.ty.constant || !is_assigned {
+                continue;
+            }
+            let Ok(Ty::Data(scalar, dims)) = self.declared(&param.ty, &param.dims) else { continue };
+            let value = match self.process.as_ref().and_then(|p| p.get(&param.name)) {
+                Some(Sym::Const(out)) if dims.is_empty() => out.text.clone(),
+                Some(_) | None => continue,
+            };
+            let name = self.names.fresh(&param.name, param.span, Owner::Process);
+            self.own_lines.push(var_line(&name, &scalar, &[], &value));
+            let (at, values) = (Vec::new(), None);
+            let sym = VarSym { name, ty: scalar, dims, at, values, own: true, local: false, readonly: false };
+            self.bind(&param.name, Sym::Var(sym), true);
+        }
+    }
+
+    fn location_names(&mut self, template: &Template) -> Vec<String> {
+        let mut names = IndexMap::new();
+        // Names of the model first: a nameless location gives way.
+        for (i, location) in template.locations.iter().enumerate() {
+            if let Some(name) = &location.name {
+                names.insert(i, self.names.fresh(name, location.span, Owner::Process));
+            }
+        }
+        let mut all = Vec::new();
+        for i in 0..template.locations.len() {
+            let name = names.get(&i).cloned();
+            all.push(name.unwrap_or_else(|| self.names.unused(&format!("l{i}"), Owner::Process)));
+        }
+        all
+    }
+
+    fn location(
+        &mut self,
+        location: &Location,
+        name: &str,
+        is_initial: bool,
+        invariant: Option<&Expr>,
+    ) -> Result<String, Fault> {
+        let mut text = doc(&location.comment);
+        if is_initial {
+            text += "init ";
+        }
+        text += match location.kind {
+            Kind::Normal => "",
+            Kind::Urgent => "urgent ",
+            Kind::Committed => "committed ",
+        };
+        text += &format!("location {name}");
+        let Some(invariant) = invariant else { return Ok(text) };
+        let alternatives = self.alternatives(invariant)?;
+        let [only] = alternatives.as_slice() else {
+            return fault(invariant.span, "an invariant over clocks cannot have `or`, `not ==` or `!=`");
+        };
+        match only.text() {
+            None => text += " { invariant false }",
+            Some(condition) if condition.is_empty() => {}
+            Some(condition) => text += &format!(" {{ invariant {condition} }}"),
+        }
+        Ok(text)
+    }
+
+    fn edge(&mut self, t: &Transition, edge: &ParsedEdge, names: &[String]) -> Result<Vec<String>, Fault> {
+        self.locals.push(Scope::new());
+        let made = self.edge_texts(t, edge, names);
+        self.locals.pop();
+        made
+    }
+
+    fn edge_texts(
+        &mut self,
+        t: &Transition,
+        edge: &ParsedEdge,
+        names: &[String],
+    ) -> Result<Vec<String>, Fault> {
+        let mut head = format!("{} -> {}", names[t.from], names[t.to]);
+        let mut selects = Vec::new();
+        self.names.start_function();
+        for select in &edge.select {
+            let scalar = self.scalar(&select.ty)?;
+            let name = self.names.fresh(&select.name, select.span, Owner::Function);
+            selects.push(format!("{name}: {}", scalar.text));
+            let (at, dims, values) = (Vec::new(), Vec::new(), None);
+            let sym = VarSym { name, ty: scalar, dims, at, values, own: false, local: true, readonly: true };
+            if let Some(scope) = self.locals.last_mut() {
+                scope.insert(select.name.clone(), Sym::Var(sym));
+            }
+        }
+        if !selects.is_empty() {
+            head += &format!(" select {}", selects.join(", "));
+        }
+        let guards = match &edge.guard {
+            Some(guard) => self.alternatives(guard)?,
+            None => vec![Conjunction::default()],
+        };
+        let sync = match &edge.sync {
+            Some(sync) => Some(self.sync(sync, guards.iter().any(|g| !g.clocks.is_empty()))?),
+            None => None,
+        };
+        let mut actions = Vec::new();
+        let mut on = String::new();
+        match sync {
+            Some((true, text)) => actions.push(text),
+            Some((false, text)) => on = format!(" on {text}"),
+            None => {}
+        }
+        edge.assign.iter().try_for_each(|e| self.effect(e, &mut actions))?;
+        let actions = if actions.is_empty() { String::new() } else { format!(" do {}", actions.join("; ")) };
+        let mut texts = Vec::new();
+        for guard in &guards {
+            match guard.text() {
+                None => {}
+                Some(when) if when.is_empty() => texts.push(format!("{head}{on}{actions}")),
+                Some(when) => texts.push(format!("{head} when {when}{on}{actions}")),
+            }
+        }
+        if let Some(first) = texts.first_mut() {
+            *first = doc(&t.comment) + first;
+        }
+        Ok(texts)
+    }
+
+    /// Whether the edge offers, and the channel with its arguments.
+    fn sync(&mut self, sync: &Sync, has_clocks: bool) -> Result<(bool, String), Fault> {
+        let sym = self.place(&sync.channel)?;
+        let channel = self.channel(&sym, sync.channel.span)?;
+        if channel.urgent && has_clocks && (sync.offers || !channel.broadcast) {
+            let message = format!("`{}` is urgent: its edges have no conditions over clocks", channel.name);
+            return fault(sync.channel.span, message);
+        }
+        let args: Vec<&str> = channel.at.iter().map(|a: &Out| a.text.as_str()).collect();
+        let args = if args.is_empty() { String::new() } else { format!("({})", args.join(", ")) };
+        Ok((sync.offers, channel.name.clone() + &args))
+    }
+
+    /// The automaton's name: that of the process, and the values that it ranges over.
+    pub fn automaton_name(&mut self, plan: &Plan, span: Span) -> String {
+        if plan.args.is_empty() {
+            return self.names.fresh(&plan.model_name, span, Owner::All);
+        }
+        let digit = plan.model_name.ends_with(|c: char| c.is_ascii_digit());
+        let wanted = match plan.args.as_slice() {
+            [only] if !digit && *only >= 0 => format!("{}{only}", plan.model_name),
+            args => numbered(&plan.model_name, args),
+        };
+        self.names.unused(&wanted, Owner::All)
+    }
+}
+
+fn shown(sym: &Sym) -> String {
+    match sym {
+        Sym::Const(out) => out.text.clone(),
+        Sym::Var(v) => super::expr::place_text(v),
+        Sym::Clock(c) => c.name.clone(),
+        Sym::Chan(c) => c.at.iter().fold(c.name.clone(), |text, at| format!("{text}[{}]", at.text)),
+        Sym::Location(l) => l.clone(),
+        Sym::Type(_) | Sym::Function(_) => sym.noun().to_owned(),
+    }
+}
+
+/// A doc comment and its line end, or nothing.
+pub fn doc(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!("/// {text}\n") }
+}

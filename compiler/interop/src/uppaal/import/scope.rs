@@ -1,0 +1,345 @@
+//! What names stand for, and what they are called in the scenario.
+
+use std::rc::Rc;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::token::{Class, KEYWORDS};
+use indexmap::{IndexMap, IndexSet};
+
+use super::ast;
+
+/// An expression of the scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Out {
+    pub text: String,
+    pub level: Level,
+    pub is_bool: bool,
+    /// A bool as 0 or 1.
+    pub value: Option<i64>,
+}
+
+/// How tightly an expression holds together, from the loosest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    Imply,
+    Or,
+    And,
+    Not,
+    Comparison,
+    Sum,
+    Product,
+    Factor,
+    Atom,
+}
+
+impl Out {
+    pub fn int(n: i64) -> Self {
+        let level = if n < 0 { Level::Factor } else { Level::Atom };
+        Self { text: n.to_string(), level, is_bool: false, value: Some(n) }
+    }
+
+    pub fn bool(b: bool) -> Self {
+        Self { text: b.to_string(), level: Level::Atom, is_bool: true, value: Some(i64::from(b)) }
+    }
+
+    pub fn new(text: String, level: Level, is_bool: bool) -> Self {
+        Self { text, level, is_bool, value: None }
+    }
+
+    /// In parentheses, if it holds together less tightly than it must here.
+    pub fn at(&self, level: Level) -> String {
+        if self.level < level { format!("({})", self.text) } else { self.text.clone() }
+    }
+
+    /// As a number: 1 for true, 0 for false.
+    pub fn into_int(self) -> Self {
+        match (self.is_bool, self.value) {
+            (false, _) => self,
+            (true, Some(n)) => Self::int(n),
+            (true, None) => Self::new(format!("if {} {{ 1 }} else {{ 0 }}", self.text), Level::Atom, false),
+        }
+    }
+
+    /// As a condition: a number is true if it is not 0.
+    pub fn into_bool(self) -> Self {
+        match (self.is_bool, self.value) {
+            (true, _) => self,
+            (false, Some(n)) => Self::bool(n != 0),
+            (false, None) => Self::new(format!("{} != 0", self.at(Level::Sum)), Level::Comparison, true),
+        }
+    }
+
+    pub fn of_type(self, is_bool: bool) -> Self {
+        if is_bool { self.into_bool() } else { self.into_int() }
+    }
+}
+
+/// The type of single values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scalar {
+    pub is_bool: bool,
+    pub lo: i64,
+    pub hi: i64,
+    /// `bool`, or `lo..hi` as written.
+    pub text: String,
+}
+
+impl Scalar {
+    pub fn bool() -> Self {
+        Self { is_bool: true, lo: 0, hi: 1, text: "bool".to_owned() }
+    }
+
+    pub fn range(lo: i64, hi: i64) -> Self {
+        Self { is_bool: false, lo, hi, text: format!("{lo}..{hi}") }
+    }
+
+    /// The value of a variable that is given none.
+    pub fn default(&self) -> i64 {
+        if self.lo <= 0 && 0 <= self.hi { 0 } else { self.lo }
+    }
+
+    pub fn literal(&self, n: i64) -> Out {
+        if self.is_bool { Out::bool(n != 0) } else { Out::int(n) }
+    }
+}
+
+/// The indices of one dimension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Range {
+    pub lo: i64,
+    pub hi: i64,
+}
+
+impl Range {
+    pub fn count(self) -> i64 {
+        self.hi - self.lo + 1
+    }
+}
+
+#[derive(Clone, Debug)]
+pub enum Ty {
+    Data(Scalar, Vec<Range>),
+    Clock(Vec<Range>),
+    Chan { urgent: bool, broadcast: bool, dims: Vec<Range> },
+    Void,
+}
+
+#[derive(Clone, Debug)]
+pub struct VarSym {
+    pub name: String,
+    pub ty: Scalar,
+    /// Those that no index has been given for.
+    pub dims: Vec<Range>,
+    /// The indices given so far, counted from 0.
+    pub at: Vec<Out>,
+    /// Of a constant array.
+    pub values: Option<Rc<ArrayOf>>,
+    /// Belongs to a process.
+    pub own: bool,
+    /// Belongs to a function.
+    pub local: bool,
+    pub readonly: bool,
+}
+
+/// The values of a constant array, the last dimension fastest.
+#[derive(Debug)]
+pub struct ArrayOf {
+    pub sizes: Vec<usize>,
+    pub values: Vec<i64>,
+}
+
+#[derive(Clone, Debug)]
+pub struct ClockSym {
+    pub name: String,
+    pub dims: Vec<Range>,
+    pub own: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct ChanSym {
+    pub name: String,
+    pub dims: Vec<Range>,
+    pub at: Vec<Out>,
+    pub urgent: bool,
+    pub broadcast: bool,
+}
+
+#[derive(Debug)]
+pub struct FunctionSym {
+    pub decl: ast::Function,
+    pub params: Vec<Ty>,
+    pub result: Option<Scalar>,
+    pub own: bool,
+    /// Its name, if it has no parameters that are references: then there is one function for all calls.
+    pub name: Option<String>,
+}
+
+#[derive(Clone, Debug)]
+pub enum Sym {
+    Const(Out),
+    Var(VarSym),
+    Clock(ClockSym),
+    Chan(ChanSym),
+    Type(Ty),
+    Function(Rc<FunctionSym>),
+    /// In queries: that a process is there.
+    Location(String),
+}
+
+impl Sym {
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Sym::Const(_) => "a constant",
+            Sym::Var(v) if !v.dims.is_empty() => "an array",
+            Sym::Var(_) => "a variable",
+            Sym::Clock(_) => "a clock",
+            Sym::Chan(_) => "a channel",
+            Sym::Type(_) => "a type",
+            Sym::Function(_) => "a function",
+            Sym::Location(_) => "a location",
+        }
+    }
+}
+
+pub type Scope = IndexMap<String, Sym>;
+
+/// Words with a meaning of their own where names stand.
+const TAKEN: &[&str] = &[
+    "sup",
+    "inf",
+    "deadlock",
+    "min",
+    "max",
+    "abs",
+    "norm",
+    "int",
+    "bool",
+    "float",
+    "string",
+    "self",
+    "distance",
+    "range",
+    "angle",
+    "visible",
+    "speed",
+    "joint_speed",
+    "holds",
+    "text",
+    "list",
+    "wait",
+    "while",
+    "for",
+    "fork",
+    "clock",
+    "bool",
+    "event",
+    "actor",
+];
+
+/// Names that are in use. Those of a process are kept apart from those of all, and differ from them.
+#[derive(Debug, Default)]
+pub struct Names {
+    global: IndexSet<String>,
+    own: IndexSet<String>,
+    /// Of the function that is being written.
+    local: IndexSet<String>,
+    pub renamed: Vec<(Span, String, String)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    All,
+    Process,
+    Function,
+}
+
+impl Names {
+    /// A name that is nothing else's; it is noted if it is another one than in the model.
+    pub fn fresh(&mut self, wanted: &str, span: Span, owner: Owner) -> String {
+        let name = self.unused(wanted, owner);
+        if name != wanted {
+            self.renamed.push((span, wanted.to_owned(), name.clone()));
+        }
+        name
+    }
+
+    /// The same for what has no name in the model.
+    pub fn unused(&mut self, wanted: &str, owner: Owner) -> String {
+        let base = crate::exchange::name::clean(wanted);
+        let mut name = base.clone();
+        let mut n = 1;
+        while is_reserved(&name) || self.has(&name, owner) {
+            n += 1;
+            name = if n == 2 && is_reserved(&base) { format!("{base}_") } else { format!("{base}_{n}") };
+        }
+        let pool = match owner {
+            Owner::All => &mut self.global,
+            Owner::Process => &mut self.own,
+            Owner::Function => &mut self.local,
+        };
+        pool.insert(name.clone());
+        name
+    }
+
+    fn has(&self, name: &str, owner: Owner) -> bool {
+        self.global.contains(name)
+            || owner != Owner::All && self.own.contains(name)
+            || owner == Owner::Function && self.local.contains(name)
+    }
+
+    pub fn start_process(&mut self) {
+        self.own.clear();
+    }
+
+    pub fn start_function(&mut self) {
+        self.local.clear();
+    }
+}
+
+fn is_reserved(name: &str) -> bool {
+    let keyword = KEYWORDS.iter().find(|k| k.word == name);
+    keyword.is_some_and(|k| k.class != Class::Soft) || is_soft_word(name) || TAKEN.contains(&name)
+}
+
+/// Soft keywords that are not taken as names everywhere.
+fn is_soft_word(name: &str) -> bool {
+    const WORDS: &[&str] = &[
+        "seed",
+        "method",
+        "because",
+        "predicts",
+        "with",
+        "init",
+        "committed",
+        "urgent",
+        "location",
+        "after",
+        "never",
+        "globally",
+        "invariant",
+        "select",
+        "broadcast",
+    ];
+    WORDS.contains(&name)
+}
+
+/// Every combination of indices, the last fastest.
+pub fn combinations(dims: &[Range]) -> Vec<Vec<i64>> {
+    let mut all = vec![Vec::new()];
+    for dim in dims {
+        all = all
+            .into_iter()
+            .flat_map(|before: Vec<i64>| {
+                (dim.lo..=dim.hi).map(move |i| before.iter().copied().chain([i]).collect())
+            })
+            .collect();
+    }
+    all
+}
+
+/// What a name is written as, with a minus as `m`: `x` at 1 and -2 is `x_1_m2`.
+pub fn numbered(name: &str, at: &[i64]) -> String {
+    at.iter().fold(name.to_owned(), |name, n| {
+        if *n < 0 { format!("{name}_m{}", n.unsigned_abs()) } else { format!("{name}_{n}") }
+    })
+}

@@ -1,0 +1,197 @@
+//! The text of the scenario.
+
+use hrdsl_source::Span;
+
+use super::{
+    ast::{Ask, Decl, Expr, Instance},
+    fault::Fault,
+    queries,
+    scope::{Owner, Range},
+    template,
+    translation::Cx,
+};
+use crate::exchange::note::Severity;
+
+impl Cx<'_> {
+    /// Writes everything; what is in the way is among the faults then.
+    pub fn write(&mut self, name: &str, file: &str) -> String {
+        let model = self.model;
+        let global = template::declarations(&model.declaration, &mut self.faults);
+        let mut system = Vec::new();
+        for piece in &model.system {
+            system.extend(template::declarations(piece, &mut self.faults));
+        }
+        for template in &model.templates {
+            let parsed = template::template(template, &mut self.faults);
+            self.templates.push(parsed);
+        }
+        if !self.faults.is_empty() {
+            return String::new();
+        }
+        let scenario = self.names.unused(name, Owner::All);
+        global.iter().for_each(|d| self.declare(d, false));
+        system.iter().for_each(|d| self.declare(d, false));
+        let network = self.names.unused("model", Owner::All);
+        self.all_processes(&system);
+        if !self.faults.is_empty() {
+            return String::new();
+        }
+        let asked = self.all_queries(&network);
+        self.text(&scenario, file, &network, &asked)
+    }
+
+    fn all_processes(&mut self, system: &[Decl]) {
+        let mut instances: Vec<Instance> = Vec::new();
+        let mut listed = None;
+        for decl in system {
+            match decl {
+                Decl::Instance(instance) => instances.push(instance.clone()),
+                Decl::System(names) => listed = Some(names.clone()),
+                Decl::Vars(..) | Decl::Typedef(..) | Decl::Function(_) => {}
+            }
+        }
+        let Some(listed) = listed else {
+            let span = self.model.system.last().map_or_else(Span::default, super::lex::Piece::span);
+            let message = "there is no line `system …;` that says what the system is made of".to_owned();
+            return self.faults.push(Fault { span, message });
+        };
+        let mut plans = Vec::new();
+        for (name, span) in &listed {
+            match self.plans(name, *span, &instances) {
+                Ok(made) => plans.extend(made.into_iter().map(|p| (p, *span))),
+                Err(fault) => self.faults.push(fault),
+            }
+        }
+        // All names first: what a process declares gives way to them.
+        let names: Vec<String> = plans.iter().map(|(p, span)| self.automaton_name(p, *span)).collect();
+        for ((plan, _), name) in plans.into_iter().zip(names) {
+            self.automaton(plan, name);
+        }
+    }
+
+    // ── Queries ──
+
+    fn all_queries(&mut self, network: &str) -> Vec<String> {
+        self.in_query = true;
+        let model = self.model;
+        let mut out = Vec::new();
+        for (i, query) in model.queries.iter().enumerate() {
+            let made = queries::parse(&query.formula).and_then(|ask| self.ask(&ask));
+            match made {
+                Ok(ask) => {
+                    let name = self.names.unused(&format!("q{}", i + 1), Owner::All);
+                    let title = if query.comment.is_empty() {
+                        String::new()
+                    } else {
+                        format!(" \"{}\"", escaped(&query.comment))
+                    };
+                    out.push(format!("query {name}{title} of {network} = {ask}"));
+                }
+                Err(fault) => {
+                    let shown = one_line(&query.formula.text());
+                    out.push(format!("// not carried over: {}\n//   {shown}", fault.message));
+                    self.notes.push((
+                        fault.span,
+                        Severity::LeftOut,
+                        format!("the query `{shown}`: {}", fault.message),
+                    ));
+                }
+            }
+        }
+        self.in_query = false;
+        out
+    }
+
+    fn ask(&mut self, ask: &Ask) -> Result<String, Fault> {
+        Ok(match ask {
+            Ask::Possibly(f) => format!("E<> {}", self.formula(f)?.text),
+            Ask::Invariantly(f) => format!("A[] {}", self.formula(f)?.text),
+            Ask::PotentiallyAlways(f) => format!("E[] {}", self.formula(f)?.text),
+            Ask::Eventually(f) => format!("A<> {}", self.formula(f)?.text),
+            Ask::LeadsTo(f, g) => format!("{} --> {}", self.formula(f)?.text, self.formula(g)?.text),
+            Ask::Sup(when, of) => self.bound_of("sup", when.as_ref(), of)?,
+            Ask::Inf(when, of) => self.bound_of("inf", when.as_ref(), of)?,
+        })
+    }
+
+    fn bound_of(&mut self, word: &str, when: Option<&Expr>, of: &[Expr]) -> Result<String, Fault> {
+        let when = match when {
+            Some(f) => format!("{{ {} }}", self.formula(f)?.text),
+            None => String::new(),
+        };
+        let of =
+            of.iter()
+                .map(|e| {
+                    if self.mentions_clock(e) {
+                        self.clock(e)
+                    } else {
+                        self.expr(e).map(|e| e.into_int().text)
+                    }
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+        Ok(format!("{word}{when}: {}", of.join(", ")))
+    }
+
+    // ── Text ──
+
+    fn text(&self, scenario: &str, file: &str, network: &str, asked: &[String]) -> String {
+        let mut text = format!("// From the UPPAAL model {}.\n", one_line(file));
+        text += "// One unit of its time is one second here.\n";
+        text += &format!("scenario {scenario}\n\n");
+        let renamed =
+            self.names.renamed.iter().map(|(_, old, new)| format!("// `{old}` is called `{new}`\n"));
+        text.extend(renamed.collect::<indexmap::IndexSet<_>>());
+        let arrays = self.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
+        let channels = self.channels.iter().map(channel);
+        section(&mut text, self.lines.iter().cloned().chain(arrays));
+        section(&mut text, channels);
+        self.functions.iter().for_each(|f| text += &format!("\n{f}\n"));
+        for process in &self.processes {
+            text += &format!("\n/// {}.\nautomaton {} {{\n", process.doc, process.name);
+            if !process.clocks.is_empty() {
+                text += &format!("clock {}\n", process.clocks.join(", "));
+            }
+            let arrays = process.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
+            section(&mut text, process.lines.iter().cloned().chain(arrays));
+            process.functions.iter().for_each(|f| text += &format!("\n{f}\n"));
+            section(&mut text, process.locations.iter().cloned());
+            section(&mut text, process.edges.iter().cloned());
+            text += "}\n";
+        }
+        let names: Vec<&str> = self.processes.iter().map(|p| p.name.as_str()).collect();
+        text += &format!("\nnetwork {network} = {}\n", names.join(" | "));
+        section(&mut text, asked.iter().cloned());
+        text
+    }
+}
+
+fn section(text: &mut String, lines: impl Iterator<Item = String>) {
+    let lines: Vec<String> = lines.collect();
+    if !lines.is_empty() {
+        *text += &format!("\n{}\n", lines.join("\n"));
+    }
+}
+
+fn channel(channel: &super::scope::ChanSym) -> String {
+    let index =
+        |(i, d): (usize, &Range)| format!("{}: {}..{}", ["i", "j", "k"].get(i).unwrap_or(&"n"), d.lo, d.hi);
+    let mut text = format!("channel {}", channel.name);
+    if channel.dims.len() > 3 {
+        let params = channel.dims.iter().enumerate().map(|(i, d)| format!("i{i}: {}..{}", d.lo, d.hi));
+        text += &format!("({})", params.collect::<Vec<_>>().join(", "));
+    } else if !channel.dims.is_empty() {
+        let params: Vec<String> = channel.dims.iter().enumerate().map(index).collect();
+        text += &format!("({})", params.join(", "));
+    }
+    let words = [("urgent", channel.urgent), ("broadcast", channel.broadcast)];
+    let words: Vec<&str> = words.iter().filter(|(_, on)| *on).map(|(w, _)| *w).collect();
+    if words.is_empty() { text } else { format!("{text} : {}", words.join(" ")) }
+}
+
+fn escaped(text: &str) -> String {
+    one_line(text).replace('\\', "\\\\").replace('"', "\\\"")
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,105 @@
+//! The import of TChecker's format: what becomes of every construct, and what is wrong with wrong files.
+
+#![allow(clippy::disallowed_methods, reason = "tests read files")]
+
+use std::{fs, path::Path};
+
+use hrdsl_compiler::{Input, compile};
+use hrdsl_interop::{
+    Imported, Source, SyntaxError,
+    tchecker::{Options, import},
+};
+
+fn of(text: &str) -> Result<Imported, Vec<SyntaxError>> {
+    import(&Source { name: "model.txt".to_owned(), text: text.to_owned() }, &Options::default())
+}
+
+fn fixture(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tchecker");
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// The errors of the scenario.
+fn errors(text: &str) -> Vec<String> {
+    let compilation = compile(Input { name: "model.hri", text }, &[]);
+    let wrong = compilation.diagnostics.iter().filter(|d| d.is_error());
+    wrong.map(|d| format!("{}: {} {}", compilation.files.place(d.span()), d.code, d.message)).collect()
+}
+
+fn shown(imported: &Imported) -> String {
+    let notes: Vec<String> = imported.notes.iter().map(ToString::to_string).collect();
+    format!("{}\n----\n{}", imported.text, notes.join("\n"))
+}
+
+#[test]
+fn a_model_becomes_a_scenario() {
+    insta::assert_snapshot!(shown(&of(&fixture("fischer.txt")).unwrap()));
+}
+
+#[test]
+fn every_construct_is_kept_or_told() {
+    insta::assert_snapshot!(shown(&of(&fixture("everything.txt")).unwrap()));
+}
+
+#[test]
+fn what_is_imported_compiles() {
+    for name in ["fischer.txt", "everything.txt"] {
+        assert_eq!(errors(&of(&fixture(name)).unwrap().text), Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+fn faults_are_told_with_their_places() {
+    let wrong = [
+        "",
+        "process:P",
+        "system:s\nsystem:t",
+        "system:s\nprocess:P\nlocation:P:a",
+        "system:s\nprocess:P\nlocation:P:a{initial:",
+        "system:s\nprocess:P\nlocation:P:a{initial}",
+        "system:s\nprocess:P\nlocation:Q:a{initial:}",
+        "system:s\nprocess:P\nlocation:P:a{initial: : invariant: x<=3}",
+        "system:s\nclock:1:x\nprocess:P\nlocation:P:a{initial: : invariant: x!=3}",
+        "system:s\nclock:1:x\nprocess:P\nlocation:P:a{initial: : invariant: x<=}",
+        "system:s\nclock:0:x",
+        "system:s\nint:1:3:1:2:i",
+        "system:s\nint:1:0:1:0",
+        "system:s\nevent:e\nprocess:P\nlocation:P:a{initial:}\nedge:P:a:b:e",
+        "system:s\nevent:e\nprocess:P\nlocation:P:a{initial:}\nedge:P:a:a:f",
+        "system:s\nclock:1:x\nevent:e\nprocess:P\nlocation:P:a{initial:}\nedge:P:a:a:e{do: if 1 then x=0 end}",
+        "system:s\nevent:e\nprocess:P\nsync:P@e",
+        "system:s\nwhat:e",
+        "system:s\nevent:e\nevent:e",
+        "system:s\nclock:2:x\nprocess:P\nlocation:P:a{initial: : invariant: x[2]<1}",
+    ];
+    let told: Vec<String> = wrong
+        .iter()
+        .map(|text| {
+            let errors = of(text).expect_err(text);
+            errors
+                .iter()
+                .map(|e| format!("{}:{}: {}", e.line, e.column, e.message))
+                .collect::<Vec<_>>()
+                .join("\n")
+        })
+        .collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
+
+/// Whatever is cut or changed, there is a scenario or an error, and never a panic.
+#[test]
+fn broken_files_are_survived() {
+    let text = fixture("everything.txt");
+    for at in (0..text.len()).filter(|at| text.is_char_boundary(*at)) {
+        let _ = of(&text[..at]);
+        let mut without = text.clone();
+        without.remove(at);
+        let _ = of(&without);
+        let _ = of(&format!("{}:{}", &text[..at], &text[at..]));
+    }
+    let deep = format!(
+        "system:s\nevent:e\nprocess:P\nlocation:P:a{{initial:}}\nedge:P:a:a:e{{provided: {}1}}",
+        "(".repeat(100_000)
+    );
+    assert!(of(&deep).is_err());
+}

@@ -1,0 +1,360 @@
+//! UPPAAL's models to scenarios: what they become, what is refused, and that no file breaks the import.
+//!
+//! `HRDSL_RENEW=1 cargo test -p hrdsl-interop --test uppaal_import` writes the expected text anew; the difference is read.
+#![allow(clippy::disallowed_methods, reason = "tests read files")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use hrdsl_compiler::{Input, compile};
+use hrdsl_interop::{
+    Imported, Severity, Source, SyntaxError,
+    uppaal::{Options, import},
+};
+use hrdsl_source::FileId;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/uppaal")
+}
+
+fn file(name: &str) -> Source {
+    Source { name: name.to_owned(), text: fs::read_to_string(root().join(name)).unwrap() }
+}
+
+fn handover() -> Imported {
+    import(&file("handover.xml"), Some(&file("handover.q")), &Options::default()).unwrap()
+}
+
+/// A model of one template `P` with two locations, `a` and `b`.
+fn model(global: &str, parameters: &str, local: &str, labels: &[(&str, &str)], system: &str) -> String {
+    let escaped = |t: &str| t.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let label = |(kind, text): &(&str, &str)| format!("<label kind=\"{kind}\">{}</label>", escaped(text));
+    let of =
+        |kinds: &[&str]| -> String { labels.iter().filter(|l| kinds.contains(&l.0)).map(label).collect() };
+    format!(
+        "<nta><declaration>{}</declaration><template><name>P</name><parameter>{}</parameter>\n\
+         <declaration>{}</declaration>\n<location id=\"a\"><name>a</name>{}</location><location id=\"b\"/>\n\
+         <init ref=\"a\"/><transition><source ref=\"a\"/><target ref=\"b\"/>\n{}</transition></template>\n\
+         <system>{}</system></nta>",
+        escaped(global),
+        escaped(parameters),
+        escaped(local),
+        of(&["invariant"]),
+        of(&["select", "guard", "synchronisation", "assignment"]),
+        escaped(system),
+    )
+}
+
+fn from_text(text: &str, queries: &str) -> Result<Imported, Vec<SyntaxError>> {
+    let model = Source { name: "m.xml".to_owned(), text: text.to_owned() };
+    let queries = Source { name: "m.q".to_owned(), text: queries.to_owned() };
+    import(&model, Some(&queries), &Options::default())
+}
+
+fn edges(global: &str, local: &str, labels: &[(&str, &str)]) -> String {
+    let imported =
+        from_text(&model(global, "", local, labels, "system P;"), "").unwrap_or_else(|e| panic!("{e:?}"));
+    is_readable(&imported.text);
+    let edges = imported.text.lines().filter(|l| l.trim_start().starts_with("a -> "));
+    edges.map(str::trim).collect::<Vec<_>>().join("\n")
+}
+
+/// The text can be read, and is in the style of the language.
+fn is_readable(text: &str) {
+    let (_, diagnostics) = hrdsl_syntax::parse(FileId(0), text);
+    let said: Vec<String> = diagnostics.iter().map(|d| d.message.clone()).collect();
+    assert_eq!(said, Vec::<String>::new(), "{text}");
+    assert_eq!(hrdsl_syntax::format(text).unwrap(), text);
+}
+
+fn compiles(text: &str) {
+    let compilation = compile(Input { name: "m.hri", text }, &[]);
+    let wrong: Vec<String> = compilation
+        .diagnostics
+        .iter()
+        .filter(|d| d.is_error())
+        .map(|d| format!("{}: {} {}", compilation.files.place(d.span()), d.code, d.message))
+        .collect();
+    assert!(wrong.is_empty(), "{}\n{text}", wrong.join("\n"));
+}
+
+#[test]
+fn handover_becomes_the_expected_scenario() {
+    let imported = handover();
+    is_readable(&imported.text);
+    let path = root().join("handover.hri");
+    if std::env::var_os("HRDSL_RENEW").is_some() {
+        fs::write(&path, &imported.text).unwrap();
+    }
+    assert_eq!(imported.text, fs::read_to_string(path).unwrap_or_default());
+    let left_out: Vec<_> = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).collect();
+    assert_eq!(left_out.len(), 1);
+    assert!(left_out[0].message.contains("`Pr`"), "{}", left_out[0].message);
+    assert_eq!((left_out[0].file.as_str(), left_out[0].column), ("handover.q", 1));
+}
+
+#[test]
+fn handover_has_no_errors() {
+    compiles(&handover().text);
+}
+
+#[test]
+fn clocks_under_or_become_several_edges() {
+    let made = edges("int n;", "clock x, y;", &[("guard", "x < 3 or (y >= n + 1 and n > 0)")]);
+    assert_eq!(made, "a -> l1 when x < 3 s\na -> l1 when y >= (n + 1) * 1 s && n > 0");
+    let made = edges("", "clock x;", &[("guard", "x != 4")]);
+    assert_eq!(made, "a -> l1 when x < 4 s\na -> l1 when x > 4 s");
+    let made = edges("", "clock x, y;", &[("guard", "!(x - y <= 2 || 7 > y)")]);
+    assert_eq!(made, "a -> l1 when x - y > 2 s && y >= 7 s");
+    let made = edges("bool b;", "clock x;", &[("guard", "b ? x > 1 : 2 < x")]);
+    assert_eq!(made, "a -> l1 when x > 1 s && b\na -> l1 when x > 2 s && not b");
+}
+
+#[test]
+fn bools_and_numbers_are_told_apart() {
+    let made =
+        edges("int[0,3] n; bool b;", "", &[("guard", "n and b == 1"), ("assignment", "b := n, n = b + 1")]);
+    let want =
+        "a -> l1 when n != 0 && if b { 1 } else { 0 } == 1 do b = n != 0; n = if b { 1 } else { 0 } + 1";
+    assert_eq!(made, want);
+}
+
+#[test]
+fn words_bind_looser_than_assignments_and_marks_tighter() {
+    let made = edges("bool p, q, r;", "", &[("guard", "p || q and not r == p imply q")]);
+    assert_eq!(made, "a -> l1 when (p || q) && not (r == p) imply q");
+    let made = edges("int n, k;", "", &[("assignment", "n = k = n <? 3 >? k, k++, --n, n *= k + 1")]);
+    assert_eq!(made, "a -> l1 do k = max(min(n, 3), k); n = k; k += 1; n -= 1; n = n * (k + 1)");
+}
+
+#[test]
+fn quantifiers_are_expanded() {
+    let global = "typedef int[1,3] id; bool f[id]; int n;";
+    let labels = [("guard", "forall (i : id) f[i] || i == 2")];
+    let made = edges(global, "", &labels);
+    assert_eq!(made, "a -> l1 when f[0] && f[2]");
+    compiles(&from_text(&model(global, "", "", &labels, "system P;"), "").unwrap().text);
+}
+
+#[test]
+fn the_old_language_is_read() {
+    let text = model(
+        "const N 5; const M := 3; int[0,N] i := 2; chan c[N];",
+        "const k; int &r",
+        "clock x; const D k * 2;",
+        &[("invariant", "x <= D, i < 9"), ("guard", "x >= M, i > 1"), ("assignment", "x := 0, r := k")],
+        "Q := P(2, i); system Q;",
+    );
+    let text = text.replace("const D k * 2;", "const int D := k * 2;").replace("const k;", "const int k;");
+    let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
+    is_readable(&imported.text);
+    assert!(imported.text.contains("init location a { invariant x <= 4 s && i < 9 }"), "{}", imported.text);
+    assert!(imported.text.contains("when x >= M * 1 s && i > 1 do x = 0; i = 2"), "{}", imported.text);
+    compiles(&imported.text);
+}
+
+#[test]
+fn templates_are_instantiated() {
+    let global = "typedef int[0,1] id; chan c[2][id]; int v[3]; clock w; void up(int &n) { n++; } \
+                  int pick(const int a[3], int i) { return a[i]; }";
+    let labels = [
+        ("guard", "w > 2 && pick(v, k) == 0"),
+        ("synchronisation", "d[k]!"),
+        ("assignment", "up(r), up(mine), count -= 1, t = 0"),
+    ];
+    let text = model(
+        global,
+        "const id k, int &r, chan &d[id], clock &t, int count",
+        "int mine;",
+        &labels,
+        "Q(const id j) = P(j, v[j + 1], c[1], w, 7); R = P(1, v[0], c[0], w, 3); system R, Q;",
+    );
+    let imported =
+        from_text(&text, "E<> Q(1).a and R.count < 3 \n A[] forall (i : id) Q(i).mine == 0 ").unwrap();
+    is_readable(&imported.text);
+    assert!(imported.text.contains("network model = R | Q0 | Q1"), "{}", imported.text);
+    assert!(imported.text.contains("E<> Q1.a && R.count < 3"), "{}", imported.text);
+    assert!(imported.text.contains("A[] Q0.mine == 0 && Q1.mine == 0"), "{}", imported.text);
+    compiles(&imported.text);
+}
+
+#[test]
+fn statements_become_statements() {
+    let global = "int[0,9] m[2][3] = { { 1, 2, 3 }, { 4, 5, 6 } }; const int[0,5] T[3] = { 5, 0, 2 };\n\
+        int total(int upto) { int n = 0, i; for (i = 0; i < upto; i++) { n += m[1][i]; if (n > 20) return n; } \
+        do { n--; } while (n > 9); while (n % 2 == 1) n = n / 2; \
+        for (j : int[0,2]) { int[0,5] t = T[j]; if (t > 0) n = n + t; else { n++; } } return n >? 0; }\n\
+        void swap(int &x, int &y) { int h = x; x = y; y = h; }";
+    let labels = [("guard", "total(2) > 1"), ("assignment", "swap(m[0][1], m[1][2]), m[0][T[2]] = 3")];
+    let imported = from_text(&model(global, "", "", &labels, "system P;"), "").unwrap();
+    is_readable(&imported.text);
+    assert!(imported.text.contains("m_2[0][2] = 3"), "{}", imported.text);
+    compiles(&imported.text);
+}
+
+#[test]
+fn names_that_mean_something_else_are_changed() {
+    let text = model(
+        "int actor, when, P2; clock after;",
+        "",
+        "int when;",
+        &[("guard", "when < actor && after > 1")],
+        "system P;",
+    );
+    let imported = from_text(&text, "").unwrap();
+    is_readable(&imported.text);
+    assert!(imported.text.contains("when after_ > 1 s && when_3 < actor_"), "{}", imported.text);
+    assert!(imported.notes.iter().any(|n| n.message == "`actor` is called `actor_`"), "{:?}", imported.notes);
+}
+
+/// What is refused names what is in the way, and its place.
+#[test]
+fn what_a_scenario_cannot_say_is_refused_by_name() {
+    let bad = [
+        ("hybrid clock x;", "`hybrid`"),
+        ("scalar[3] s;", "`scalar[n]`"),
+        ("typedef struct { int a; } s;", "`struct`"),
+        ("double d;", "`double`"),
+        ("meta int m;", "`meta`"),
+        ("chan a, b; chan priority a < b;", "`chan priority`"),
+        ("int n = 1 << 2;", "`<<`"),
+        ("int n = m;", "there is no `m`"),
+        ("int[0,3] n = 4;", "4 is not in the range 0..3"),
+        ("int f() { return f(); }", "there is no function `f`"),
+        ("clock x; void f() { x = 0; }", "cannot set clocks"),
+        ("int a[1000];", "256"),
+        ("void f() { int n; n = n++ + 1; }", "`++` and `--` within an expression"),
+        ("int x = ;", "expected an expression, found `;`"),
+        ("/* open", "not closed"),
+    ];
+    for (global, why) in bad {
+        let errors = from_text(&model(global, "", "", &[], "system P;"), "").unwrap_err();
+        assert!(errors.iter().any(|e| e.message.contains(why)), "{global}: {errors:?}");
+        assert!(
+            errors.iter().all(|e| e.file == "m.xml" && e.line == 1 && e.column > 18),
+            "{global}: {errors:?}"
+        );
+    }
+    let whole = [
+        (model("", "", "", &[], "system P < P;"), "priorities of processes"),
+        (model("", "", "", &[], "P1 = P();"), "no line `system"),
+        (model("", "", "", &[], "system Q;"), "there is no template or process `Q`"),
+        (model("", "int n", "", &[], "system P;"), "stands for more than"),
+        (model("", "chan &c", "", &[], "system P;"), "needs an argument for `c`"),
+        (model("", "", "clock x;", &[("invariant", "x' == 0")], "system P;"), "rates of clocks"),
+        (
+            model("", "", "clock x;", &[("invariant", "x < 1 || x > 2")], "system P;"),
+            "an invariant over clocks",
+        ),
+        (
+            model(
+                "urgent chan c;",
+                "",
+                "clock x;",
+                &[("synchronisation", "c!"), ("guard", "x > 1")],
+                "system P;",
+            ),
+            "urgent",
+        ),
+        (model("", "", "", &[], "system P;").replace("<init ref=\"a\"/>", ""), "no initial location"),
+        (
+            model("", "", "", &[], "system P;")
+                .replace("<transition>", "<branchpoint id=\"c\"/><transition>"),
+            "`branchpoint`",
+        ),
+        (model("", "", "", &[], "system P;").replace("<init", "<blob/><init"), "an element `blob`"),
+    ];
+    for (text, why) in whole {
+        let errors = from_text(&text, "").unwrap_err();
+        assert!(errors.iter().any(|e| e.message.contains(why)), "{why}: {errors:?}");
+    }
+}
+
+#[test]
+fn queries_that_cannot_be_asked_are_left_out() {
+    let text = model("int n; clock x;", "", "", &[], "system P;");
+    let asked = "E<> P.a\nsimulate [<=10] { n }\nA[] P.c\n//\nE[] n < 3 and x <= 4\nP.a --> deadlock\nE<> n\nsup{P.a}: x, n\n\
+                 E[<=10; 20](max: n)\nstrategy s = control: A<> P.a\nA<> not P.a \\\n  and n == 0";
+    let imported = from_text(&text, asked).unwrap();
+    is_readable(&imported.text);
+    let queries: Vec<&str> = imported.text.lines().filter(|l| l.starts_with("query")).collect();
+    assert_eq!(queries.len(), 6, "{}", imported.text);
+    assert!(imported.text.contains("A<> not P.a && n == 0"), "{}", imported.text);
+    assert!(imported.text.contains("sup { P.a }: x, n"), "{}", imported.text);
+    let left_out: Vec<u32> =
+        imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).map(|n| n.line).collect();
+    assert_eq!(left_out, [2, 3, 9, 10]);
+    compiles(&imported.text);
+}
+
+#[test]
+fn places_are_those_of_the_file() {
+    let text = model("", "", "clock x;", &[("guard", "x > 1 &&\n  x < nothing")], "system P;");
+    let errors = from_text(&text, "").unwrap_err();
+    let (line, at) =
+        text.lines().enumerate().find_map(|(i, l)| l.find("nothing").map(|at| (i + 1, at + 1))).unwrap();
+    assert_eq!((errors[0].line as usize, errors[0].column as usize), (line, at), "{errors:?}");
+}
+
+/// A file that is cut off, or in which something is missing, doubled or exchanged, is an error or a scenario, and
+/// never the end of the program.
+#[test]
+fn no_file_breaks_the_import() {
+    let text = file("handover.xml").text;
+    let places: Vec<usize> = text.char_indices().map(|(i, _)| i).collect();
+    let (mut refused, mut read) = (0, 0);
+    let mut seed = 12_345_u64;
+    let mut next = |n: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % n
+    };
+    let swaps = [
+        "&lt;",
+        "(",
+        "]",
+        "{",
+        "<location",
+        "&#x0;",
+        "int",
+        "++",
+        "'",
+        "9999999999",
+        "forall (i : sensor_t)",
+        "\u{1F916}",
+    ];
+    for round in 0..600 {
+        let start = places[next(places.len())];
+        let length = [1, 3, 20, 200][next(4)];
+        let end = places.get(places.partition_point(|p| *p < start) + length).copied().unwrap_or(text.len());
+        let changed = match round % 4 {
+            0 => text[..start].to_owned(),
+            1 => format!("{}{}", &text[..start], &text[end..]),
+            2 => format!("{}{}{}", &text[..end], &text[start..end], &text[end..]),
+            _ => format!("{}{}{}", &text[..start], swaps[next(swaps.len())], &text[end..]),
+        };
+        match from_text(&changed, "E<> Human.Told\nA[] not deadlock") {
+            Ok(imported) => {
+                read += 1;
+                is_readable(&imported.text);
+            }
+            Err(errors) => {
+                refused += 1;
+                assert!(!errors.is_empty() && errors.iter().all(|e| e.line > 0 && !e.message.is_empty()));
+            }
+        }
+    }
+    assert!(refused > 300 && read > 5, "{refused} refused, {read} read");
+}
+
+#[test]
+fn deep_and_long_texts_are_errors() {
+    let nested = format!("int n = {}1{};", "(".repeat(10_000), ")".repeat(10_000));
+    let long = format!("int n = {}1;", "1 + ".repeat(10_000));
+    let indexed = format!("int n = m{};", "[0]".repeat(10_000));
+    let blocks = format!("void f() {{ {} }}", "{".repeat(10_000));
+    for global in [nested, long, indexed, blocks] {
+        assert!(from_text(&model(&global, "", "", &[], "system P;"), "").is_err());
+    }
+}

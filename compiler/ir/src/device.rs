@@ -1,0 +1,346 @@
+//! Devices: what the system can command, as the library declares it, and the primitives of the world that it is declared by.
+//!
+//! A *kind* of device has commands, each of which does one *primitive*: what a world knows how to begin. Which commands there
+//! are, what they are called, what they take and what must be true at their end is data. The primitives, with the names and
+//! types of what they take, are the table here: [`DevicePrimitive`].
+
+use std::{collections::BTreeMap, fmt};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Unit,
+    world::{ArmId, DeviceCommandId, DeviceKindId, GripperId, Term, Vec3},
+};
+
+/// What the world has of which devices can be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviceSort {
+    Arm,
+    Gripper,
+}
+
+impl DeviceSort {
+    pub const ALL: [DeviceSort; 2] = [DeviceSort::Arm, DeviceSort::Gripper];
+
+    /// As the member of a world or part is written that makes one.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            DeviceSort::Arm => "arm",
+            DeviceSort::Gripper => "gripper",
+        }
+    }
+}
+
+/// What a device is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviceBody {
+    Arm(ArmId),
+    Gripper(GripperId),
+}
+
+impl DeviceBody {
+    #[must_use]
+    pub fn sort(self) -> DeviceSort {
+        match self {
+            DeviceBody::Arm(_) => DeviceSort::Arm,
+            DeviceBody::Gripper(_) => DeviceSort::Gripper,
+        }
+    }
+}
+
+/// Something that the system can command.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    /// `robot.arm`
+    pub name: String,
+    pub kind: DeviceKindId,
+    pub body: DeviceBody,
+}
+
+/// What all devices of a kind can be told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceKind {
+    pub name: String,
+    pub doc: String,
+    pub sort: DeviceSort,
+    pub commands: Vec<DeviceCommand>,
+}
+
+impl DeviceKind {
+    /// The command of this name.
+    #[must_use]
+    pub fn command(&self, name: &str) -> Option<DeviceCommandId> {
+        let at = self.commands.iter().position(|c| c.name == name)?;
+        u16::try_from(at).ok().map(DeviceCommandId)
+    }
+
+    /// `an arm`
+    #[must_use]
+    pub fn with_article(&self) -> String {
+        let article = if self.name.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
+        format!("{article} {}", self.name)
+    }
+}
+
+/// `command close do close_fingers expect holds else "…"`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceCommand {
+    pub name: String,
+    pub doc: String,
+    /// In the order of the declaration.
+    pub params: Vec<CommandParam>,
+    pub primitive: DevicePrimitive,
+    /// What must be true when the primitive has ended.
+    pub expect: Option<Expectation>,
+}
+
+impl DeviceCommand {
+    /// What the primitive is to do, of arguments that fit the parameters; `None` if they do not.
+    #[must_use]
+    pub fn call(&self, args: &BTreeMap<&str, Vec<f64>>) -> Option<PrimitiveCall> {
+        self.primitive.call(&|name| args.get(name).map(Vec::as_slice))
+    }
+}
+
+/// `move_to(to, speed?)`
+impl fmt::Display for DeviceCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)?;
+        if self.params.is_empty() {
+            return Ok(());
+        }
+        let param = |p: &CommandParam| format!("{}{}", p.name, if p.optional { "?" } else { "" });
+        write!(f, "({})", self.params.iter().map(param).collect::<Vec<_>>().join(", "))
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CommandParam {
+    pub name: String,
+    pub ty: CommandType,
+    pub optional: bool,
+}
+
+/// What an argument of a command is: a quantity, or several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CommandType {
+    /// In which it is counted.
+    pub unit: Unit,
+    pub count: NumberCount,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NumberCount {
+    One,
+    /// An array of so many.
+    Array(u16),
+    /// A list of any length.
+    List,
+}
+
+/// `3 numbers in m`
+impl fmt::Display for CommandType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.count {
+            NumberCount::One => f.write_str("a number")?,
+            NumberCount::Array(n) => write!(f, "{n} numbers")?,
+            NumberCount::List => f.write_str("a list of numbers")?,
+        }
+        match self.unit.symbol() {
+            "" => Ok(()),
+            symbol => write!(f, " in {symbol}"),
+        }
+    }
+}
+
+/// What must be true of the device when a command has ended; if it is not, the command has failed, and this is why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Expectation {
+    pub measure: DeviceMeasure,
+    pub is: bool,
+    pub otherwise: String,
+}
+
+/// What a device can say of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviceMeasure {
+    /// `holds(g)`
+    Holds,
+}
+
+impl DeviceMeasure {
+    pub const ALL: [DeviceMeasure; 1] = [DeviceMeasure::Holds];
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            DeviceMeasure::Holds => "holds",
+        }
+    }
+
+    /// What it is a measurement of.
+    #[must_use]
+    pub fn sort(self) -> DeviceSort {
+        match self {
+            DeviceMeasure::Holds => DeviceSort::Gripper,
+        }
+    }
+
+    /// The measurement of this device; `None`: it has none.
+    #[must_use]
+    pub fn of(self, body: DeviceBody) -> Option<Term> {
+        match (self, body) {
+            (DeviceMeasure::Holds, DeviceBody::Gripper(gripper)) => Some(Term::HoldsAny(gripper)),
+            (DeviceMeasure::Holds, DeviceBody::Arm(_)) => None,
+        }
+    }
+}
+
+/// What a world knows how to begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DevicePrimitive {
+    /// An arm brings its tool point to a place in the world.
+    ReachPoint,
+    /// An arm brings its joints to these angles, in its own order of them.
+    ReachJoints,
+    /// A gripper closes; what is within reach is held.
+    CloseFingers,
+    /// A gripper opens; what was held is let go.
+    OpenFingers,
+}
+
+/// A parameter that a primitive takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PrimitiveParam {
+    pub name: &'static str,
+    pub ty: CommandType,
+    /// The primitive can do without.
+    pub optional: bool,
+}
+
+/// The place, or the angles.
+const TO: &str = "to";
+/// No joint goes faster.
+const SPEED: &str = "speed";
+
+const fn param(name: &'static str, unit: Unit, count: NumberCount, optional: bool) -> PrimitiveParam {
+    PrimitiveParam { name, ty: CommandType { unit, count }, optional }
+}
+
+const JOINT_SPEED: PrimitiveParam = param(SPEED, Unit::RadianPerSecond, NumberCount::One, true);
+
+impl DevicePrimitive {
+    pub const ALL: [DevicePrimitive; 4] = [
+        DevicePrimitive::ReachPoint,
+        DevicePrimitive::ReachJoints,
+        DevicePrimitive::CloseFingers,
+        DevicePrimitive::OpenFingers,
+    ];
+
+    /// As it is written after `do`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            DevicePrimitive::ReachPoint => "reach_point",
+            DevicePrimitive::ReachJoints => "reach_joints",
+            DevicePrimitive::CloseFingers => "close_fingers",
+            DevicePrimitive::OpenFingers => "open_fingers",
+        }
+    }
+
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+
+    /// What does it.
+    #[must_use]
+    pub fn sort(self) -> DeviceSort {
+        match self {
+            DevicePrimitive::ReachPoint | DevicePrimitive::ReachJoints => DeviceSort::Arm,
+            DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => DeviceSort::Gripper,
+        }
+    }
+
+    #[must_use]
+    pub fn params(self) -> &'static [PrimitiveParam] {
+        match self {
+            DevicePrimitive::ReachPoint => {
+                const { &[param(TO, Unit::Metre, NumberCount::Array(3), false), JOINT_SPEED] }
+            }
+            DevicePrimitive::ReachJoints => {
+                const { &[param(TO, Unit::Radian, NumberCount::List, false), JOINT_SPEED] }
+            }
+            DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => &[],
+        }
+    }
+
+    fn call<'a>(self, arg: &dyn Fn(&str) -> Option<&'a [f64]>) -> Option<PrimitiveCall> {
+        let speed = || arg(SPEED).and_then(|numbers| numbers.first().copied());
+        Some(match self {
+            DevicePrimitive::ReachPoint => {
+                PrimitiveCall::ReachPoint { to: arg(TO)?.try_into().ok()?, speed: speed() }
+            }
+            DevicePrimitive::ReachJoints => {
+                PrimitiveCall::ReachJoints { to: arg(TO)?.to_vec(), speed: speed() }
+            }
+            DevicePrimitive::CloseFingers => PrimitiveCall::CloseFingers,
+            DevicePrimitive::OpenFingers => PrimitiveCall::OpenFingers,
+        })
+    }
+}
+
+/// A primitive with what it takes, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PrimitiveCall {
+    ReachPoint { to: Vec3, speed: Option<f64> },
+    ReachJoints { to: Vec<f64>, speed: Option<f64> },
+    CloseFingers,
+    OpenFingers,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_primitive_is_called_with_the_parameters_of_its_table() {
+        for primitive in DevicePrimitive::ALL {
+            assert_eq!(DevicePrimitive::named(primitive.name()), Some(primitive));
+            let numbers = |ty: CommandType| match ty.count {
+                NumberCount::One => vec![1.0],
+                NumberCount::Array(n) => vec![1.0; usize::from(n)],
+                NumberCount::List => vec![1.0; 9],
+            };
+            let all: Vec<PrimitiveParam> = primitive.params().to_vec();
+            let call = |params: &[PrimitiveParam]| {
+                primitive.call(&|name| {
+                    let given = params.iter().find(|p| p.name == name)?;
+                    Some(numbers(given.ty).leak())
+                })
+            };
+            let needed: Vec<PrimitiveParam> = all.iter().copied().filter(|p| !p.optional).collect();
+            assert!(call(&all).is_some(), "{primitive:?}");
+            assert!(call(&needed).is_some(), "{primitive:?}");
+            for left_out in &needed {
+                let rest: Vec<PrimitiveParam> = needed.iter().copied().filter(|p| p != left_out).collect();
+                assert_eq!(call(&rest), None, "{primitive:?} needs {}", left_out.name);
+            }
+        }
+    }
+
+    #[test]
+    fn types_are_said_in_words() {
+        let said = |primitive: DevicePrimitive, at: usize| primitive.params()[at].ty.to_string();
+        assert_eq!(said(DevicePrimitive::ReachPoint, 0), "3 numbers in m");
+        assert_eq!(said(DevicePrimitive::ReachJoints, 0), "a list of numbers in rad");
+        assert_eq!(said(DevicePrimitive::ReachJoints, 1), "a number in rad/s");
+    }
+}

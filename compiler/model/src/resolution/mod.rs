@@ -1,0 +1,124 @@
+//! The resolution table: of each use of a name its definition, of each definition what it is, its type and its documentation.
+//!
+//! The definitions are read off the syntax ([`definitions`]); the uses are told by the checker as it resolves them. What a
+//! template's parameter is used for is known once, however many instances there are; a use may then have several definitions.
+
+mod definitions;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hrdsl_source::{FileId, Span};
+use hrdsl_syntax::ast;
+use serde::Serialize;
+
+/// A name that is declared.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Definition {
+    /// What it is the name of, in the words of the diagnostics: `event`, `belief`.
+    pub noun: &'static str,
+    pub name: String,
+    /// Where the name stands; this is what [`Resolutions`] knows the definition by.
+    pub place: Span,
+    /// The whole declaration.
+    pub whole: Span,
+    pub ty: DefinedType,
+    /// The `///` lines before it, joined by newlines.
+    pub doc: String,
+}
+
+/// What is known of the type of what is defined.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DefinedType {
+    /// It has none: an actor, a network.
+    #[default]
+    None,
+    /// As it is written there.
+    Written(Span),
+    /// It follows from its value: `a length`.
+    Inferred(String),
+}
+
+/// Which name means what.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Resolutions {
+    definitions: BTreeMap<Span, Definition>,
+    /// By use: the places of the definitions.
+    uses: BTreeMap<Span, BTreeSet<Span>>,
+    /// By definition: the uses.
+    used: BTreeMap<Span, BTreeSet<Span>>,
+}
+
+impl Resolutions {
+    /// The definitions of these items, and no use yet.
+    pub(crate) fn of_items(items: &[&ast::Item]) -> Self {
+        let definitions = definitions::of_items(items);
+        Self { definitions: definitions.into_iter().map(|d| (d.place, d)).collect(), ..Self::default() }
+    }
+
+    /// A name means what is declared there.
+    pub(crate) fn refer(&mut self, from: Span, to: Span) {
+        if from != to {
+            self.uses.entry(from).or_default().insert(to);
+            self.used.entry(to).or_default().insert(from);
+        }
+    }
+
+    /// A name that is declared where it first stands: a plan's variable, what an edge binds.
+    pub(crate) fn define(&mut self, definition: Definition) {
+        self.definitions.entry(definition.place).or_insert(definition);
+    }
+
+    /// What is known of the type of what is declared there.
+    pub(crate) fn infer(&mut self, place: Span, ty: String) {
+        if let Some(definition) = self.definitions.get_mut(&place)
+            && definition.ty == DefinedType::None
+        {
+            definition.ty = DefinedType::Inferred(ty);
+        }
+    }
+
+    /// All definitions, by place.
+    pub fn definitions(&self) -> impl Iterator<Item = &Definition> {
+        self.definitions.values()
+    }
+
+    /// Where a name is declared within a declaration.
+    pub(crate) fn named_in(&self, whole: Span, noun: &str, name: &str) -> Option<Span> {
+        let from = Span { end: whole.start, ..whole };
+        let within = self
+            .definitions
+            .range(from..)
+            .take_while(|(place, _)| place.file == whole.file && place.end <= whole.end);
+        let mut found = within.filter(|(_, d)| d.noun == noun && d.name == name);
+        found.next().map(|(place, _)| *place)
+    }
+
+    /// What is declared there.
+    #[must_use]
+    pub fn defined_at(&self, place: Span) -> Option<&Definition> {
+        self.definitions.get(&place)
+    }
+
+    /// What the name at this place of a file means: of a use its definitions, of a definition itself.
+    pub fn at(&self, file: FileId, offset: usize) -> impl Iterator<Item = &Definition> {
+        let holds = move |span: &Span| {
+            span.file == file && (span.start as usize) <= offset && offset < span.end as usize
+        };
+        let used = self.uses.iter().filter(move |(from, _)| holds(from)).flat_map(|(_, to)| to);
+        let places: BTreeSet<Span> =
+            used.copied().chain(self.definitions.keys().copied().filter(move |p| holds(p))).collect();
+        places.into_iter().filter_map(|place| self.definitions.get(&place))
+    }
+
+    /// Where a name means what is declared there.
+    pub fn uses_of(&self, place: Span) -> impl Iterator<Item = Span> {
+        self.used.get(&place).into_iter().flatten().copied()
+    }
+
+    /// Whether any name means what is declared there.
+    #[must_use]
+    pub fn is_used(&self, place: Span) -> bool {
+        self.used.contains_key(&place)
+    }
+}

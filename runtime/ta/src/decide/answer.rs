@@ -1,0 +1,475 @@
+//! Answers to queries: what holds, a run that shows it, and a sentence that says why.
+
+use std::ops::ControlFlow;
+
+use hrdsl_ir::{
+    Program,
+    suite::{Delays, WitnessKind},
+    ta::{Ask, Formula, Measure, Network, Query},
+};
+use serde::Serialize;
+
+use crate::{
+    decide::{
+        explore::explore,
+        extremum::{Extremum, ExtremumSide, extrema},
+        fastest::{fastest, shortest},
+        liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
+        plain::ReachabilityGraph,
+    },
+    network::{
+        error::ModelError,
+        graph::{ZoneDetail, ZoneGraph},
+        model::{CompiledNetwork, ObservationOptions},
+        query::{GoalKind, ReachabilityGoal, SearchBudget, StateFormula},
+    },
+    search::{
+        options::SearchOptions,
+        report::{GoalOutcome, SearchCutoff},
+    },
+    witness::{
+        build,
+        error::SearchError,
+        run::{RunEnding, WitnessRun},
+        schedule::ScheduleOptions,
+        trace::seconds,
+    },
+};
+
+/// Up to so many symbolic states a shortest run is looked for again in a search that forgets none: a search that drives out
+/// states that others cover finds one that is nearly so.
+pub const SHORTEST: usize = 50_000;
+
+/// How questions are answered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct QueryOptions {
+    /// Of each search.
+    pub budget: SearchBudget,
+    /// For what is decided by reachability.
+    pub witness: WitnessKind,
+    pub delays: Delays,
+    /// For sampled delays.
+    pub seed: u64,
+    /// Threads of the exploration for what reachability decides; 0 counts as 1.
+    pub threads: usize,
+}
+
+impl QueryOptions {
+    fn timing(&self) -> ScheduleOptions {
+        ScheduleOptions { delays: self.delays, seed: self.seed, prompt: false }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum QueryVerdict {
+    /// Proved. Of `sup` and `inf`: each bound is known.
+    Holds,
+    /// Refuted.
+    Fails,
+    /// The budget was used up first.
+    Open,
+}
+
+/// What is known of a query.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct QueryAnswer {
+    pub verdict: QueryVerdict,
+    /// A sentence that says why.
+    pub why: String,
+    /// A run that shows it: a witness of `E<>` and `E[]`, a counterexample of `A[]`, `A<>` and `-->`.
+    pub run: Option<Box<WitnessRun>>,
+    /// Of `sup` and `inf`: for each measure.
+    pub extrema: Vec<Extremum>,
+}
+
+/// Answers one query.
+///
+/// # Errors
+/// If the model is at fault, the query has no meaning, or the engine contradicts itself.
+pub fn answer(
+    program: &Program,
+    network: &Network,
+    query: &Query,
+    options: &QueryOptions,
+) -> Result<QueryAnswer, SearchError> {
+    let mut all = answers(program, network, &[query], options)?;
+    all.pop().ok_or_else(|| SearchError::Internal("a query has no answer".into()))
+}
+
+/// Answers queries about one network, in their order. Those that reachability decides (`E<>`, `A[]`) are decided in one
+/// exploration.
+///
+/// # Errors
+/// As [`answer`].
+pub fn answers(
+    program: &Program,
+    network: &Network,
+    queries: &[&Query],
+    options: &QueryOptions,
+) -> Result<Vec<QueryAnswer>, SearchError> {
+    let goals: Vec<Option<ReachabilityGoal>> = queries.iter().map(|q| reachability(&q.ask)).collect();
+    let formulas = queries.iter().flat_map(|q| formulas(&q.ask)).collect();
+    let observe = ObservationOptions { formulas, ..ObservationOptions::default() };
+    let model = CompiledNetwork::new(program, network, &observe)?;
+    let asker = QueryEvaluator { program, network, model: &model, options };
+    let mut outcomes = asker.decide(&goals)?;
+    let mut all = Vec::new();
+    for (i, query) in queries.iter().enumerate() {
+        all.push(match (&goals[i], outcomes[i].take()) {
+            (Some(goal), Some((outcome, states))) => asker.reached(&query.ask, goal, outcome, states)?,
+            (_, None) | (None, _) => asker.ask(&query.ask)?,
+        });
+    }
+    Ok(all)
+}
+
+/// The goal that decides a query, if reachability does.
+fn reachability(ask: &Ask) -> Option<ReachabilityGoal> {
+    let goal = |f: Formula| Some(ReachabilityGoal { what: GoalKind::Formula(f), settled: false });
+    match ask {
+        Ask::Possibly(f) => goal(f.clone()),
+        Ask::Invariantly(f) => goal(Formula::Not(Box::new(f.clone()))),
+        Ask::PotentiallyAlways(_)
+        | Ask::Eventually(_)
+        | Ask::LeadsTo(..)
+        | Ask::Sup { .. }
+        | Ask::Inf { .. } => None,
+    }
+}
+
+/// All formulas of a query.
+fn formulas(ask: &Ask) -> Vec<Formula> {
+    match ask {
+        Ask::Possibly(f)
+        | Ask::Invariantly(f)
+        | Ask::PotentiallyAlways(f)
+        | Ask::Eventually(f)
+        | Ask::Sup { when: f, .. }
+        | Ask::Inf { when: f, .. } => vec![f.clone()],
+        Ask::LeadsTo(f, g) => vec![f.clone(), g.clone()],
+    }
+}
+
+struct QueryEvaluator<'a> {
+    program: &'a Program,
+    network: &'a Network,
+    model: &'a CompiledNetwork<'a>,
+    options: &'a QueryOptions,
+}
+
+/// How a goal ended, and how many symbolic states were kept.
+type Decided = (GoalOutcome, usize);
+
+impl QueryEvaluator<'_> {
+    /// Decides the goals: those without `deadlock` in one exploration by simulation, those with it in one of a zone graph
+    /// that tells valuations apart.
+    fn decide(&self, goals: &[Option<ReachabilityGoal>]) -> Result<Vec<Option<Decided>>, SearchError> {
+        let mut all: Vec<Option<Decided>> = goals.iter().map(|_| None).collect();
+        let asks = |g: &ReachabilityGoal| g.formula().is_some_and(|f| f.asks_deadlock());
+        let of = |deadlock: bool| -> Vec<(usize, &ReachabilityGoal)> {
+            let some = goals.iter().enumerate().filter_map(|(i, g)| Some((i, g.as_ref()?)));
+            some.filter(|(_, g)| asks(g) == deadlock).collect()
+        };
+        let easy = of(false);
+        if !easy.is_empty() {
+            let asked: Vec<ReachabilityGoal> = easy.iter().map(|(_, g)| (*g).clone()).collect();
+            let options = match self.options.witness {
+                WitnessKind::Shortest => SearchOptions::shortest(),
+                WitnessKind::Any | WitnessKind::Fastest => SearchOptions::default(),
+            };
+            let options = SearchOptions {
+                budget: self.options.budget,
+                threads: self.options.threads.max(1),
+                ..options
+            };
+            let report = explore(self.model, &asked, &options, &|_| true)?;
+            for ((i, _), outcome) in easy.iter().zip(report.goals) {
+                all[*i] = Some((outcome, report.states_stored));
+            }
+        }
+        let hard = of(true);
+        if !hard.is_empty() {
+            self.deadlocks(&hard, &mut all)?;
+        }
+        Ok(all)
+    }
+
+    fn deadlocks(
+        &self,
+        goals: &[(usize, &ReachabilityGoal)],
+        all: &mut [Option<Decided>],
+    ) -> Result<(), SearchError> {
+        let formulas: Vec<StateFormula> = goals.iter().filter_map(|(_, g)| g.formula()).collect();
+        let refs: Vec<&StateFormula> = formulas.iter().collect();
+        let graph = ZoneGraph::new(self.model, ZoneDetail::Tell, &refs, 0)?;
+        let mut met: Vec<Option<u32>> = vec![None; goals.len()];
+        let mut plain = ReachabilityGraph::new(&graph);
+        let exhausted = plain.explore(self.options.budget, &mut |at, seen, _| {
+            let here = graph.here(&seen.state);
+            for (f, met) in formulas.iter().zip(&mut met) {
+                if met.is_none() && !f.part(&here, &seen.zone)?.is_empty() {
+                    *met = Some(at);
+                }
+            }
+            let done = met.iter().all(Option::is_some);
+            Ok(if done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+        for (((i, goal), f), met) in goals.iter().zip(&formulas).zip(&met) {
+            let outcome = match (met, exhausted) {
+                (Some(at), _) => {
+                    let run =
+                        build::reach_goal(&graph, plain.path(*at), f, goal, ScheduleOptions::default())?;
+                    GoalOutcome::Reached(Box::new(run))
+                }
+                (None, Some(what)) => GoalOutcome::Inconclusive(what),
+                (None, None) => GoalOutcome::Unreachable,
+            };
+            all[*i] = Some((outcome, plain.nodes.len()));
+        }
+        Ok(())
+    }
+
+    fn reached(
+        &self,
+        ask: &Ask,
+        goal: &ReachabilityGoal,
+        outcome: GoalOutcome,
+        states: usize,
+    ) -> Result<QueryAnswer, SearchError> {
+        let universal = matches!(ask, Ask::Invariantly(_));
+        let plain = |verdict, why| QueryAnswer { verdict, why, run: None, extrema: Vec::new() };
+        Ok(match outcome {
+            GoalOutcome::Reached(found) => {
+                let run = self.chosen(goal, found)?;
+                let how = length(&run);
+                let (verdict, why) = if universal {
+                    (QueryVerdict::Fails, format!("a run leaves it {how}"))
+                } else {
+                    (QueryVerdict::Holds, format!("a run reaches it {how}"))
+                };
+                QueryAnswer { verdict, why, run: Some(run), extrema: Vec::new() }
+            }
+            GoalOutcome::Unreachable => {
+                let seen = format!("all that can be reached was seen ({})", count(states, "symbolic state"));
+                if universal {
+                    plain(QueryVerdict::Holds, format!("no run leaves it: {seen}"))
+                } else {
+                    plain(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
+                }
+            }
+            GoalOutcome::Inconclusive(what) => plain(QueryVerdict::Open, used_up(what)),
+        })
+    }
+
+    /// The witness that the options ask for, instead of the one that was found.
+    fn chosen(
+        &self,
+        goal: &ReachabilityGoal,
+        found: Box<WitnessRun>,
+    ) -> Result<Box<WitnessRun>, SearchError> {
+        let timing = self.options.timing();
+        if self.options.witness == WitnessKind::Fastest
+            && let Some(run) = fastest(self.model, goal, self.options.budget, timing)?
+        {
+            return Ok(run);
+        }
+        if self.options.witness == WitnessKind::Shortest && found.steps.len() > 1 {
+            let few =
+                SearchBudget { states: self.options.budget.states.min(SHORTEST), ..self.options.budget };
+            if let Some(run) = shortest(self.model, goal, few, timing)? {
+                return Ok(run);
+            }
+        }
+        if timing.delays == Delays::Earliest {
+            return Ok(found);
+        }
+        build::retimed(self.model, &found, goal, timing).map(Box::new)
+    }
+
+    fn ask(&self, ask: &Ask) -> Result<QueryAnswer, SearchError> {
+        match ask {
+            Ask::PotentiallyAlways(f) => self.always(f.into()),
+            Ask::Eventually(f) => self.eventually(&f.into()),
+            Ask::LeadsTo(f, g) => self.leads_to(&f.into(), &g.into()),
+            Ask::Sup { of, when } => self.bounds(ExtremumSide::Sup, of, when),
+            Ask::Inf { of, when } => self.bounds(ExtremumSide::Inf, of, when),
+            Ask::Possibly(_) | Ask::Invariantly(_) => {
+                Err(SearchError::Internal("not decided by this".into()))
+            }
+        }
+    }
+
+    /// `E[] f` is `not A<> not f`.
+    fn always(&self, f: StateFormula) -> Result<QueryAnswer, SearchError> {
+        let avoid = f.not();
+        let found = self.hunt(&[&avoid], |hunt| hunt.avoiding(&avoid))?;
+        Ok(match found {
+            LivenessSearchResult::Run(run, trap) => {
+                let why = format!("a run stays in it: {}", self.explain_run(&trap, &run, false));
+                QueryAnswer { verdict: QueryVerdict::Holds, why, run: Some(run), extrema: Vec::new() }
+            }
+            LivenessSearchResult::Nothing => {
+                none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
+            }
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+        })
+    }
+
+    fn eventually(&self, f: &StateFormula) -> Result<QueryAnswer, SearchError> {
+        let found = self.hunt(&[f], |hunt| hunt.avoiding(f))?;
+        Ok(match found {
+            LivenessSearchResult::Run(run, trap) => {
+                let why = self.explain_run(&trap, &run, true);
+                QueryAnswer { verdict: QueryVerdict::Fails, why, run: Some(run), extrema: Vec::new() }
+            }
+            LivenessSearchResult::Nothing => {
+                none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
+            }
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+        })
+    }
+
+    fn leads_to(&self, f: &StateFormula, g: &StateFormula) -> Result<QueryAnswer, SearchError> {
+        let found = self.hunt(&[f, g], |hunt| hunt.after(f, g))?;
+        Ok(match found {
+            LivenessSearchResult::Run(run, trap) => {
+                let why = format!("after the first, {}", self.explain_run(&trap, &run, true));
+                QueryAnswer { verdict: QueryVerdict::Fails, why, run: Some(run), extrema: Vec::new() }
+            }
+            LivenessSearchResult::Nothing => none(
+                QueryVerdict::Holds,
+                "from each state of the first, every maximal run reaches the second".to_owned(),
+            ),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+        })
+    }
+
+    fn hunt(
+        &self,
+        formulas: &[&StateFormula],
+        search: impl FnOnce(&mut LivenessSearch<'_, '_, '_>) -> Result<MaximalRunSearchResult, SearchError>,
+    ) -> Result<LivenessSearchResult, SearchError> {
+        if formulas.iter().any(|f| f.asks_deadlock()) {
+            let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
+            return Err(ModelError::Question(what.into()).into());
+        }
+        let graph = ZoneGraph::new(self.model, ZoneDetail::Tell, formulas, 0)?;
+        let mut hunt = LivenessSearch::new(&graph, formulas, self.options.budget);
+        Ok(match search(&mut hunt)? {
+            MaximalRunSearchResult::Nothing => LivenessSearchResult::Nothing,
+            MaximalRunSearchResult::Inconclusive(what) => LivenessSearchResult::Inconclusive(what),
+            MaximalRunSearchResult::Found(trap) => {
+                let timing = self.options.timing();
+                let run = build::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
+                let still = match trap.ending {
+                    RunEnding::Again(_) => {
+                        let times = build::times(&graph, &trap.stops, ScheduleOptions::default())?;
+                        times.is_some_and(|t| !t.can_last(trap.from))
+                    }
+                    RunEnding::Reached | RunEnding::Stuck | RunEnding::Waits => false,
+                };
+                LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, still })
+            }
+        })
+    }
+
+    /// What a maximal run does that never meets the formula.
+    fn explain_run(&self, shown: &LivenessCounterexample, run: &WitnessRun, refuted: bool) -> String {
+        let at = self.places(&shown.trap.state);
+        match shown.trap.ending {
+            RunEnding::Waits if refuted => {
+                format!("time can pass for ever in {at}, so no run has to go on from there")
+            }
+            RunEnding::Waits => format!("time can pass for ever in {at}"),
+            RunEnding::Stuck => format!("nothing more can happen in {at}, {}", length(run)),
+            RunEnding::Again(from) => {
+                let steps = count(run.steps.len() - from, "transition");
+                let zeno = if shown.still { ", in which no time passes" } else { "" };
+                format!("a run goes round for ever through {at}, by {steps}{zeno}")
+            }
+            RunEnding::Reached => format!("a run shows it in {at}"),
+        }
+    }
+
+    /// The locations of a state: those of the automata that have more than one.
+    fn places(&self, state: &[i64]) -> String {
+        let mut names = Vec::new();
+        for (id, at) in self.network.automata.iter().zip(state) {
+            let Some(a) = self.program.automata.get(usize::from(id.0)) else { continue };
+            let place = usize::try_from(*at).ok().and_then(|at| a.locations.get(at));
+            if let Some(l) = place.filter(|_| a.locations.len() > 1 || self.network.automata.len() == 1) {
+                names.push(format!("`{}.{}`", a.name, l.name));
+            }
+        }
+        match names.split_last() {
+            None => "the only state".to_owned(),
+            Some((one, [])) => one.clone(),
+            Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        }
+    }
+
+    fn bounds(&self, side: ExtremumSide, of: &[Measure], when: &Formula) -> Result<QueryAnswer, SearchError> {
+        use crate::decide::extremum::ExtremumLimit;
+        let timing = self.options.timing();
+        let all = extrema(self.model, side, of, &when.into(), self.options.budget, timing)?;
+        let open = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Open { .. }));
+        let verdict = if open { QueryVerdict::Open } else { QueryVerdict::Holds };
+        let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
+        Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all })
+    }
+}
+
+enum LivenessSearchResult {
+    Run(Box<WitnessRun>, LivenessCounterexample),
+    Nothing,
+    Inconclusive(SearchCutoff),
+}
+
+/// A trap, and whether no time can pass in its loop.
+struct LivenessCounterexample {
+    trap: Box<MaximalRun>,
+    still: bool,
+}
+
+fn none(verdict: QueryVerdict, why: String) -> QueryAnswer {
+    QueryAnswer { verdict, why, run: None, extrema: Vec::new() }
+}
+
+fn limit_text(e: &Extremum, side: ExtremumSide) -> String {
+    use crate::decide::extremum::{ExtremumLimit, ExtremumValue};
+    let text = |q: &ExtremumValue| match q {
+        ExtremumValue::Nanos(n) => format!("{} s", seconds(*n, 1)),
+        ExtremumValue::Number(n) => n.to_string(),
+    };
+    let (closed, open) = if side == ExtremumSide::Sup { ("<=", "<") } else { (">=", ">") };
+    match &e.limit {
+        ExtremumLimit::At { value, attained } => {
+            format!("{} {}", if *attained { closed } else { open }, text(value))
+        }
+        ExtremumLimit::Unbounded => "unbounded".to_owned(),
+        ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
+        ExtremumLimit::Open { seen: Some(q) } => format!("not decided; {} was seen", text(q)),
+        ExtremumLimit::Open { seen: None } => "not decided".to_owned(),
+    }
+}
+
+fn used_up(what: SearchCutoff) -> String {
+    let what = match what {
+        SearchCutoff::States => "states",
+        SearchCutoff::Memory => "memory",
+        SearchCutoff::Stopped => return "not decided: the search was stopped".to_owned(),
+    };
+    format!("not decided: the budget of {what} was used up")
+}
+
+fn length(run: &WitnessRun) -> String {
+    if run.steps.is_empty() && run.end == 0 {
+        return "at the start".to_owned();
+    }
+    format!("after {} and {} s", count(run.steps.len(), "transition"), seconds(run.end, run.ticks))
+}
+
+fn count(n: usize, of: &str) -> String {
+    if n == 1 { format!("1 {of}") } else { format!("{n} {of}s") }
+}

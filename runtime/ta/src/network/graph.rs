@@ -1,0 +1,438 @@
+//! The plain zone graph of a network: what the searches for liveness, deadlocks, bounds and fastest witnesses walk on.
+//!
+//! A node is a discrete state and a zone, after time has passed if it may. Unlike the search for goals, which may keep of a
+//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see [`ZoneDetail`].
+
+use hrdsl_ir::{
+    Nanos, Value,
+    exec::{self, Functions, Memory},
+    expr::{EvalError, Scope},
+    ta::{FunctionId, LocationId},
+};
+
+use crate::{
+    network::{
+        actions::{DelayCondition, EnabledTransition, PathTransition},
+        code::NumberType,
+        error::ModelError,
+        model::CompiledNetwork,
+        parts::{CompiledAutomaton, TimeExpr},
+        query::{StateFormula, StateView, SymbolicView, as_bounds},
+        semantics::ClockReset,
+    },
+    zone::{
+        constraint::{DifferenceConstraint, keep},
+        dbm::{Dbm, DbmBound},
+        diagonals::split,
+        extrapolation::{Abstraction, ActiveClocks, KEEP, MaximalConstants, NONE, extra},
+        federation::{Federation, past},
+    },
+};
+
+/// A state, what staying there means, and the clocks on entering it.
+pub(crate) type Followed<'a> = (&'a [i64], DelayCondition, Dbm);
+
+/// What a walk keeps of zones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ZoneDetail {
+    /// What is needed to say what can be reached: ExtraLU+.
+    Reach,
+    /// What tells valuations apart: ExtraM+, which is a bisimulation.
+    Tell,
+}
+
+/// The zone graph of a network, with what formulas tell apart.
+pub(crate) struct ZoneGraph<'m, 'p> {
+    pub(crate) model: &'m CompiledNetwork<'p>,
+    detail: ZoneDetail,
+    /// Bounds that formulas add everywhere.
+    raised: MaximalConstants,
+    diagonals: Vec<DifferenceConstraint>,
+    /// With comparisons of clocks: the greatest constant of each clock.
+    greatest: Vec<i64>,
+    /// Clocks after the network's that only run.
+    spare: usize,
+}
+
+impl<'m, 'p> ZoneGraph<'m, 'p> {
+    /// # Errors
+    /// If a comparison in a formula has no bound that is known beforehand.
+    pub(crate) fn new(
+        model: &'m CompiledNetwork<'p>,
+        detail: ZoneDetail,
+        formulas: &[&StateFormula],
+        spare: usize,
+    ) -> Result<Self, ModelError> {
+        let mut graph = Self {
+            model,
+            detail,
+            raised: MaximalConstants::none(model.dim + spare),
+            diagonals: model.extrapolation.differences(),
+            greatest: Vec::new(),
+            spare,
+        };
+        for clock in model.dim..model.dim + spare {
+            (graph.raised.lower[clock], graph.raised.upper[clock]) = (NONE, KEEP);
+        }
+        let mut fault = None;
+        for formula in formulas {
+            formula.each_clock(&mut |c| {
+                let (lo, hi) = model.span(&c.bound);
+                if usize::from(c.clock.0.max(c.minus.map_or(0, |m| m.0))) + 1 >= model.dim {
+                    let what = "a formula speaks of a clock that is not there";
+                    fault = Some(ModelError::Question(what.into()));
+                } else if hi - lo > 64 && c.minus.is_some() {
+                    let what = "a difference of clocks is compared with a time of too many values";
+                    fault = Some(ModelError::Question(what.into()));
+                } else {
+                    graph.note(c, lo, hi);
+                }
+            });
+            if formula.asks_deadlock() {
+                graph.detail = ZoneDetail::Tell;
+            }
+        }
+        if let Some(e) = fault {
+            return Err(e);
+        }
+        graph.greatest = graph.greatest();
+        Ok(graph)
+    }
+
+    fn note(&mut self, c: &hrdsl_ir::ta::ClockConstraint, lo: i64, hi: i64) {
+        let most = lo.abs().max(hi.abs());
+        let clock = |x: hrdsl_ir::ta::ClockId| usize::from(x.0) + 1;
+        self.raised.note(clock(c.clock), most);
+        let Some(minus) = c.minus else { return };
+        self.raised.note(clock(minus), most);
+        for bound in lo..=hi {
+            for d in as_bounds(c, bound) {
+                if !self.diagonals.contains(&d) && !self.diagonals.contains(&d.negated()) {
+                    self.diagonals.push(d);
+                }
+            }
+        }
+    }
+
+    fn greatest(&self) -> Vec<i64> {
+        let mut all = self.model.extrapolation.greatest(self.model.dim);
+        all.resize(self.dim(), KEEP);
+        for (g, l) in all.iter_mut().zip(&self.raised.lower).take(self.model.dim) {
+            *g = (*g).max(*l).max(0);
+        }
+        all
+    }
+
+    /// A clock's bounds up to this many units are kept.
+    pub(crate) fn keep_up_to(&mut self, clock: usize, most: i64) {
+        self.raised.note(clock, most);
+        self.greatest = self.greatest();
+    }
+
+    /// The greatest constant that a clock is compared with anywhere.
+    pub(crate) fn most(&self, clock: usize) -> i64 {
+        self.greatest[clock]
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.model.dim + self.spare
+    }
+
+    pub(crate) fn initial(&self) -> Vec<i64> {
+        self.model.initial()
+    }
+
+    pub(crate) fn actions(&self, state: &[i64]) -> Vec<EnabledTransition> {
+        self.model.actions(state)
+    }
+
+    /// `None`: invariants over variables forbid the state.
+    ///
+    /// # Errors
+    /// If an invariant has no value.
+    pub(crate) fn stay(&self, state: &[i64]) -> Result<Option<DelayCondition>, ModelError> {
+        self.model.stay(state)
+    }
+
+    /// The clocks at the start, before time passes.
+    ///
+    /// # Errors
+    /// If the invariants do not hold at the start.
+    pub(crate) fn start(&self) -> Result<(Vec<i64>, DelayCondition, Dbm), ModelError> {
+        let state = self.initial();
+        let stay = self.stay(&state)?.ok_or(ModelError::Initial)?;
+        let mut zone = Dbm::zero(self.dim());
+        if !stay.invariant.iter().all(|c| keep(&mut zone, *c)) {
+            return Err(ModelError::Initial);
+        }
+        Ok((state, stay, zone))
+    }
+
+    /// Lets time pass, as far as it may.
+    pub(crate) fn wait(&self, stay: &DelayCondition, zone: &mut Dbm) {
+        if stay.waits {
+            zone.up();
+            // Not empty: it has what was there before.
+            stay.invariant.iter().for_each(|c| {
+                keep(zone, *c);
+            });
+        }
+    }
+
+    /// What a transition of a state leads to.
+    ///
+    /// # Errors
+    /// If it is a fault.
+    pub(crate) fn target(&self, state: &[i64], taken: &PathTransition) -> Result<Vec<i64>, ModelError> {
+        self.model.target(state, taken)
+    }
+
+    /// Where a transition leads to from some clocks: the state, what staying there means, and the clocks right after it,
+    /// before time passes. `None`: it is not possible.
+    ///
+    /// # Errors
+    /// The fault of the model that the transition is.
+    pub(crate) fn follow<'a>(
+        &self,
+        action: &'a EnabledTransition,
+        zone: &Dbm,
+    ) -> Result<Option<Followed<'a>>, ModelError> {
+        let mut zone = zone.clone();
+        if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
+            return Ok(None);
+        }
+        let target = action.target.as_ref().map_err(|e| (**e).clone())?;
+        let meets = |c: &DifferenceConstraint| zone.meets(usize::from(c.i), usize::from(c.j), c.bound);
+        if let Some((_, fault)) = action.below.iter().find(|(c, _)| meets(c)) {
+            return Err(fault.clone());
+        }
+        let Some(stay) = self.stay(target)? else { return Ok(None) };
+        Ok(self.take(action, &stay, &mut zone).then_some((target.as_slice(), stay, zone)))
+    }
+
+    /// `false`: the target's invariant forbids it.
+    fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
+        if !action.taken.resets.is_empty() {
+            *zone = set(zone, &self.sources(&action.taken.resets));
+        }
+        target.invariant.iter().all(|c| keep(zone, *c))
+    }
+
+    /// Widens a zone to one of finitely many, in one or several pieces.
+    pub(crate) fn widen(&self, state: &[i64], zone: Dbm, out: &mut dyn FnMut(Dbm)) {
+        let mut zone = zone;
+        // A clock that only runs is kept from below: who comes later can do no more.
+        for clock in self.model.dim..self.dim() {
+            for j in (0..self.dim()).filter(|&j| j != clock) {
+                zone.put(clock, j, DbmBound::INFINITY);
+            }
+        }
+        if !self.diagonals.is_empty() {
+            return split(&zone, &self.diagonals, &self.greatest, out);
+        }
+        let mut bounds = MaximalConstants::none(self.dim());
+        self.model.bounds(state, &mut bounds);
+        bounds.raise(&self.raised);
+        if self.detail == ZoneDetail::Tell {
+            let spare: Vec<(i64, i64)> =
+                (self.model.dim..self.dim()).map(|x| (bounds.lower[x], bounds.upper[x])).collect();
+            bounds.level();
+            for (x, (l, u)) in (self.model.dim..).zip(spare) {
+                (bounds.lower[x], bounds.upper[x]) = (l, u);
+            }
+        }
+        extra(&mut zone, &bounds);
+        out(zone);
+    }
+
+    /// For each clock: what it is after a transition, as a clock before it and what is added.
+    fn sources(&self, sets: &[ClockReset]) -> Vec<(usize, i64)> {
+        let mut sources: Vec<(usize, i64)> = (0..self.dim()).map(|x| (x, 0)).collect();
+        for s in sets {
+            sources[usize::from(s.clock)] = (usize::from(s.from), s.by);
+        }
+        sources
+    }
+
+    pub(crate) fn here<'s>(&'s self, state: &'s [i64]) -> DiscreteStateView<'s, 'm, 'p> {
+        DiscreteStateView { graph: self, state }
+    }
+
+    /// The part of a zone from which no transition is possible, now or after any delay. The zone must keep the invariant.
+    ///
+    /// # Errors
+    /// If an invariant has no value.
+    pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
+        let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
+        self.deadlocked_by(&self.actions(state), &stay, zone)
+    }
+
+    /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
+    ///
+    /// # Errors
+    /// If an invariant has no value.
+    pub(crate) fn deadlocked_by(
+        &self,
+        actions: &[EnabledTransition],
+        stay: &DelayCondition,
+        zone: &Dbm,
+    ) -> Result<Federation, ModelError> {
+        let mut left = Federation::from_zone(zone.clone());
+        for action in actions {
+            if left.is_empty() {
+                break;
+            }
+            if let Some(from) = self.leaves(action, stay)? {
+                left = left.minus(&from);
+            }
+        }
+        Ok(left)
+    }
+
+    /// From where a transition is possible, now or later.
+    fn leaves(&self, action: &EnabledTransition, stay: &DelayCondition) -> Result<Option<Dbm>, ModelError> {
+        let mut zone = Dbm::universe(self.dim());
+        // A transition that is a fault is one: the search says so.
+        if let Ok(target) = &action.target {
+            let Some(there) = self.stay(target)? else { return Ok(None) };
+            if !there.invariant.iter().all(|c| keep(&mut zone, *c)) {
+                return Ok(None);
+            }
+            if !action.taken.resets.is_empty() {
+                zone = unset(&zone, &self.sources(&action.taken.resets));
+            }
+        }
+        if !action.taken.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
+            return Ok(None);
+        }
+        Ok(Some(if stay.waits { past(&zone) } else { zone }))
+    }
+}
+
+/// The clocks after a transition: clock `i` is what `sources[i].0` was, plus `sources[i].1`.
+///
+/// INVARIANT: `x'ᵢ - x'ⱼ = xₛᵢ - xₛⱼ + bᵢ - bⱼ`, and the matrix was canonical, so it is again.
+pub(crate) fn set(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut after = zone.clone();
+    if zone.is_empty() {
+        return after;
+    }
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            after.put(i, j, zone.at(x, y).plus(DbmBound::le(a - b)));
+        }
+    }
+    // No clock is negative; a transition that makes one so is a fault.
+    (1..sources.len()).for_each(|i| {
+        after.constrain(0, i, DbmBound::LE_ZERO);
+    });
+    after
+}
+
+/// The clocks before a transition that sets them into the zone.
+fn unset(zone: &Dbm, sources: &[(usize, i64)]) -> Dbm {
+    let mut before = Dbm::universe(zone.dim());
+    for (i, &(x, a)) in sources.iter().enumerate() {
+        for (j, &(y, b)) in sources.iter().enumerate().filter(|(j, _)| *j != i) {
+            let bound = zone.at(i, j).plus(DbmBound::le(b - a));
+            if !bound.is_infinite() {
+                before.constrain(x, y, bound);
+            }
+        }
+    }
+    before
+}
+
+/// A discrete state as formulas see it.
+pub(crate) struct DiscreteStateView<'s, 'm, 'p> {
+    graph: &'s ZoneGraph<'m, 'p>,
+    state: &'s [i64],
+}
+
+impl StateView for DiscreteStateView<'_, '_, '_> {
+    fn location(&self, automaton: usize) -> Option<LocationId> {
+        self.graph.model.members.get(automaton)?;
+        u16::try_from(self.state[automaton]).ok().map(LocationId)
+    }
+
+    fn slot(&self, slot: u16) -> Option<Value> {
+        let slot = usize::from(slot);
+        let model = self.graph.model;
+        if slot < model.slots.len() { model.slot_value(self.state, slot) } else { None }
+    }
+
+    fn counter(&self, counter: usize) -> i64 {
+        self.state[self.graph.model.counter_at(counter)]
+    }
+
+    fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        self.graph.model.apply(self.state, function, args)
+    }
+}
+
+impl SymbolicView for DiscreteStateView<'_, '_, '_> {
+    fn unit(&self) -> Nanos {
+        self.graph.model.unit
+    }
+
+    fn deadlocked(&self, zone: &Dbm) -> Result<Federation, ModelError> {
+        self.graph.deadlocked(self.state, zone)
+    }
+}
+
+// ── What the network tells ──
+
+impl CompiledNetwork<'_> {
+    fn bounds(&self, state: &[i64], out: &mut MaximalConstants) {
+        let mut frame = ActiveClocks::default();
+        self.extrapolation.frame(state, Abstraction::LowerUpper, &mut frame);
+        for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
+            let x = usize::from(clock);
+            (out.lower[x], out.upper[x]) = (lu.lower, lu.upper);
+        }
+    }
+
+    /// The least and greatest that a time of a formula can be, in units.
+    fn span(&self, time: &hrdsl_ir::ta::Time) -> (i64, i64) {
+        let names = self.slot_scope();
+        let term = |t: &hrdsl_ir::ta::TimeTerm| {
+            (t.factor / self.unit, self.library.compile(&names, &t.value, NumberType::Int))
+        };
+        let terms = time.terms.iter().map(term).collect();
+        TimeExpr { units: time.nanos / self.unit, terms }.span(&self.library, &[])
+    }
+
+    /// The value of a function in a state: with its owner's variables if it has one.
+    fn apply(&self, state: &[i64], function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        let owner = self.program.functions.get(usize::from(function.0)).ok_or(EvalError::Type)?.owner;
+        let owner = owner.and_then(|id| self.program.automata.get(usize::from(id.0)));
+        let own = owner.and_then(|a| self.members.iter().find(|m| std::ptr::eq(m.automaton, a)));
+        let memory = FunctionScope { model: self, state, own };
+        let count = self.shared + own.map_or(0, |m| m.automaton.vars.len());
+        let base = u16::try_from(count).unwrap_or(u16::MAX);
+        let functions = Functions::new(self.program);
+        exec::View::new(&functions, &memory, base, &[]).apply(function, args)
+    }
+}
+
+/// The variables that a function knows.
+struct FunctionScope<'a, 'p> {
+    model: &'a CompiledNetwork<'p>,
+    state: &'a [i64],
+    own: Option<&'a CompiledAutomaton<'p>>,
+}
+
+impl Memory for FunctionScope<'_, '_> {
+    fn read(&self, slot: u16) -> Option<Value> {
+        let slot = usize::from(slot);
+        let at = match slot.checked_sub(self.model.shared) {
+            None => slot,
+            Some(own) => self.own?.base + own,
+        };
+        (at < self.model.slots.len()).then(|| self.model.slot_value(self.state, at)).flatten()
+    }
+
+    fn write(&mut self, _: u16, _: Value) -> Result<(), EvalError> {
+        Err(EvalError::Type)
+    }
+}

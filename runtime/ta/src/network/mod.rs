@@ -1,0 +1,13 @@
+//! A network made ready to explore, what is asked of it, and what may happen in it: the discrete half and the zone graph.
+
+pub(crate) mod actions;
+pub(crate) mod bounds;
+pub(crate) mod code;
+mod compile;
+pub(crate) mod error;
+pub(crate) mod graph;
+pub(crate) mod model;
+pub(crate) mod parts;
+pub mod query;
+pub(crate) mod semantics;
+pub(crate) mod well_formed;

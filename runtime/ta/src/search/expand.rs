@@ -1,0 +1,674 @@
+//! One state's expansion: its symbolic successors, those through committed states included, against what is stored.
+//!
+//! An expansion is deterministic: its transitions are numbered, and a path through the search is named by such numbers.
+
+use std::ops::ControlFlow;
+
+use crate::{
+    network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
+    search::{
+        goals::{CompiledGoals, SymbolicStateRef},
+        options::{SearchOptions, Subsumption},
+        stepper::{SymbolicStepper, SymbolicSuccessor},
+        store::{NIL, PassedList, hash_words},
+        waiting,
+    },
+    witness::error::SearchError,
+    zone::{
+        constraint::DifferenceConstraint,
+        dbm::{Dbm, DbmNumber, dominates},
+        diagonals::split,
+        extrapolation::{Abstraction, ActiveClocks, NONE, extra_lu, thresholds},
+    },
+};
+
+/// Committed states that one expansion goes through without storing them. Of more, each would be expanded again and again.
+const AT_ONCE: usize = 4;
+
+/// A path to a goal: a node, then perhaps one transition more of its expansion. No node: the initial state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GoalPath {
+    pub node: u32,
+    pub via: Option<u32>,
+}
+
+/// What an expansion may look at.
+pub(crate) struct ExpansionContext<'a, N> {
+    pub store: &'a PassedList<N>,
+    pub goals: &'a CompiledGoals,
+    /// The goals that are not met yet.
+    pub open: &'a [bool],
+    pub options: &'a SearchOptions,
+}
+
+/// A symbolic state to store.
+pub(crate) struct PendingState {
+    pub parent: u32,
+    pub via: u32,
+    /// `NIL`: it was not there when the round began.
+    pub discrete: u32,
+    pub hash: u64,
+    /// Its place in the topological order of locations.
+    pub level: u32,
+    pub dim: usize,
+    words: usize,
+    zone: usize,
+    covered: (usize, usize),
+}
+
+/// A goal that is met.
+pub(crate) struct GoalHit {
+    pub goal: usize,
+    pub path: GoalPath,
+}
+
+/// What expansions lead to.
+pub(crate) struct ExpansionBatch<N> {
+    pub items: Vec<PendingState>,
+    pub hits: Vec<GoalHit>,
+    pub fault: Option<(ModelError, GoalPath)>,
+    pub visited: usize,
+    pub transitions: usize,
+    words: Vec<u64>,
+    zones: Vec<N>,
+    covered: Vec<u32>,
+}
+
+impl<N> Default for ExpansionBatch<N> {
+    fn default() -> Self {
+        Self {
+            items: Vec::new(),
+            hits: Vec::new(),
+            fault: None,
+            visited: 0,
+            transitions: 0,
+            words: Vec::new(),
+            zones: Vec::new(),
+            covered: Vec::new(),
+        }
+    }
+}
+
+impl<N> ExpansionBatch<N> {
+    pub(crate) fn clear(&mut self) {
+        self.items.clear();
+        self.hits.clear();
+        self.fault = None;
+        self.visited = 0;
+        self.transitions = 0;
+        self.words.clear();
+        self.zones.clear();
+        self.covered.clear();
+    }
+
+    pub(crate) fn packed(&self, item: &PendingState, words: usize) -> &[u64] {
+        &self.words[item.words..item.words + words]
+    }
+
+    pub(crate) fn zone(&self, item: &PendingState) -> &[N] {
+        &self.zones[item.zone..item.zone + item.dim * item.dim]
+    }
+
+    /// Stored states that the item covers.
+    pub(crate) fn covered(&self, item: &PendingState) -> &[u32] {
+        &self.covered[item.covered.0..item.covered.1]
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        self.items.capacity() * size_of::<PendingState>()
+            + self.words.capacity() * 8
+            + self.zones.capacity() * size_of::<N>()
+            + self.covered.capacity() * 4
+    }
+}
+
+/// A state of an expansion: the one that is expanded, or a committed one on the path.
+struct ExpansionState<N> {
+    state: Vec<i64>,
+    frame: ActiveClocks,
+    zone: Dbm<N>,
+    /// The local state before it, and the number of its successor.
+    from: (usize, u32),
+    /// The number of the transition in the whole expansion.
+    via: Option<u32>,
+}
+
+/// Expands states, with memory that it uses again and again.
+pub(crate) struct ExpansionWorker<'m, 'p, N> {
+    model: &'m CompiledNetwork<'p>,
+    stepper: SymbolicStepper<'m, 'p, N>,
+    locals: Vec<ExpansionState<N>>,
+    count: usize,
+    m: WorkerMemory<N>,
+}
+
+struct WorkerMemory<N> {
+    stack: Vec<i64>,
+    packed: Vec<u64>,
+    bounds: Vec<N>,
+    flat: Vec<N>,
+    met: Vec<usize>,
+    frame: ActiveClocks,
+    state: Vec<i64>,
+    zone: Dbm<N>,
+    pieces: Vec<Dbm<N>>,
+    covers: Vec<u32>,
+    beyond: Vec<bool>,
+    /// What a search by the topological order knows of locations.
+    levels: Vec<Vec<u32>>,
+}
+
+/// An expansion that met a fault.
+pub(crate) struct ExpansionError;
+
+impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: Abstraction) -> Self {
+        let m = WorkerMemory {
+            stack: Vec::new(),
+            packed: Vec::new(),
+            bounds: Vec::new(),
+            flat: Vec::new(),
+            met: Vec::new(),
+            frame: ActiveClocks::default(),
+            state: Vec::new(),
+            zone: Dbm::zero(1),
+            pieces: Vec::new(),
+            covers: Vec::new(),
+            beyond: Vec::new(),
+            levels: waiting::levels(model),
+        };
+        Self { model, stepper: SymbolicStepper::new(model, abstraction), locals: Vec::new(), count: 0, m }
+    }
+
+    /// The initial state, which is stored even if it is committed.
+    pub(crate) fn begin(
+        &mut self,
+        c: &ExpansionContext<N>,
+        batch: &mut ExpansionBatch<N>,
+    ) -> Result<(), ModelError> {
+        let (mut state, frame, mut zone) = self.stepper.initial()?;
+        let visit = NodeExpansion { model: self.model, c, node: NIL, keep: true };
+        visit.arrive(&mut self.m, &mut state, &frame, &mut zone, (NIL, 0), batch)
+    }
+
+    fn local(&mut self) -> &mut ExpansionState<N> {
+        if self.count == self.locals.len() {
+            self.locals.push(ExpansionState {
+                state: Vec::new(),
+                frame: ActiveClocks::default(),
+                zone: Dbm::zero(1),
+                from: (0, 0),
+                via: None,
+            });
+        }
+        self.count += 1;
+        &mut self.locals[self.count - 1]
+    }
+
+    /// Makes the node the first local state.
+    fn load(&mut self, c: &ExpansionContext<N>, node: u32) {
+        let node = c.store.nodes[node as usize];
+        let (model, abstraction) = (self.model, c.options.abstraction);
+        self.count = 0;
+        let local = self.local();
+        c.store.layout.unpack(c.store.packed(node.discrete), &mut local.state);
+        model.extrapolation.frame(&local.state, abstraction, &mut local.frame);
+        let dim = local.frame.dim();
+        local.zone.load(dim, c.store.zone(&node, dim));
+        local.via = None;
+    }
+
+    /// Expands a stored state.
+    pub(crate) fn expand(
+        &mut self,
+        c: &ExpansionContext<N>,
+        node: u32,
+        batch: &mut ExpansionBatch<N>,
+    ) -> Result<(), ExpansionError> {
+        self.load(c, node);
+        batch.visited += 1;
+        let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
+        let mut via = 0;
+        let mut at = 0;
+        while at < self.count {
+            let mut current = std::mem::replace(&mut self.locals[at], ExpansionState::empty());
+            let result = self.step(&visit, at, &mut current, &mut via, batch, None);
+            let reached = current.via;
+            self.locals[at] = current;
+            if let Err(error) = result {
+                batch.fault = Some((error, GoalPath { node, via: reached }));
+                return Err(ExpansionError);
+            }
+            at += 1;
+        }
+        Ok(())
+    }
+
+    /// The successors of one local state. With `until` it stops at that number of the expansion.
+    fn step(
+        &mut self,
+        visit: &NodeExpansion<N>,
+        at: usize,
+        current: &mut ExpansionState<N>,
+        via: &mut u32,
+        batch: &mut ExpansionBatch<N>,
+        until: Option<u32>,
+    ) -> Result<(), ModelError> {
+        let (m, locals, count) = (&mut self.m, &mut self.locals, &mut self.count);
+        let mut fault = None;
+        let before = &if visit.c.open.is_empty() { Vec::new() } else { current.state.clone() };
+        let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
+            let number = *via;
+            *via += 1;
+            batch.transitions += 1;
+            visit.taken(before, &s, number, batch);
+            if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
+                if until.is_none()
+                    && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
+                {
+                    fault = Some(error);
+                    return ControlFlow::Break(());
+                }
+            } else if let Err(error) = visit.pass(m, locals, count, s, (at, number), batch) {
+                fault = Some(error);
+                return ControlFlow::Break(());
+            }
+            if until == Some(number) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        result.and(fault.map_or(Ok(()), Err))
+    }
+
+    /// The transitions that a number of a node's expansion stands for.
+    pub(crate) fn retrace(
+        &mut self,
+        c: &ExpansionContext<N>,
+        node: u32,
+        via: u32,
+        out: &mut Vec<PathTransition>,
+    ) -> Result<(), SearchError> {
+        let lost = || SearchError::Internal("a path takes a transition that is not there".into());
+        self.load(c, node);
+        let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
+        let mut batch = ExpansionBatch::default();
+        let (mut number, mut at) = (0, 0);
+        // The last transition: of which local state, and its number there.
+        let mut last = None;
+        while at < self.count && last.is_none() {
+            let mut current = std::mem::replace(&mut self.locals[at], ExpansionState::empty());
+            let before = number;
+            let result = self.step(&visit, at, &mut current, &mut number, &mut batch, Some(via));
+            self.locals[at] = current;
+            if via >= before && via < number {
+                last = Some((at, via - before));
+                break;
+            }
+            result?;
+            at += 1;
+        }
+        let mut steps = vec![last.ok_or_else(lost)?];
+        while let Some(&(at, _)) = steps.last()
+            && at > 0
+        {
+            steps.push(self.locals[at].from);
+        }
+        for (at, number) in steps.into_iter().rev() {
+            out.push(self.transition(at, number).ok_or_else(lost)?);
+        }
+        Ok(())
+    }
+
+    /// A local state's transition of this number.
+    fn transition(&mut self, at: usize, number: u32) -> Option<PathTransition> {
+        let mut current = std::mem::replace(&mut self.locals[at], ExpansionState::empty());
+        let mut found = None;
+        let side = self.side(&current.zone);
+        let _ = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
+            if s.number < number {
+                return ControlFlow::Continue(());
+            }
+            found = Some(PathTransition {
+                parts: s.firing.parts.to_vec(),
+                medium: s.firing.medium,
+                args: s.firing.args.to_vec(),
+                guard: s.firing.guard.iter().chain(&side).copied().collect(),
+                resets: s.resets.to_vec(),
+            });
+            ControlFlow::Break(())
+        });
+        self.locals[at] = current;
+        found
+    }
+
+    /// On which side of the compared differences a zone lies: zones were split along them, and what a transition needs may
+    /// follow from the side alone.
+    fn side(&self, zone: &Dbm<N>) -> Vec<DifferenceConstraint> {
+        let excluded = |c: &DifferenceConstraint| {
+            !zone.is_empty() && !zone.meets(usize::from(c.i), usize::from(c.j), c.bound)
+        };
+        let compared = self.model.extrapolation.differences().into_iter();
+        compared.flat_map(|c| [c, c.negated()]).filter(excluded).map(DifferenceConstraint::negated).collect()
+    }
+
+    /// Compares a zone with those of its discrete state that were stored from node `first` on. `None`: one covers it;
+    /// otherwise those that it covers.
+    pub(crate) fn compare(
+        &mut self,
+        store: &PassedList<N>,
+        subsumption: Subsumption,
+        discrete: u32,
+        first: u32,
+        zone: &[N],
+        dim: usize,
+    ) -> Option<&[u32]> {
+        self.m.covers.clear();
+        let head = store.head(discrete);
+        if head == NIL || head < first {
+            return Some(&self.m.covers);
+        }
+        store.layout.unpack(store.packed(discrete), &mut self.m.state);
+        let (state, frame) = (&self.m.state, &mut self.m.frame);
+        self.stepper.frame(state, frame);
+        self.m.zone.load(dim, zone);
+        demands(subsumption, &self.m.frame, &self.m.zone, &mut self.m.bounds, zone);
+        let mut at = head;
+        while at != NIL && at >= first {
+            let node = &store.nodes[at as usize];
+            let old = store.zone(node, dim);
+            if subsumes(subsumption, old, &self.m.bounds) {
+                return None;
+            }
+            if covers(subsumption, &self.m.frame, zone, old) {
+                self.m.covers.push(at);
+            }
+            at = node.next;
+        }
+        Some(&self.m.covers)
+    }
+}
+
+impl<N: DbmNumber> ExpansionState<N> {
+    fn empty() -> Self {
+        Self {
+            state: Vec::new(),
+            frame: ActiveClocks::default(),
+            zone: Dbm::zero(0),
+            from: (0, 0),
+            via: None,
+        }
+    }
+}
+
+/// What an entry of a zone must be at least to cover a zone.
+fn demands<N: DbmNumber>(
+    subsumption: Subsumption,
+    frame: &ActiveClocks,
+    zone: &Dbm<N>,
+    out: &mut Vec<N>,
+    flat: &[N],
+) {
+    match subsumption {
+        Subsumption::Inclusion | Subsumption::Equality => {
+            out.clear();
+            out.extend_from_slice(flat);
+        }
+        Subsumption::Simulation => thresholds(frame, zone, out),
+    }
+}
+
+fn subsumes<N: DbmNumber>(subsumption: Subsumption, old: &[N], demands: &[N]) -> bool {
+    match subsumption {
+        Subsumption::Equality => old == demands,
+        Subsumption::Inclusion | Subsumption::Simulation => dominates(old, demands),
+    }
+}
+
+/// Whether the new zone covers the old one, both without padding.
+fn covers<N: DbmNumber>(subsumption: Subsumption, frame: &ActiveClocks, new: &[N], old: &[N]) -> bool {
+    match subsumption {
+        Subsumption::Equality => false,
+        Subsumption::Inclusion => dominates(new, old),
+        Subsumption::Simulation => {
+            let dim = frame.dim();
+            let rows = new.chunks_exact(dim).zip(old.chunks_exact(dim)).zip(&frame.bounds);
+            rows.clone().all(|((new_row, old_row), lu)| {
+                lu.lower == NONE
+                    || new_row
+                        .iter()
+                        .zip(old_row)
+                        .enumerate()
+                        .all(|(x, (a, b))| a >= b || !breaks(frame, old, x, *a, lu.lower))
+            })
+        }
+    }
+}
+
+/// Whether an entry of the greater zone that is less than that of the smaller one keeps it from covering.
+fn breaks<N: DbmNumber>(frame: &ActiveClocks, old: &[N], x: usize, entry: N, lower: i64) -> bool {
+    let upper = frame.bounds[x].upper;
+    let least: i64 = old[x].into();
+    if upper == NONE || least < 1 - 2 * upper {
+        return false;
+    }
+    let entry: i64 = entry.into();
+    entry < 2 * (lower + (least + 1).div_euclid(2))
+}
+
+/// The expansion of one node.
+struct NodeExpansion<'a, 'm, 'p, N> {
+    model: &'m CompiledNetwork<'p>,
+    c: &'a ExpansionContext<'a, N>,
+    node: u32,
+    keep: bool,
+}
+
+impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
+    /// Looks at the goals that a transition meets.
+    fn taken(&self, before: &[i64], s: &SymbolicSuccessor<N>, via: u32, batch: &mut ExpansionBatch<N>) {
+        if self.c.open.is_empty() {
+            return;
+        }
+        for part in s.firing.parts {
+            let m = usize::from(part.member);
+            let number = self.model.members[m].edges[usize::from(part.edge)].number;
+            let last = self.model.pairs.then(|| self.model.last_edge_at(m));
+            self.c.goals.taken(number, before, last, &mut |goal| {
+                if self.c.open[goal] {
+                    batch.hits.push(GoalHit { goal, path: GoalPath { node: self.node, via: Some(via) } });
+                }
+            });
+        }
+    }
+
+    /// A committed state that is not stored: it is expanded at once, unless that was done.
+    fn pass(
+        &self,
+        m: &mut WorkerMemory<N>,
+        locals: &mut Vec<ExpansionState<N>>,
+        count: &mut usize,
+        s: SymbolicSuccessor<N>,
+        (at, via): (usize, u32),
+        batch: &mut ExpansionBatch<N>,
+    ) -> Result<(), ModelError> {
+        let path = GoalPath { node: self.node, via: Some(via) };
+        m.met.clear();
+        self.c.goals.states(s.state, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
+        self.look_at_zone(m, s.state, s.frame, s.zone, false)?;
+        batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
+        self.split(m, s.frame, s.zone);
+        let pieces = std::mem::take(&mut m.pieces);
+        for piece in &pieces {
+            m.flat.clear();
+            piece.store(&mut m.flat);
+            demands(self.c.options.subsumption, s.frame, piece, &mut m.bounds, &m.flat);
+            let known = locals[..*count].iter().any(|l| {
+                if l.state != *s.state {
+                    return false;
+                }
+                m.flat.clear();
+                l.zone.store(&mut m.flat);
+                subsumes(self.c.options.subsumption, &m.flat, &m.bounds)
+            });
+            if known {
+                continue;
+            }
+            if *count == locals.len() {
+                locals.push(ExpansionState::empty());
+            }
+            let local = &mut locals[*count];
+            *count += 1;
+            local.state.clone_from(s.state);
+            local.frame.clone_from(s.frame);
+            local.zone.copy_from(piece);
+            local.from = (at, s.number);
+            local.via = Some(via);
+        }
+        m.pieces = pieces;
+        Ok(())
+    }
+
+    /// The extrapolated pieces of a zone, into `m.pieces`.
+    fn split(&self, m: &mut WorkerMemory<N>, frame: &ActiveClocks, zone: &mut Dbm<N>) {
+        match &self.model.extrapolation.diagonals {
+            Some(d) => {
+                m.pieces.clear();
+                split(zone, &d.constraints, &d.greatest, &mut |piece| m.pieces.push(piece));
+            }
+            None => {
+                extra_lu(frame, zone, &mut m.beyond);
+                m.pieces.truncate(1);
+                match m.pieces.first_mut() {
+                    Some(piece) => piece.copy_from(zone),
+                    None => m.pieces.push(zone.clone()),
+                }
+            }
+        }
+    }
+
+    /// Adds the goals over clocks that a state meets to `m.met`.
+    fn look_at_zone(
+        &self,
+        m: &mut WorkerMemory<N>,
+        state: &mut [i64],
+        frame: &ActiveClocks,
+        zone: &Dbm<N>,
+        settled: bool,
+    ) -> Result<(), ModelError> {
+        if self.c.goals.symbolic.is_empty() {
+            return Ok(());
+        }
+        let mut look = SymbolicStateRef { model: self.model, state, stack: &mut m.stack, frame, zone };
+        self.c.goals.zones(&mut look, settled, self.c.open, &mut m.met)
+    }
+
+    /// A state to store, unless a stored one covers it.
+    fn arrive(
+        &self,
+        m: &mut WorkerMemory<N>,
+        state: &mut [i64],
+        frame: &ActiveClocks,
+        zone: &mut Dbm<N>,
+        (parent, via): (u32, u32),
+        batch: &mut ExpansionBatch<N>,
+    ) -> Result<(), ModelError> {
+        let store = self.c.store;
+        let subsumption = self.c.options.subsumption;
+        store.layout.pack(state, &mut m.packed);
+        let hash = hash_words(&m.packed);
+        let known = store.find(hash, &m.packed);
+        let simple = self.model.extrapolation.diagonals.is_none();
+        if subsumption == Subsumption::Simulation
+            && simple
+            && let Some(discrete) = known
+        {
+            // What is covered before extrapolation is so after it: most of the work is saved.
+            thresholds(frame, zone, &mut m.bounds);
+            if self.is_covered(discrete, frame.dim(), &m.bounds) {
+                return Ok(());
+            }
+        }
+        let path =
+            GoalPath { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
+        if self.c.open.iter().any(|o| *o) {
+            let settled = !self.model.any_committed(state);
+            m.met.clear();
+            if known.is_none() {
+                self.c.goals.states(state, &mut m.stack, self.model, settled, self.c.open, &mut m.met)?;
+            }
+            self.look_at_zone(m, state, frame, zone, settled)?;
+            batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
+        }
+        self.split(m, frame, zone);
+        let pieces = std::mem::take(&mut m.pieces);
+        for piece in &pieces {
+            self.offer(m, frame, state, piece, known, hash, (parent, via), batch);
+        }
+        m.pieces = pieces;
+        Ok(())
+    }
+
+    fn is_covered(&self, discrete: u32, dim: usize, demands: &[N]) -> bool {
+        let mut at = self.c.store.head(discrete);
+        while at != NIL {
+            let node = &self.c.store.nodes[at as usize];
+            if subsumes(self.c.options.subsumption, self.c.store.zone(node, dim), demands) {
+                return true;
+            }
+            at = node.next;
+        }
+        false
+    }
+
+    /// An extrapolated state, for the batch unless a stored one covers it.
+    #[allow(clippy::too_many_arguments)]
+    fn offer(
+        &self,
+        m: &mut WorkerMemory<N>,
+        frame: &ActiveClocks,
+        state: &[i64],
+        zone: &Dbm<N>,
+        known: Option<u32>,
+        hash: u64,
+        (parent, via): (u32, u32),
+        batch: &mut ExpansionBatch<N>,
+    ) {
+        let subsumption = self.c.options.subsumption;
+        let dim = frame.dim();
+        let (words, place, first) = (batch.words.len(), batch.zones.len(), batch.covered.len());
+        zone.store(&mut batch.zones);
+        if let Some(discrete) = known {
+            let flat = &batch.zones[place..];
+            // Simulation was looked at before.
+            let looked =
+                subsumption == Subsumption::Simulation && self.model.extrapolation.diagonals.is_none();
+            if !looked {
+                demands(subsumption, frame, zone, &mut m.bounds, flat);
+            }
+            let mut at = self.c.store.head(discrete);
+            while at != NIL {
+                let node = &self.c.store.nodes[at as usize];
+                let old = self.c.store.zone(node, dim);
+                if !looked && subsumes(subsumption, old, &m.bounds) {
+                    batch.zones.truncate(place);
+                    batch.covered.truncate(first);
+                    return;
+                }
+                if covers(subsumption, frame, flat, old) {
+                    batch.covered.push(at);
+                }
+                at = node.next;
+            }
+        }
+        batch.words.extend_from_slice(&m.packed);
+        batch.items.push(PendingState {
+            parent,
+            via,
+            discrete: known.unwrap_or(NIL),
+            hash,
+            level: waiting::level(&m.levels, state),
+            dim,
+            words,
+            zone: place,
+            covered: (first, batch.covered.len()),
+        });
+    }
+}

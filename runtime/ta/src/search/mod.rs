@@ -1,0 +1,11 @@
+//! The search for goals: zones with one time for all automata, many goals at once, no state twice.
+
+pub(crate) mod expand;
+pub(crate) mod goals;
+pub(crate) mod options;
+pub(crate) mod report;
+pub(crate) mod rounds;
+pub(crate) mod slice;
+mod stepper;
+pub(crate) mod store;
+pub(crate) mod waiting;

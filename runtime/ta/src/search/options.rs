@@ -1,0 +1,85 @@
+//! How to search.
+
+use crate::{network::query::SearchBudget, zone::extrapolation::Abstraction};
+
+/// In which order waiting states are expanded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SearchOrder {
+    /// The oldest first: if committed states are kept, witnesses are the shortest.
+    Breadth,
+    /// The newest first.
+    Depth,
+    /// The newest first, those of one state in an order drawn from the seed.
+    RandomDepth,
+    /// By a topological order of the locations, and states that cover others first (Herbreteau and Tran, "Improving
+    /// Search Order for Reachability Testing in Timed Automata", 2015).
+    #[default]
+    Topological,
+}
+
+/// When a state covers another of the same discrete part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Subsumption {
+    /// Its zone has all valuations of the other.
+    Inclusion,
+    /// The zones are the same.
+    Equality,
+    /// It can simulate the other, as far as lower and upper bounds of clocks tell: aLU (Herbreteau, Srivathsan and
+    /// Walukiewicz, "Better Abstractions for Timed Automata", LICS 2012).
+    #[default]
+    Simulation,
+}
+
+/// How to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SearchOptions {
+    pub order: SearchOrder,
+    pub subsumption: Subsumption,
+    pub abstraction: Abstraction,
+    /// Threads; results do not depend on it.
+    pub threads: usize,
+    /// States with a committed location are stored, too; otherwise transitions out of them are a part of those into them.
+    pub keep_committed: bool,
+    /// Variables that nothing depends on are left out of the state.
+    pub reduce: bool,
+    /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`](crate::local). Then
+    /// `subsumption`, `abstraction`, `threads`, `keep_committed` and `reduce` have no meaning.
+    pub local_time: bool,
+    pub budget: SearchBudget,
+    pub seed: u64,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self {
+            order: SearchOrder::default(),
+            subsumption: Subsumption::default(),
+            abstraction: Abstraction::default(),
+            threads: 1,
+            keep_committed: true,
+            reduce: true,
+            local_time: false,
+            budget: SearchBudget::default(),
+            seed: 0,
+        }
+    }
+}
+
+impl SearchOptions {
+    /// The plain zone graph by ExtraLU+ and inclusion, breadth first, of all states.
+    #[must_use]
+    pub fn reference() -> Self {
+        Self {
+            order: SearchOrder::Breadth,
+            subsumption: Subsumption::Inclusion,
+            reduce: false,
+            ..Self::default()
+        }
+    }
+
+    /// Witnesses have as few transitions as any.
+    #[must_use]
+    pub fn shortest() -> Self {
+        Self { order: SearchOrder::Breadth, ..Self::default() }
+    }
+}

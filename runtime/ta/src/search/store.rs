@@ -1,0 +1,276 @@
+//! What a search keeps: discrete states packed by known ranges, zones each once, and for each discrete state the zones that
+//! no other covers.
+
+use std::hash::Hasher;
+
+use hashbrown::HashTable;
+use rustc_hash::FxHasher;
+
+use crate::zone::dbm::DbmNumber;
+
+/// No node, no state, no zone.
+pub(crate) const NIL: u32 = u32::MAX;
+
+/// Where a number of the discrete vector lies in the packed form.
+#[derive(Clone, Copy)]
+struct PackedField {
+    word: usize,
+    shift: u32,
+    mask: u64,
+    lo: i64,
+}
+
+/// How discrete states are packed.
+pub(crate) struct StateLayout {
+    fields: Vec<PackedField>,
+    pub words: usize,
+}
+
+impl StateLayout {
+    /// Places each number in as few bits as its range needs, none across two words; what does not matter is left out.
+    pub(crate) fn new(ranges: &[(i64, i64)], matters: &[bool]) -> Self {
+        let (mut word, mut used, mut fields) = (0, 0, Vec::new());
+        for (&(lo, hi), &matters) in ranges.iter().zip(matters) {
+            let width = if matters { 64 - (hi.wrapping_sub(lo) as u64).leading_zeros() } else { 0 };
+            if used + width > 64 {
+                (word, used) = (word + 1, 0);
+            }
+            let mask = if width == 64 { u64::MAX } else { (1 << width) - 1 };
+            // A number of one value only takes no bits; its shift must still be a legal one.
+            fields.push(PackedField { word, shift: used.min(63), mask, lo });
+            used += width;
+        }
+        Self { fields, words: word + 1 }
+    }
+
+    pub(crate) fn pack(&self, state: &[i64], out: &mut Vec<u64>) {
+        out.clear();
+        out.resize(self.words, 0);
+        for (f, &n) in self.fields.iter().zip(state) {
+            out[f.word] |= (n.wrapping_sub(f.lo) as u64 & f.mask) << f.shift;
+        }
+    }
+
+    pub(crate) fn unpack(&self, packed: &[u64], out: &mut Vec<i64>) {
+        out.clear();
+        out.extend(
+            self.fields.iter().map(|f| f.lo.wrapping_add(((packed[f.word] >> f.shift) & f.mask) as i64)),
+        );
+    }
+}
+
+pub(crate) fn hash_words(words: &[u64]) -> u64 {
+    let mut h = FxHasher::default();
+    words.iter().for_each(|w| h.write_u64(*w));
+    h.finish()
+}
+
+pub(crate) fn hash_zone<N: DbmNumber>(zone: &[N]) -> u64 {
+    let mut h = FxHasher::default();
+    let mut chunks = zone.chunks_exact(4);
+    for c in &mut chunks {
+        let low = c[0].word() ^ (c[1].word() << 16);
+        h.write_u64(low ^ (c[2].word() << 32) ^ (c[3].word() << 48));
+    }
+    chunks.remainder().iter().for_each(|n| h.write_u64(n.word()));
+    h.finish()
+}
+
+/// A symbolic state.
+#[derive(Clone, Copy)]
+pub(crate) struct SymbolicNode {
+    pub parent: u32,
+    /// Which of the transitions in the expansion of the parent led here.
+    pub via: u32,
+    pub discrete: u32,
+    /// Where its zone starts.
+    pub zone: u32,
+    /// The next of the same discrete state.
+    pub next: u32,
+    /// A greater one of the same discrete state drove it out: only the path to it is kept.
+    pub covered: bool,
+}
+
+pub(crate) struct PassedList<N> {
+    pub layout: StateLayout,
+    words: Vec<u64>,
+    heads: Vec<u32>,
+    numbers: HashTable<u32>,
+    pub nodes: Vec<SymbolicNode>,
+    zones: Vec<N>,
+    places: HashTable<(u32, u32)>,
+    pub stored: usize,
+}
+
+impl<N: DbmNumber> PassedList<N> {
+    pub(crate) fn new(layout: StateLayout) -> Self {
+        Self {
+            layout,
+            words: Vec::new(),
+            heads: Vec::new(),
+            numbers: HashTable::new(),
+            nodes: Vec::new(),
+            zones: Vec::new(),
+            places: HashTable::new(),
+            stored: 0,
+        }
+    }
+
+    pub(crate) fn discrete_states(&self) -> usize {
+        self.heads.len()
+    }
+
+    /// The bytes in use.
+    pub(crate) fn bytes(&self) -> usize {
+        self.words.len() * 8
+            + self.heads.len() * 4
+            + self.numbers.capacity() * 5
+            + self.nodes.len() * size_of::<SymbolicNode>()
+            + self.zones.len() * size_of::<N>()
+            + self.places.capacity() * 9
+    }
+
+    pub(crate) fn packed(&self, discrete: u32) -> &[u64] {
+        let w = self.layout.words;
+        &self.words[discrete as usize * w..(discrete as usize + 1) * w]
+    }
+
+    pub(crate) fn zone(&self, node: &SymbolicNode, dim: usize) -> &[N] {
+        &self.zones[node.zone as usize..node.zone as usize + dim * dim]
+    }
+
+    pub(crate) fn find(&self, hash: u64, packed: &[u64]) -> Option<u32> {
+        self.numbers.find(hash, |&n| self.packed(n) == packed).copied()
+    }
+
+    /// The newest node of a discrete state.
+    pub(crate) fn head(&self, discrete: u32) -> u32 {
+        self.heads[discrete as usize]
+    }
+
+    pub(crate) fn add_discrete(&mut self, hash: u64, packed: &[u64]) -> u32 {
+        // INVARIANT: budgets keep all numbers below `NIL`.
+        let n = self.heads.len() as u32;
+        self.words.extend_from_slice(packed);
+        self.heads.push(NIL);
+        let (w, words) = (self.layout.words, &self.words);
+        self.numbers.insert_unique(hash, n, |&n| hash_words(&words[n as usize * w..(n as usize + 1) * w]));
+        n
+    }
+
+    /// Where the zone is, which is added if it is not there.
+    fn intern(&mut self, zone: &[N]) -> u32 {
+        let hash = hash_zone(zone);
+        let (zones, len) = (&self.zones, zone.len() as u32);
+        let at = |at: u32, len: u32| &zones[at as usize..(at + len) as usize];
+        if let Some(&(known, _)) = self.places.find(hash, |&(a, l)| l == len && at(a, l) == zone) {
+            return known;
+        }
+        let place = self.zones.len() as u32;
+        self.zones.extend_from_slice(zone);
+        let zones = &self.zones;
+        self.places
+            .insert_unique(hash, (place, len), |&(a, l)| hash_zone(&zones[a as usize..(a + l) as usize]));
+        place
+    }
+
+    /// Whether there is room for another zone of so many entries.
+    pub(crate) fn has_room(&self, entries: usize) -> bool {
+        self.zones.len() + entries < NIL as usize && self.nodes.len() + 1 < NIL as usize
+    }
+
+    pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: &[N]) -> u32 {
+        let zone = self.intern(zone);
+        let id = self.nodes.len() as u32;
+        let next = std::mem::replace(&mut self.heads[discrete as usize], id);
+        self.nodes.push(SymbolicNode { parent, via, discrete, zone, next, covered: false });
+        self.stored += 1;
+        id
+    }
+
+    /// Takes those out of the chain that are marked.
+    pub(crate) fn unlink(&mut self, discrete: u32) {
+        let mut at = self.heads[discrete as usize];
+        let mut last = NIL;
+        while at != NIL {
+            let node = self.nodes[at as usize];
+            if node.covered {
+                if last == NIL {
+                    self.heads[discrete as usize] = node.next;
+                } else {
+                    self.nodes[last as usize].next = node.next;
+                }
+            } else {
+                last = at;
+            }
+            at = node.next;
+        }
+    }
+
+    pub(crate) fn cover(&mut self, node: u32) {
+        let node = &mut self.nodes[node as usize];
+        if !node.covered {
+            node.covered = true;
+            self.stored -= 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn range() -> impl Strategy<Value = (i64, i64)> {
+        prop_oneof![
+            (-5i64..5, 0i64..300).prop_map(|(lo, n)| (lo, lo + n)),
+            Just((0, 0)),
+            Just((i64::MIN, i64::MAX)),
+            (any::<i64>(), any::<i64>()).prop_map(|(a, b)| (a.min(b), a.max(b))),
+        ]
+    }
+
+    /// A range, a number in it, and whether it matters.
+    fn number() -> impl Strategy<Value = ((i64, i64), i64, bool)> {
+        (range(), any::<u64>(), any::<bool>()).prop_map(|((lo, hi), n, matters)| {
+            let size = (hi.wrapping_sub(lo) as u64).wrapping_add(1);
+            let offset = if size == 0 { n } else { n % size };
+            ((lo, hi), lo.wrapping_add(offset as i64), matters)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_matters_comes_back(numbers in prop::collection::vec(number(), 1..20)) {
+            let ranges: Vec<_> = numbers.iter().map(|n| n.0).collect();
+            let state: Vec<_> = numbers.iter().map(|n| n.1).collect();
+            let matters: Vec<_> = numbers.iter().map(|n| n.2).collect();
+            let layout = StateLayout::new(&ranges, &matters);
+            let (mut packed, mut back) = (Vec::new(), Vec::new());
+            layout.pack(&state, &mut packed);
+            prop_assert_eq!(packed.len(), layout.words);
+            layout.unpack(&packed, &mut back);
+            for (((lo, _), n, matters), b) in numbers.iter().zip(&back) {
+                prop_assert_eq!(if *matters { *n } else { *lo }, *b);
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_loses_what_is_covered() {
+        let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]));
+        let d = store.add_discrete(hash_words(&[2]), &[2]);
+        let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k])).collect();
+        store.cover(ids[3]);
+        store.cover(ids[1]);
+        store.unlink(d);
+        assert_eq!(store.stored, 2);
+        assert_eq!(store.head(d), ids[2]);
+        assert_eq!(store.nodes[ids[2] as usize].next, ids[0]);
+        assert_eq!(store.nodes[ids[0] as usize].next, NIL);
+        // The same zone is kept once.
+        let again = store.add(NIL, 0, d, &[2]);
+        assert_eq!(store.nodes[again as usize].zone, store.nodes[ids[2] as usize].zone);
+    }
+}

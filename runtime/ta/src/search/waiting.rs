@@ -1,0 +1,237 @@
+//! The waiting states of a search, and which are taken first.
+
+use std::{
+    cmp::Reverse,
+    collections::{BinaryHeap, VecDeque},
+};
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::{
+    network::model::CompiledNetwork,
+    search::{options::SearchOrder, store::SymbolicNode},
+};
+
+/// Waiting states.
+pub(crate) struct WaitingList {
+    order: SearchOrder,
+    queue: VecDeque<u32>,
+    /// Of a rank: that, then the earlier in the topological order, then the newer: the greatest goes first.
+    heap: BinaryHeap<(u32, Reverse<u32>, u32)>,
+    /// Without a rank, by place in the topological order.
+    levels: Vec<Vec<u32>>,
+    /// All levels below this are empty.
+    lowest: usize,
+    /// How many are in `levels`.
+    level_count: usize,
+    /// The greatest rank given so far.
+    rank: u32,
+    /// Nodes that were taken, as bits, if the order wants to know.
+    taken: Vec<u64>,
+    /// What the round has brought, in order.
+    fresh: Vec<u32>,
+    rng: ChaCha8Rng,
+    /// A state that was taken already was driven out.
+    overtaken: bool,
+}
+
+impl WaitingList {
+    pub(crate) fn new(_: &CompiledNetwork, order: SearchOrder, seed: u64) -> Self {
+        Self {
+            order,
+            queue: VecDeque::new(),
+            heap: BinaryHeap::new(),
+            levels: Vec::new(),
+            lowest: 0,
+            level_count: 0,
+            rank: 0,
+            taken: Vec::new(),
+            fresh: Vec::new(),
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            overtaken: false,
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.queue.len() + self.heap.len() + self.level_count + self.fresh.len()
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        (self.queue.capacity() + self.level_count) * 4 + self.heap.capacity() * 12 + self.taken.len() * 8
+    }
+
+    /// Whether nothing waits; states that were driven out are forgotten.
+    pub(crate) fn is_empty(&mut self, nodes: &[SymbolicNode]) -> bool {
+        let gone = |n: u32| nodes[n as usize].covered;
+        match self.order {
+            SearchOrder::Breadth => {
+                while self.queue.front().is_some_and(|n| gone(*n)) {
+                    self.queue.pop_front();
+                }
+            }
+            SearchOrder::Depth | SearchOrder::RandomDepth => {
+                while self.queue.back().is_some_and(|n| gone(*n)) {
+                    self.queue.pop_back();
+                }
+            }
+            SearchOrder::Topological => {
+                while self.heap.peek().is_some_and(|n| gone(n.2)) {
+                    self.heap.pop();
+                }
+                if self.heap.is_empty() {
+                    while let Some(node) = self.lowest_level() {
+                        if !gone(node) {
+                            self.put(node);
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+        self.queue.is_empty() && self.heap.is_empty() && self.level_count == 0
+    }
+
+    /// The newest of the first level that has any.
+    fn lowest_level(&mut self) -> Option<u32> {
+        while let Some(level) = self.levels.get_mut(self.lowest) {
+            if let Some(node) = level.pop() {
+                self.level_count -= 1;
+                return Some(node);
+            }
+            self.lowest += 1;
+        }
+        None
+    }
+
+    /// Gives back what [`lowest_level`](Self::lowest_level) took.
+    fn put(&mut self, node: u32) {
+        if let Some(level) = self.levels.get_mut(self.lowest) {
+            level.push(node);
+            self.level_count += 1;
+        }
+    }
+
+    fn wait_at(&mut self, node: u32, level: usize) {
+        if self.levels.len() <= level {
+            self.levels.resize_with(level + 1, Vec::new);
+        }
+        self.levels[level].push(node);
+        self.level_count += 1;
+        self.lowest = self.lowest.min(level);
+    }
+
+    /// A state waits. `covers`: it drove out others.
+    pub(crate) fn push(&mut self, node: u32, covers: bool, level: u32) {
+        match self.order {
+            SearchOrder::Breadth => self.queue.push_back(node),
+            SearchOrder::Depth | SearchOrder::RandomDepth => self.fresh.push(node),
+            SearchOrder::Topological => {
+                let ahead = covers && std::mem::take(&mut self.overtaken);
+                if ahead {
+                    self.rank += 1;
+                    self.heap.push((self.rank, Reverse(level), node));
+                } else {
+                    self.wait_at(node, level as usize);
+                }
+            }
+        }
+    }
+
+    /// A state is driven out.
+    pub(crate) fn covered(&mut self, node: u32) {
+        if self.order == SearchOrder::Topological {
+            let (word, bit) = (node as usize / 64, node % 64);
+            self.overtaken |= self.taken.get(word).is_some_and(|w| w >> bit & 1 == 1);
+        }
+    }
+
+    /// A round is stored.
+    pub(crate) fn settle(&mut self, _: &[SymbolicNode]) {
+        self.overtaken = false;
+        match self.order {
+            SearchOrder::Breadth | SearchOrder::Topological => {}
+            SearchOrder::Depth => self.queue.extend(self.fresh.drain(..).rev()),
+            SearchOrder::RandomDepth => {
+                let fresh = &mut self.fresh;
+                for i in (1..fresh.len()).rev() {
+                    fresh.swap(i, self.rng.random_range(0..=i));
+                }
+                self.queue.extend(fresh.drain(..));
+            }
+        }
+    }
+
+    /// Takes up to `most` states; orders other than breadth first take a part of those that wait, so that the newest still
+    /// come first where few wait.
+    pub(crate) fn take(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
+        out.clear();
+        let most = match self.order {
+            SearchOrder::Breadth => most,
+            SearchOrder::Depth | SearchOrder::RandomDepth | SearchOrder::Topological => {
+                (self.len() / 8).clamp(1, most / 4)
+            }
+        };
+        while out.len() < most {
+            let next = match self.order {
+                SearchOrder::Breadth => self.queue.pop_front(),
+                SearchOrder::Depth | SearchOrder::RandomDepth => self.queue.pop_back(),
+                SearchOrder::Topological => self.heap.pop().map(|n| n.2).or_else(|| self.lowest_level()),
+            };
+            let Some(node) = next else { return };
+            if nodes[node as usize].covered {
+                continue;
+            }
+            if self.order == SearchOrder::Topological {
+                let word = node as usize / 64;
+                if self.taken.len() <= word {
+                    self.taken.resize(word + 1, 0);
+                }
+                self.taken[word] |= 1 << (node % 64);
+            }
+            out.push(node);
+        }
+    }
+}
+
+/// By member and location: its place in a topological order of the edges that do not lead back.
+pub(crate) fn levels(model: &CompiledNetwork) -> Vec<Vec<u32>> {
+    model
+        .members
+        .iter()
+        .map(|m| {
+            let count = m.locations.len();
+            let targets: Vec<Vec<usize>> = (0..count)
+                .map(|l| m.edges.iter().filter(|e| e.from() == l).map(|e| e.to()).collect())
+                .collect();
+            let mut level = vec![0; count];
+            let mut seen = vec![false; count];
+            let mut left = count as u32;
+            let start = usize::from(m.automaton.initial.0);
+            // Depth first; a location is numbered, from the greatest down, when all it leads to is.
+            let mut stack = vec![(start, 0)];
+            seen[start] = true;
+            while let Some((l, next)) = stack.pop() {
+                match targets[l].get(next) {
+                    Some(&to) => {
+                        stack.push((l, next + 1));
+                        if !seen[to] {
+                            seen[to] = true;
+                            stack.push((to, 0));
+                        }
+                    }
+                    None => {
+                        left -= 1;
+                        level[l] = left;
+                    }
+                }
+            }
+            level
+        })
+        .collect()
+}
+
+/// Of a state: the sum over its locations.
+pub(crate) fn level(levels: &[Vec<u32>], state: &[i64]) -> u32 {
+    levels.iter().zip(state).map(|(by_location, &at)| by_location[at as usize]).sum()
+}

@@ -1,0 +1,274 @@
+//! A witness told to people: when, who did what, and what changed by it.
+
+use std::fmt::Write as _;
+
+use hrdsl_ir::{
+    Nanos, Program, Value,
+    ta::{Automaton, ChannelId, ChannelKind, ClockId, LocationId, Network, Update},
+};
+use serde::Serialize;
+
+use crate::{
+    network::{model::slot_names, semantics::AutomatonMove},
+    witness::{
+        concrete::clock_name,
+        run::{RunEnding, WitnessRun, WitnessRunStep},
+    },
+};
+
+/// A witness by names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WitnessTrace {
+    pub network: String,
+    /// The automata, in the network's order.
+    pub automata: Vec<String>,
+    pub scenes: Vec<WitnessTransition>,
+    /// When what it shows is so, in seconds.
+    pub end: String,
+    /// The nanoseconds of it, rounded down.
+    pub end_nanos: Nanos,
+    pub ending: RunEnding,
+}
+
+/// One transition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WitnessTransition {
+    /// Since the start, in seconds.
+    pub time: String,
+    pub nanos: Nanos,
+    /// The event or channel, with its arguments.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub over: Option<String>,
+    pub medium: TransitionMedium,
+    /// Who takes part, the one that starts it first.
+    pub parts: Vec<TransitionParticipant>,
+    /// What changed, as `q: 0 -> 1`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<String>,
+    /// What clocks were set to, as `x = 0`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TransitionMedium {
+    Internal,
+    Event,
+    HandShake,
+    Broadcast,
+    Joint,
+}
+
+/// One automaton's part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TransitionParticipant {
+    /// Index in the network.
+    pub member: usize,
+    pub automaton: String,
+    pub from: String,
+    pub to: String,
+}
+
+impl WitnessTrace {
+    /// `network` must be the one that was searched.
+    #[must_use]
+    pub fn from_run(program: &Program, network: &Network, witness: &WitnessRun) -> Self {
+        let builder = WitnessTraceBuilder { program, network, slots: slot_names(program, network) };
+        let automata = (0..network.automata.len()).map(|m| builder.name(m)).collect();
+        WitnessTrace {
+            network: witness.network.clone(),
+            automata,
+            scenes: witness.steps.iter().map(|s| builder.transition(witness, s)).collect(),
+            end: seconds(witness.end, witness.ticks),
+            end_nanos: witness.end.div_euclid(witness.ticks.max(1)),
+            ending: witness.ending,
+        }
+    }
+
+    /// A table: a line for each transition with its time, what it goes over and who goes where, then what it changes.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let wide = |f: &dyn Fn(&WitnessTransition) -> usize| self.scenes.iter().map(f).max().unwrap_or(0);
+        let time = wide(&|s| s.time.len()).max(self.end.len());
+        let who = wide(&|s| s.parts.first().map_or(0, |p| p.automaton.chars().count()));
+        let over = wide(&|s| s.over.as_ref().map_or(0, |o| o.chars().count()));
+        let mut out = String::new();
+        for (i, step) in self.scenes.iter().enumerate() {
+            if self.ending == RunEnding::Again(i) {
+                let _ = writeln!(out, "{:time$}    from here on again and again:", "");
+            }
+            let first = step.parts.first().map_or("?", |p| p.automaton.as_str());
+            let gap = if over == 0 { 0 } else { over + 2 };
+            let what = step.over.as_deref().unwrap_or("");
+            let moves: Vec<String> = step.parts.iter().enumerate().map(|(n, p)| p.movement(n > 0)).collect();
+            let _ = write!(out, "{:>time$} s  {first:who$}  {what:gap$}{}", step.time, moves.join(", "));
+            let changes: Vec<&str> = step.variables.iter().chain(&step.clocks).map(String::as_str).collect();
+            if !changes.is_empty() {
+                let _ = write!(out, "   [{}]", changes.join("; "));
+            }
+            out.push('\n');
+        }
+        let last = self.scenes.last().map_or("0", |s| s.time.as_str());
+        let wait = (self.end != last).then_some(self.end.as_str());
+        match (self.ending, wait) {
+            (RunEnding::Reached, None) | (RunEnding::Again(_), _) => {}
+            (RunEnding::Reached, Some(end)) => {
+                let _ = writeln!(out, "{end:>time$} s  reached after a delay");
+            }
+            (RunEnding::Stuck, _) => {
+                let _ = writeln!(out, "{:>time$} s  nothing more can happen", self.end);
+            }
+            (RunEnding::Waits, _) => {
+                let _ = writeln!(out, "{:>time$} s  time can pass for ever", self.end);
+            }
+        }
+        out
+    }
+}
+
+impl WitnessRun {
+    /// A readable printing: its [`WitnessTrace`] as text.
+    ///
+    /// `network` must be the one that was searched.
+    #[must_use]
+    pub fn text(&self, program: &Program, network: &Network) -> String {
+        WitnessTrace::from_run(program, network, self).text()
+    }
+}
+
+impl TransitionParticipant {
+    fn movement(&self, named: bool) -> String {
+        let text = if self.from == self.to {
+            format!("stays in {}", self.to)
+        } else {
+            format!("{} -> {}", self.from, self.to)
+        };
+        if named { format!("{}: {text}", self.automaton) } else { text }
+    }
+}
+
+struct WitnessTraceBuilder<'a> {
+    program: &'a Program,
+    network: &'a Network,
+    slots: Vec<String>,
+}
+
+impl<'a> WitnessTraceBuilder<'a> {
+    fn member(&self, m: usize) -> Option<&'a Automaton> {
+        self.program.automata.get(usize::from(self.network.automata.get(m)?.0))
+    }
+
+    fn name(&self, m: usize) -> String {
+        self.member(m).map_or_else(|| format!("#{m}"), |a| a.name.clone())
+    }
+
+    fn transition(&self, witness: &WitnessRun, step: &WitnessRunStep) -> WitnessTransition {
+        let (over, medium) = match (&step.event, &step.channel) {
+            (Some((event, args)), _) => {
+                let event = self.program.events.get(usize::from(event.0));
+                (Some(applied(event.map_or("?", |e| &e.name), args)), TransitionMedium::Event)
+            }
+            (None, Some((channel, args))) => {
+                let (name, medium) = self.channel(*channel);
+                (Some(applied(name, args)), medium)
+            }
+            (None, None) => (None, TransitionMedium::Internal),
+        };
+        let variables = step.variables.iter().map(|(slot, from, to)| {
+            format!("{}: {from} -> {to}", self.slots.get(*slot).map_or("?", String::as_str))
+        });
+        WitnessTransition {
+            time: seconds(step.time, witness.ticks),
+            nanos: witness.nanos(step),
+            over,
+            medium,
+            parts: step.moves.iter().filter_map(|m| self.part(m)).collect(),
+            variables: variables.collect(),
+            clocks: step.moves.iter().flat_map(|m| self.clocks(m)).collect(),
+        }
+    }
+
+    fn channel(&self, id: ChannelId) -> (&'a str, TransitionMedium) {
+        match self.program.channels.get(usize::from(id.0)) {
+            None => ("?", TransitionMedium::HandShake),
+            Some(c) => {
+                let medium = match c.kind {
+                    ChannelKind::HandShake => TransitionMedium::HandShake,
+                    ChannelKind::Broadcast => TransitionMedium::Broadcast,
+                    ChannelKind::Joint(_) => TransitionMedium::Joint,
+                };
+                (&c.name, medium)
+            }
+        }
+    }
+
+    fn part(&self, m: &AutomatonMove) -> Option<TransitionParticipant> {
+        let a = self.member(m.automaton)?;
+        let edge = a.edges.get(m.edge)?;
+        let name = |l: LocationId| a.locations.get(usize::from(l.0)).map_or("?", |l| &l.name).to_owned();
+        let (from, to) = (name(edge.from), name(edge.to));
+        Some(TransitionParticipant { member: m.automaton, automaton: a.name.clone(), from, to })
+    }
+
+    /// The clocks that an edge sets; a value is shown if it is a constant.
+    fn clocks(&self, m: &AutomatonMove) -> Vec<String> {
+        let Some(a) = self.member(m.automaton) else { return Vec::new() };
+        let Some(edge) = a.edges.get(m.edge) else { return Vec::new() };
+        let name = |c: ClockId| clock_name(self.program, a, c);
+        edge.updates
+            .iter()
+            .filter_map(|u| match u {
+                Update::Assign { .. } | Update::Call { .. } => None,
+                Update::Reset { clock, from, to } => {
+                    let time = seconds(to.nanos, 1);
+                    let plain = to.terms.is_empty();
+                    Some(match (from, plain, to.nanos) {
+                        (None, true, 0) => format!("{} = 0", name(*clock)),
+                        (None, true, _) => format!("{} = {time} s", name(*clock)),
+                        (Some(from), true, 0) => format!("{} = {}", name(*clock), name(*from)),
+                        (Some(from), true, _) => format!("{} = {} + {time} s", name(*clock), name(*from)),
+                        (_, false, _) => format!("{} set", name(*clock)),
+                    })
+                }
+            })
+            .collect()
+    }
+}
+
+fn applied(name: &str, args: &[Value]) -> String {
+    if args.is_empty() {
+        return name.to_owned();
+    }
+    let args: Vec<String> = args.iter().map(ToString::to_string).collect();
+    format!("{name}({})", args.join(", "))
+}
+
+/// Ticks as seconds, exact for whole nanoseconds.
+pub(crate) fn seconds(time: i64, ticks: i64) -> String {
+    let ticks = ticks.max(1);
+    let (nanos, rest) = (time.div_euclid(ticks), time.rem_euclid(ticks));
+    let sign = if nanos < 0 { "-" } else { "" };
+    let nanos = nanos.unsigned_abs();
+    let mut text = format!("{sign}{}.{:09}", nanos / 1_000_000_000, nanos % 1_000_000_000);
+    if rest == 0 {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    } else {
+        let _ = write!(text, " + {rest}/{ticks} ns");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_print_as_seconds() {
+        assert_eq!(seconds(0, 1), "0");
+        assert_eq!(seconds(10_000_000_001, 1), "10.000000001");
+        assert_eq!(seconds(1_500_000_000, 1), "1.5");
+        assert_eq!(seconds(7, 3), "0.000000002 + 1/3 ns");
+        assert_eq!(seconds(-1_500_000_000, 1), "-1.5");
+    }
+}

@@ -1,0 +1,307 @@
+//! Extrapolation: makes the number of zones finite without changing which locations can be reached.
+//!
+//! Without diagonal constraints: ExtraLU+ of Behrmann, Bouyer, Larsen and Pelánek, "Lower and Upper Bounds in Zone-Based
+//! Abstractions of Timed Automata" (2004/2006), with the bounds of each location from a static analysis of guards
+//! (Behrmann, Bouyer, Fleury, Larsen, TACAS 2003), or ExtraM+ where a bisimulation is needed. With diagonal constraints
+//! every such abstraction is unsound (Bouyer 2004); then zones are split along them and extrapolated by greatest constants,
+//! as Bengtsson and Yi do.
+//!
+//! A clock without any bound in a location does not matter there: zones leave it out (Daws and Yovine 1996).
+
+use crate::zone::dbm::{Dbm, DbmBound, DbmNumber};
+
+/// No bound: the clock is never compared that way before it is reset.
+pub(crate) const NONE: i64 = i64::MIN;
+
+/// The greatest constants that a clock is compared with, from below and from above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LuBounds {
+    pub lower: i64,
+    pub upper: i64,
+}
+
+pub(crate) const NEVER: LuBounds = LuBounds { lower: NONE, upper: NONE };
+
+impl LuBounds {
+    pub(crate) fn join(self, other: LuBounds) -> LuBounds {
+        LuBounds { lower: self.lower.max(other.lower), upper: self.upper.max(other.upper) }
+    }
+
+    /// Of a clock that becomes the one with these bounds when `by` is added.
+    pub(crate) fn before(self, by: i64) -> LuBounds {
+        let one = |n: i64| if n == NONE { NONE } else { n.saturating_sub(by).max(0) };
+        LuBounds { lower: one(self.lower), upper: one(self.upper) }
+    }
+}
+
+/// Which bounds an extrapolation uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Abstraction {
+    /// Lower and upper bounds apart: keeps what can be reached.
+    #[default]
+    LowerUpper,
+    /// The greater of the two for both: keeps what can be reached from where (a bisimulation).
+    Greatest,
+}
+
+/// The clocks that matter in a discrete state, and their bounds. The first is the reference clock.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ActiveClocks {
+    /// Numbers of the network's clocks, ascending.
+    pub clocks: Vec<u16>,
+    pub bounds: Vec<LuBounds>,
+}
+
+impl ActiveClocks {
+    /// The zone's index of a clock of the network.
+    #[inline]
+    pub(crate) fn index(&self, clock: u16) -> Option<usize> {
+        if clock == 0 {
+            return Some(0);
+        }
+        self.clocks.iter().position(|c| *c == clock)
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.clocks.len()
+    }
+}
+
+/// Extrapolates by lower and upper bounds, and closes again if anything changed.
+pub(crate) fn extra_lu<N: DbmNumber>(frame: &ActiveClocks, zone: &mut Dbm<N>, beyond: &mut Vec<bool>) {
+    let dim = zone.dim();
+    let least = |zone: &Dbm<N>, i: usize| -zone.at(0, i).value();
+    // Clocks whose least value is above what they are compared with from above.
+    beyond.clear();
+    beyond.extend((0..dim).map(|j| least(zone, j) > frame.bounds[j].upper));
+    let any = beyond.iter().any(|b| *b);
+    let mut changed = false;
+    for i in 1..dim {
+        let lower = frame.bounds[i].lower;
+        let all = lower == NONE || least(zone, i) > lower;
+        let row = &mut zone.row_mut(i)[..dim];
+        row[i] = N::INFINITY;
+        if all {
+            changed |= row.iter().any(|b| *b != N::INFINITY);
+            row.fill(N::INFINITY);
+        } else {
+            let most = N::of(DbmBound::le(lower));
+            let mut lost = false;
+            for b in row.iter_mut() {
+                let gone = *b > most && *b != N::INFINITY;
+                lost |= gone;
+                *b = if gone { N::INFINITY } else { *b };
+            }
+            if any {
+                for (b, far) in row.iter_mut().zip(beyond.iter()) {
+                    let gone = *far && *b != N::INFINITY;
+                    lost |= gone;
+                    *b = if gone { N::INFINITY } else { *b };
+                }
+            }
+            changed |= lost;
+        }
+        row[i] = N::LE_ZERO;
+    }
+    if any {
+        let row = zone.row_mut(0);
+        for j in 1..dim {
+            if beyond[j] {
+                let upper = frame.bounds[j].upper;
+                let new = if upper == NONE { N::LE_ZERO } else { N::of(DbmBound::lt(-upper)) };
+                changed |= row[j] != new;
+                row[j] = new;
+            }
+        }
+    }
+    if changed {
+        zone.close();
+    }
+}
+
+/// For each entry of a zone Z the least number that the entry of a zone Z' must have so that Z ⊆ aLU(Z').
+///
+/// INVARIANT: Z ⊈ aLU(Z') exactly if there are x, y with Z₀ₓ ≥ (≤, -Uₓ), Z'ᵧₓ < Zᵧₓ and Z'ᵧₓ + (<, -Lᵧ) < Z₀ₓ (Herbreteau,
+/// Srivathsan, Walukiewicz, "Better Abstractions for Timed Automata", LICS 2012, Theorem 32). With whole bounds the last is
+/// Z'ᵧₓ < Z₀ₓ + 2 Lᵧ in packed numbers, rounded up to an even one.
+pub(crate) fn thresholds<N: DbmNumber>(frame: &ActiveClocks, zone: &Dbm<N>, out: &mut Vec<N>) {
+    out.clear();
+    let dim = zone.dim();
+    for y in 0..dim {
+        let lower = frame.bounds[y].lower;
+        if lower == NONE {
+            out.resize(out.len() + dim, N::LEAST);
+            continue;
+        }
+        for x in 0..dim {
+            out.push(threshold(frame, zone, y, x, lower));
+        }
+    }
+}
+
+#[inline]
+fn threshold<N: DbmNumber>(frame: &ActiveClocks, zone: &Dbm<N>, y: usize, x: usize, lower: i64) -> N {
+    let (upper, least) = (frame.bounds[x].upper, zone.entry(0, x));
+    if upper == NONE || least < N::of(DbmBound::le(-upper)) {
+        return N::LEAST;
+    }
+    let packed: i64 = least.into();
+    let strict = DbmBound::lt(lower + (packed + 1).div_euclid(2));
+    zone.entry(y, x).min(N::of(strict))
+}
+
+/// The clock's bounds are never lost.
+pub(crate) const KEEP: i64 = 1 << 58;
+
+/// The greatest constants that each clock is compared with, from below and from above; clock 0 is the reference.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct MaximalConstants {
+    pub lower: Vec<i64>,
+    pub upper: Vec<i64>,
+}
+
+impl MaximalConstants {
+    pub(crate) fn none(dim: usize) -> Self {
+        let mut bounds = Self { lower: vec![NONE; dim], upper: vec![NONE; dim] };
+        (bounds.lower[0], bounds.upper[0]) = (0, 0);
+        bounds
+    }
+
+    /// At least these.
+    pub(crate) fn raise(&mut self, other: &MaximalConstants) {
+        for (mine, theirs) in [(&mut self.lower, &other.lower), (&mut self.upper, &other.upper)] {
+            mine.iter_mut().zip(theirs).for_each(|(a, b)| *a = (*a).max(*b));
+        }
+    }
+
+    /// Compared with `most` both ways.
+    pub(crate) fn note(&mut self, clock: usize, most: i64) {
+        self.lower[clock] = self.lower[clock].max(most);
+        self.upper[clock] = self.upper[clock].max(most);
+    }
+
+    /// The greater of both for both: what keeps apart what can be told apart (a bisimulation), not only what can do more.
+    pub(crate) fn level(&mut self) {
+        for (l, u) in self.lower.iter_mut().zip(&mut self.upper) {
+            *l = (*l).max(*u);
+            *u = *l;
+        }
+    }
+}
+
+/// ExtraLU+; with level bounds ExtraM+. For zones without negative clocks.
+pub(crate) fn extra(zone: &mut Dbm, bounds: &MaximalConstants) {
+    let dim = zone.dim();
+    let (lower, upper) = (&bounds.lower, &bounds.upper);
+    // The least value of each clock, before anything changes.
+    let least: Vec<i64> = (0..dim).map(|i| -zone.at(0, i).value()).collect();
+    let mut changed = false;
+    for i in 0..dim {
+        for j in (0..dim).filter(|&j| j != i) {
+            let b = zone.at(i, j);
+            let new = if b.is_infinite() || (i > 0 && (b.value() > lower[i] || least[i] > lower[i])) {
+                DbmBound::INFINITY
+            } else if least[j] <= upper[j] {
+                b
+            } else if i > 0 {
+                DbmBound::INFINITY
+            } else if upper[j] == NONE {
+                DbmBound::LE_ZERO
+            } else {
+                DbmBound::lt(-upper[j])
+            };
+            if new != b {
+                zone.put(i, j, new);
+                changed = true;
+            }
+        }
+    }
+    if changed {
+        zone.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::zone::dbm::dominates;
+
+    const DIM: usize = 3;
+
+    fn bound() -> impl Strategy<Value = DbmBound> {
+        prop_oneof![(-3i64..4).prop_map(DbmBound::le), (-3i64..4).prop_map(DbmBound::lt)]
+    }
+
+    fn zone() -> impl Strategy<Value = Dbm<i16>> {
+        prop::collection::vec((0..DIM, 0..DIM, bound()), 0..5).prop_map(|cs| {
+            let mut z = Dbm::universe(DIM);
+            for (i, j, b) in cs {
+                if i != j {
+                    z.constrain(i, j, b);
+                }
+            }
+            z
+        })
+    }
+
+    fn frame() -> impl Strategy<Value = ActiveClocks> {
+        let one = || prop_oneof![Just(NONE), 0i64..4];
+        prop::collection::vec((one(), one()), DIM - 1).prop_map(|all| {
+            let own = all.into_iter().map(|(lower, upper)| LuBounds { lower, upper });
+            let bounds = std::iter::once(LuBounds { lower: 0, upper: 0 }).chain(own).collect();
+            ActiveClocks { clocks: (0..DIM as u16).collect(), bounds }
+        })
+    }
+
+    /// In sixths.
+    fn simulated(frame: &ActiveClocks, v: &[i64], by: &[i64]) -> bool {
+        (1..DIM).all(|x| {
+            let above = |n: i64, bound: i64| bound == NONE || n > 6 * bound;
+            let lu = frame.bounds[x];
+            v[x] == by[x]
+                || (by[x] < v[x] && above(by[x], lu.lower))
+                || (v[x] < by[x] && above(v[x], lu.upper))
+        })
+    }
+
+    fn grid(step: usize, most: i64) -> impl Iterator<Item = [i64; DIM]> {
+        let line = move || (0..=6 * most).step_by(step);
+        line().flat_map(move |a| line().map(move |b| [0, a, b]))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(96))]
+
+        /// Clocks in thirds meet all orders of two fractions; sixths lie between them.
+        #[test]
+        fn simulation_is_as_it_is_defined(small in zone(), great in zone(), frame in frame()) {
+            prop_assume!(!small.is_empty() && !great.is_empty());
+            let mut demands = Vec::new();
+            thresholds(&frame, &small, &mut demands);
+            let mut flat = Vec::new();
+            great.store(&mut flat);
+            let targets: Vec<_> = grid(1, 9).filter(|p| great.contains(p, 6)).collect();
+            let defined = grid(2, 6).filter(|p| small.contains(p, 6)).all(|v| {
+                targets.iter().any(|by| simulated(&frame, &v, by))
+            });
+            prop_assert_eq!(dominates(&flat, &demands), defined);
+        }
+
+        #[test]
+        fn extrapolation_keeps_what_it_had_and_is_simulated(z in zone(), frame in frame()) {
+            prop_assume!(!z.is_empty());
+            let mut wide = z.clone();
+            extra_lu(&frame, &mut wide, &mut Vec::new());
+            prop_assert!(wide.includes(&z));
+            let mut closed = wide.clone();
+            prop_assert!(closed.close());
+            prop_assert_eq!(&closed, &wide);
+            let (mut demands, mut flat) = (Vec::new(), Vec::new());
+            thresholds(&frame, &wide, &mut demands);
+            z.store(&mut flat);
+            prop_assert!(dominates(&flat, &demands));
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Sets of clock valuations: zones as matrices, unions of them, and what keeps their number finite.
+
+pub(crate) mod constraint;
+pub mod dbm;
+pub(crate) mod diagonals;
+pub(crate) mod extrapolation;
+pub mod federation;
