@@ -169,7 +169,6 @@ fn steps<E>(of: &[Step<E>], f: LowerExpr<'_, E>) -> Vec<Step> {
 }
 
 impl<E> StepKind<E> {
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn lower(&self, f: LowerExpr<'_, E>) -> StepKind {
         match self {
             StepKind::Do { event, args } => StepKind::Do { event: *event, args: all(args, f) },

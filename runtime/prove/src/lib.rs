@@ -76,17 +76,11 @@ pub fn prove(
     let Some(requirement) = program.monitors.get(monitor) else {
         return Err(format!("there is no requirement {monitor}"));
     };
+    let unsearched = |status| RequirementProof { monitor, status, states: 0, note: None };
     let mut observed = ObservedNetwork::new(program, network);
     let verdicts = match observed.add(requirement) {
         Ok(verdicts) => verdicts,
-        Err(why) => {
-            return Ok(RequirementProof {
-                monitor,
-                status: ProofStatus::NotOnTheModel(why),
-                states: 0,
-                note: None,
-            });
-        }
+        Err(why) => return Ok(unsearched(ProofStatus::NotOnTheModel(why))),
     };
     let formulas: Vec<_> = verdicts.violated.iter().chain([&verdicts.triggered]).collect();
     let questions: Vec<_> = formulas.into_iter().map(goals::of_formula).collect();
@@ -95,12 +89,7 @@ pub fn prove(
         Err(SearchError::Model { error, witness }) => {
             let what = error.to_string();
             let run = witness.map(|witness| Box::new(ObservedRun { observed, witness: *witness }));
-            return Ok(RequirementProof {
-                monitor,
-                status: ProofStatus::Fault { what, run },
-                states: 0,
-                note: None,
-            });
+            return Ok(unsearched(ProofStatus::Fault { what, run }));
         }
         Err(SearchError::Internal(what)) => {
             return Err(format!("requirement `{}`: {what}", requirement.name));

@@ -185,7 +185,7 @@ impl Checker<'_> {
             && !is_variable_name(&name.text)
         {
             self.finite(ty, "what an automaton binds", name.span);
-            self.define_here(&name, Kind::of(ty));
+            self.define_here(name, Kind::of(ty));
             env.push_typed(&name.text, name.span, Noun::Variable, ty);
             return ReceiveArg::Bind;
         }

@@ -4,7 +4,8 @@ use hrdsl_source::{Enumeration, Span, Symbol};
 use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 
 use super::{
-    Checker, ConstState, Env, expr::symbol_value, given::Given, is_variable_name, item::Item, measure::text,
+    Checker, ConstState, Env, env::Local, expr::symbol_value, given::Given, is_variable_name, item::Item,
+    measure::text,
 };
 use crate::{
     Expr, ExprKind,
@@ -61,21 +62,7 @@ impl<'a> Checker<'a> {
             return Some(Item::error(name.span));
         }
         if let Some(local) = env.find(&name.text) {
-            self.refer(name, Some(local.place));
-            return Some(Item::One(match local.leaf {
-                Some(leaf) if local.bound => {
-                    Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span }
-                }
-                Some(_) => self.without_value(name, env),
-                None => {
-                    self.report(if self.functions.open.is_some() {
-                        functions::clock(&name.text, name.span)
-                    } else {
-                        clock_misused(&name.text, name.span)
-                    });
-                    Expr::error(name.span)
-                }
-            }));
+            return Some(Item::One(self.local_named(name, local, env)));
         }
         if let Some(layout) = env.layout(&name.text).cloned() {
             if !self.all_bound(&name.text, &layout, env) {
@@ -100,19 +87,8 @@ impl<'a> Checker<'a> {
             self.refer(name, Some(place));
             return Some(self.const_value(name));
         }
-        match self.values.get(name.text.as_str()).map(Vec::as_slice) {
-            Some([of]) => {
-                let of = *of;
-                self.refer_value(of, name);
-                let symbol = Symbol::intern(&name.text);
-                return Some(Item::One(symbol_value(of, symbol, name.span)));
-            }
-            Some(several) => {
-                let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
-                self.report(names::ambiguous(&name.text, &of, name.span));
-                return Some(Item::error(name.span));
-            }
-            None => {}
+        if let Some(value) = self.enumeration_value(name) {
+            return Some(value);
         }
         if env.plan
             && let Some(symbol) = self.agent_names.symbol(&name.text)
@@ -120,6 +96,38 @@ impl<'a> Checker<'a> {
             return Some(Item::One(symbol_value(self.agent_names, symbol, name.span)));
         }
         self.signal_named(name, env).map(Item::One)
+    }
+
+    /// The value of a variable of the place itself: a parameter, a bound variable or a clock.
+    fn local_named(&mut self, name: &Name, local: &Local, env: &Env) -> Expr {
+        self.refer(name, Some(local.place));
+        match local.leaf {
+            Some(leaf) if local.bound => Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span },
+            Some(_) => self.without_value(name, env),
+            None => {
+                self.report(if self.functions.open.is_some() {
+                    functions::clock(&name.text, name.span)
+                } else {
+                    clock_misused(&name.text, name.span)
+                });
+                Expr::error(name.span)
+            }
+        }
+    }
+
+    /// A value of an enumeration; of two enumerations that both have it, neither is meant.
+    fn enumeration_value(&mut self, name: &Name) -> Option<Item> {
+        match self.values.get(name.text.as_str())?.as_slice() {
+            &[of] => {
+                self.refer_value(of, name);
+                Some(Item::One(symbol_value(of, Symbol::intern(&name.text), name.span)))
+            }
+            several => {
+                let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
+                self.report(names::ambiguous(&name.text, &of, name.span));
+                Some(Item::error(name.span))
+            }
+        }
     }
 
     /// A name is that of a value of an enumeration, which is used by it.

@@ -265,7 +265,6 @@ pub(crate) struct Checker<'a> {
 const MAX_COMPARED: usize = 500_000;
 
 impl<'a> Checker<'a> {
-    #[expect(clippy::too_many_lines, reason = "a line for each field")]
     fn new(items: Vec<&'a ast::Item>, from_modules: usize) -> Self {
         let has_world = items.iter().any(|i| matches!(i.kind, ItemKind::World(_)));
         Self {

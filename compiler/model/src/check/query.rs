@@ -296,6 +296,32 @@ impl Checker<'_> {
 
     // ── clocks ──
 
+    /// The times of `clocks op times`, as one sum on the right of the comparison. `None`: reported.
+    fn times_on_the_right(&mut self, sum: &Sum<'_>, net: &mut Net) -> Option<Linear> {
+        // What is left of `clocks op times` moves to the right: its signs change.
+        let mut bound = Linear::default();
+        for (e, subtracted) in &sum.rest {
+            let factor = if *subtracted { 1.0 } else { -1.0 };
+            if !self.data_names(e, net) {
+                return None;
+            }
+            let time = self.expr_of(e, Kind::Float(Dim::TIME), &mut net.env);
+            if time.kind == ExprKind::Error {
+                return None;
+            }
+            match linear(&time) {
+                Ok(sum) => bound.add(sum, factor),
+                Err(at) => {
+                    if at.is_some() {
+                        self.report(queries::not_linear(e.span));
+                    }
+                    return None;
+                }
+            }
+        }
+        Some(bound)
+    }
+
     /// A comparison in which there is a clock. `None`: there is none.
     fn clock_formula(
         &mut self,
@@ -325,27 +351,7 @@ impl Checker<'_> {
             | BinaryOp::Div
             | BinaryOp::Rem => return None,
         };
-        // What is left of `clocks op times` moves to the right: its signs change.
-        let mut bound = Linear::default();
-        for (e, subtracted) in &sum.rest {
-            let factor = if *subtracted { 1.0 } else { -1.0 };
-            if !self.data_names(e, net) {
-                return Some(nothing());
-            }
-            let time = self.expr_of(e, Kind::Float(Dim::TIME), &mut net.env);
-            if time.kind == ExprKind::Error {
-                return Some(nothing());
-            }
-            match linear(&time) {
-                Ok(sum) => bound.add(sum, factor),
-                Err(at) => {
-                    if at.is_some() {
-                        self.report(queries::not_linear(e.span));
-                    }
-                    return Some(nothing());
-                }
-            }
-        }
+        let Some(bound) = self.times_on_the_right(&sum, net) else { return Some(nothing()) };
         let (clock, minus, flipped) = match (sum.plus.as_slice(), sum.minus.as_slice()) {
             ([x], []) => (*x, None, false),
             ([x], [y]) => (*x, Some(*y), false),

@@ -82,7 +82,7 @@ impl Checker<'_> {
                 self.assign_in_function((target, access), *op, value, env, body, out);
             }
             Syntax::Call(call) => match self.called_function(call, env) {
-                Some((id, args)) => out.push(Statement::Call { function: id, args: args }),
+                Some((id, args)) => out.push(Statement::Call { function: id, args }),
                 None if env.function(&call.name.text).is_some() => {}
                 None => self.no_such_statement(call, env),
             },
@@ -182,9 +182,7 @@ impl Checker<'_> {
             return;
         }
         let assigned = self.assigned(target, (layout, access), op, value, env);
-        out.extend(
-            assigned.into_iter().map(|(place, value)| Statement::Assign { place: place, value: value }),
-        );
+        out.extend(assigned.into_iter().map(|(place, value)| Statement::Assign { place, value }));
     }
 
     /// A call of what is no function.

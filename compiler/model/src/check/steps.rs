@@ -22,11 +22,11 @@ impl Checker<'_> {
             Syntax::Achieve { call, within } => {
                 let (goal, args) = self.adopt(scope, call, env);
                 let within = within.as_ref().map(|e| self.duration(e, "the time for the goal", env));
-                StepKind::Achieve { goal: goal?, args: args, within: within }
+                StepKind::Achieve { goal: goal?, args, within }
             }
             Syntax::Spawn(call) => {
                 let (goal, args) = self.adopt(scope, call, env);
-                StepKind::Spawn { goal: goal?, args: args }
+                StepKind::Spawn { goal: goal?, args }
             }
             Syntax::Query(literal) => StepKind::Query(self.literal(scope, literal, env, (true, true))?),
             Syntax::Test(formula) => StepKind::Test(self.context(scope, formula, env)),
