@@ -345,8 +345,12 @@ fn has_namespaces() -> bool {
     out.status.success()
 }
 
+/// Held by each test: the supervisors of one are none that the other has left.
+static ALONE: Mutex<()> = Mutex::new(());
+
 #[test]
 fn every_test_ends_as_expected_and_nothing_is_left() {
+    let _alone = ALONE.lock();
     let whole = std::env::var_os("HRDSL_SOAK").is_some();
     let only = std::env::var("HRDSL_SOAK_ONLY").ok();
     let programs = programs();
@@ -403,6 +407,7 @@ fn every_test_ends_as_expected_and_nothing_is_left() {
 /// Root has rights in namespaces that others must be left when they make their own.
 #[test]
 fn whoever_is_not_root_has_namespaces_too() {
+    let _alone = ALONE.lock();
     let other = ["-U", "--map-user=1000", "--map-group=1000"];
     let mut probe = Command::new("unshare");
     if !probe.args(other).arg("true").stderr(Stdio::null()).status().is_ok_and(|s| s.success()) {

@@ -44,3 +44,16 @@ fn whole(bencher: Bencher<'_, '_>) {
         .counter(lines(&text))
         .bench(|| compile(Input { name: "line.hri", text: divan::black_box(&text) }, &[]));
 }
+
+/// One declaration of it checked again alone: what an editor waits for after each key.
+#[divan::bench(sample_count = 10)]
+fn recheck_one_declaration(bencher: Bencher<'_, '_>) {
+    let text = large::scenario(LINES);
+    let compiled = compile(Input { name: "large", text: &text }, &[]);
+    let span = compiled.ast[0].items[compiled.ast[0].items.len() / 2].span;
+    bencher.bench(|| {
+        let again =
+            hrdsl_compiler::recheck(&compiled, span.start as usize, divan::black_box(&text[span.range()]));
+        assert!(again.is_some_and(|again| again.diagnostics.is_empty()));
+    });
+}

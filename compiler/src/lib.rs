@@ -7,13 +7,14 @@
 //! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant; `allow` takes away what is
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!
-//! [`compile`] does them all.
+//! [`compile`] does them all. [`recheck`] does the first three for one declaration whose text has changed.
 
 mod allow;
 mod beside;
 pub mod lower;
 pub mod modules;
 pub mod pages;
+mod recheck;
 mod spoken;
 
 use hrdsl_ir::Program;
@@ -22,6 +23,7 @@ use hrdsl_source::{Diagnostic, FileId, Files};
 pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
 
 pub use modules::{Loader, NoFiles, Source};
+pub use recheck::{Recheck, recheck};
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +40,8 @@ pub struct Compilation {
     pub files: Files,
     /// By [`FileId`].
     pub ast: Vec<ast::File>,
+    /// Which of them are modules, in the order in which their declarations come.
+    pub modules: Vec<usize>,
     /// As far as it could be resolved; `None` if the scenario is no text that can be looked at.
     pub scenario: Option<Scenario>,
     /// `Some` if and only if there are no errors.
@@ -93,7 +97,8 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     // The library's devices come first: what a scenario adds to them is what is there twice.
     let devices = devices.filter(|at| *at >= first_module);
     let others = (first_module..ast.len()).filter(|at| Some(*at) != devices);
-    let used: Vec<&ast::File> = devices.into_iter().chain(others).map(|at| &ast[at]).collect();
+    let modules: Vec<usize> = devices.into_iter().chain(others).collect();
+    let used: Vec<&ast::File> = modules.iter().map(|at| &ast[*at]).collect();
     let alone = modules::is_module(&ast[0]);
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));
@@ -110,7 +115,7 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
-    Compilation { files, ast, scenario: Some(resolved), program, diagnostics }
+    Compilation { files, ast, modules, scenario: Some(resolved), program, diagnostics }
 }
 
 /// A scenario without its `scenario` line. If something could not be read, that may have been it.

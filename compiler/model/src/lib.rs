@@ -13,7 +13,7 @@ mod types;
 pub mod world;
 
 pub use check::{INTERNAL_ACTIONS, InternalAction, Slot};
-pub use check::{resolve, resolve_part};
+pub use check::{resolve, resolve_alone, resolve_part};
 pub use expr::{BinaryOp, EvalError, Expr, ExprKind, Index, Leaf, NumberFunction, Place, UnaryOp, leaves};
 pub use lint::lint;
 pub use nearest::{distance, nearest};

@@ -8,7 +8,7 @@ use hrdsl_syntax::ast::{
 use crate::noun::Noun;
 
 /// Whether a declaration, or a member of a world or part, could not be read.
-pub(super) fn in_item(item: &ItemKind) -> bool {
+pub(in crate::check) fn in_item(item: &ItemKind) -> bool {
     let broken = |members: &[WorldMember]| members.iter().any(|m| matches!(m.kind, WorldMemberKind::Error));
     match item {
         ItemKind::Error => true,
@@ -42,17 +42,17 @@ pub(super) fn in_item(item: &ItemKind) -> bool {
 }
 
 /// Whether a member of an agent could not be read.
-pub(super) fn in_agent(agent: &Agent) -> bool {
+pub(in crate::check) fn in_agent(agent: &Agent) -> bool {
     agent.members.iter().any(|m| matches!(m.kind, AgentMemberKind::Error))
 }
 
 /// Whether a member of an automaton could not be read.
-pub(super) fn in_automaton(automaton: &Automaton) -> bool {
+pub(in crate::check) fn in_automaton(automaton: &Automaton) -> bool {
     automaton.members.iter().any(|m| matches!(m.kind, AutomatonMemberKind::Error))
 }
 
 /// Whether a name of this kind may have been declared by what could not be read.
-pub(super) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
+pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
     match noun {
         // The language's own words.
         Noun::Role

@@ -56,6 +56,12 @@ impl Resolutions {
         Self { definitions: definitions.into_iter().map(|d| (d.place, d)).collect(), ..Self::default() }
     }
 
+    /// What one declaration declares.
+    #[must_use]
+    pub fn of_declaration(item: &ast::Item) -> Self {
+        Self::of_items(&[item])
+    }
+
     /// A name means what is declared there.
     pub(crate) fn refer(&mut self, from: Span, to: Span) {
         if from != to {

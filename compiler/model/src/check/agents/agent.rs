@@ -1,0 +1,559 @@
+//! Agents: beliefs, goals, and what holds at the start.
+
+use std::collections::BTreeSet;
+
+use hrdsl_source::{Diagnostic, Span};
+use hrdsl_syntax::ast::{
+    self, AgentMemberKind as Member, Call, ExprKind as Syntax, ItemKind, Sort, StepKind, TriggerKind,
+};
+
+use crate::check::state::phase::Phase;
+use crate::check::{
+    checker::Checker,
+    state::{
+        issues::too_many,
+        names::{Declared, GoalEntry},
+        record::Fields,
+        scope::Env,
+        table::{MAX_NAMES, Map, Table},
+        template::Template,
+    },
+    unread,
+};
+use crate::{
+    AgentId, Belief, BeliefId, Context, Fact, Goal, GoalId, Kind, Param, Subject, Value,
+    noun::Noun,
+    report::{
+        agents::{no_plan, not_adopted, only_declared},
+        names, types,
+    },
+};
+
+/// The names of one agent.
+pub(in crate::check) struct Scope {
+    pub id: AgentId,
+    /// Explicit labels of plans.
+    pub labels: Table,
+    /// How many plans each trigger's name has had so far.
+    pub plans_of: Map<String, usize>,
+}
+
+impl Scope {
+    fn new(index: usize) -> Self {
+        Self::of(AgentId(u16::try_from(index).unwrap_or(u16::MAX)))
+    }
+
+    pub fn of(id: AgentId) -> Self {
+        Self { id, labels: Table::default(), plans_of: Map::default() }
+    }
+}
+
+/// A goal as it is adopted: `table`, `deliver(…)`.
+fn written(name: &ast::Name, params: &[ast::Param]) -> String {
+    if params.is_empty() { name.text.clone() } else { format!("{}(…)", name.text) }
+}
+
+/// The agent itself adopts the goal.
+fn adopts(agent: &ast::Agent, goal: &str) -> bool {
+    let mut found = false;
+    for member in &agent.members {
+        match &member.kind {
+            Member::Goal(call) => found |= call.name.text == goal,
+            Member::Plan(plan) => each_step(&plan.body, &mut |step| {
+                if let StepKind::Achieve { call, .. } | StepKind::Spawn(call) = &step.kind {
+                    found |= call.name.text == goal;
+                }
+            }),
+            Member::Belief { .. }
+            | Member::Rule { .. }
+            | Member::GoalType { .. }
+            | Member::Allow(_)
+            | Member::Error => {}
+        }
+    }
+    found
+}
+
+/// The declaration of a goal's types, as it would be adopted.
+fn declared(agent: &ast::Agent, goal: &str) -> Option<(String, Span)> {
+    agent.members.iter().find_map(|m| match &m.kind {
+        Member::GoalType { name, params } if name.text == goal => Some((written(name, params), name.span)),
+        _ => None,
+    })
+}
+
+impl<'a> Checker<'a> {
+    pub(in crate::check) fn agents(&mut self) {
+        for (item, _) in self.each_item() {
+            if let ItemKind::Agent(agent) = item {
+                asked_goals(agent, &mut self.agents.asked_goals);
+            }
+        }
+        // All names come first, since agents send each other messages; those of templates before those of instances, so
+        // that a fault of a template is said of the template.
+        self.templates_of(Sort::Agent, |c, template| c.template_agent(template, false));
+        let decls = self.players.agents.clone();
+        let each = |c: &mut Self, check: &dyn Fn(&mut Self, usize, &'a ast::Agent)| {
+            for (index, agent) in decls.iter().enumerate() {
+                let place = agent.instance.map(|i| (&i.name, i.span));
+                c.as_instance(agent.given.clone(), place, |c| check(c, index, agent.syntax));
+            }
+        };
+        each(self, &|c, index, agent| c.declare_members(index, agent));
+        self.templates_of(Sort::Agent, |c, template| {
+            if c.source.looks_at(Phase::Agents, template.name.span) {
+                c.template_agent(template, true);
+            }
+        });
+        each(self, &|c, index, agent| c.agent_rules(&Scope::new(index), agent));
+        each(self, &|c, index, agent| {
+            let looked_at = |at| c.source.looks_at(Phase::Agents, at);
+            let instance = decls[index].instance.is_some_and(|i| looked_at(i.span));
+            if instance || looked_at(agent.name.span) {
+                c.agent(index, agent);
+            }
+        });
+        self.resolve_contents();
+    }
+
+    /// Looks at a template by itself: at its declarations, or at all.
+    fn template_agent(&mut self, template: Template<'a>, whole: bool) {
+        let ItemKind::Agent(syntax) = template.kind else { return };
+        let (index, contents) = (self.s.agents.len(), self.s.contents.len());
+        let plain = Declared { syntax, given: None, instance: None };
+        self.push_agent(&plain, template.name, template.name.span);
+        self.declare_members(index, syntax);
+        if whole {
+            self.agent_rules(&Scope::new(index), syntax);
+            self.agent(index, syntax);
+        }
+        self.s.agents.truncate(index);
+        self.s.contents.truncate(contents);
+        self.agents.beliefs.truncate(index);
+        self.agents.belief_fields.truncate(index);
+        self.agents.goals.truncate(index);
+        self.agents.modes.retain(|(agent, _), _| usize::from(*agent) < index);
+    }
+
+    /// Beliefs and goals with their types.
+    fn declare_members(&mut self, index: usize, agent: &'a ast::Agent) {
+        for member in &agent.members {
+            if let Member::Belief { name, params, annotations, on, .. } = &member.kind {
+                self.declare_belief(index, (name, params, annotations), on.as_ref(), member.span);
+            }
+        }
+        let mut goals = achieved(agent);
+        if goals.len() > MAX_NAMES {
+            let message = format!("there are more than {MAX_NAMES} goals in `{}`", agent.name.text);
+            self.report(too_many(message, agent.name.span));
+            goals.truncate(MAX_NAMES);
+        }
+        self.agents.goals[index] = goals;
+        self.declare_goals(index, agent);
+        let entries = self.agents.goals[index].clone();
+        self.s.agents[index].goals = entries
+            .iter()
+            .map(|(name, entry)| {
+                let params = entry.fields.as_ref().map(|f| self.flat(f));
+                let arity = params.as_ref().map_or(entry.arity, Vec::len);
+                Goal { name: name.clone(), arity: u16::try_from(arity).unwrap_or(u16::MAX), params }
+            })
+            .collect();
+    }
+
+    fn declare_belief(
+        &mut self,
+        index: usize,
+        (name, params, annotations): (&ast::Name, &[ast::Param], &[ast::Param]),
+        on: Option<&ast::Name>,
+        span: Span,
+    ) {
+        let fields = self.fields(params);
+        let mut marks = Vec::new();
+        let mut table = Table::default();
+        for mark in annotations {
+            let ty = self.ty(&mark.ty);
+            if mark.name.text == "source" {
+                let issue = names::duplicate(Noun::Annotation, "source", mark.name.span, None);
+                self.report(issue.help("every fact has its sources: leave it out"));
+                continue;
+            }
+            self.issues.declare(&mut table, Noun::Annotation, &mark.name);
+            if let Some(ty) = ty {
+                marks.push(Param { name: mark.name.text.clone(), ty });
+            }
+        }
+        let percept = on.and_then(|event| self.percept(index, event, &fields));
+        if self.issues.declare(&mut self.agents.beliefs[index], Noun::Belief, name).is_some() {
+            let params = self.flat(&fields);
+            self.agents.belief_fields[index].push(fields);
+            let (name, annotations) = (name.text.clone(), marks);
+            let belief = Belief { name, params, annotations, percept, negates: None, origin: span };
+            self.s.agents[index].beliefs.push(belief);
+        }
+    }
+
+    /// `on sensed`: the event whose arguments the belief holds.
+    fn percept(&mut self, index: usize, name: &ast::Name, fields: &Fields) -> Option<crate::EventId> {
+        let event = self.event(Noun::EventOrStimulus, name, None)?;
+        self.perceives(self.s.agents[index].actor, event, name.span, false);
+        let types = |params: &[Param]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
+        let (ours, theirs) = (self.flat(fields), &self.s.events[usize::from(event.0)].params);
+        let known = fields.iter().all(|(_, l)| *l != crate::types::Layout::Unknown);
+        if known && types(&ours) != types(theirs) {
+            let params: Vec<String> = self.fields_of(event).iter().map(|(n, _)| n.clone()).collect();
+            let message = format!("the belief has other parameters than the event `{}`", name.text);
+            let issue = Diagnostic::error(hrdsl_source::Code::TYPE_MISMATCH, name.span, message);
+            let declared = self.events.table.span_of(&name.text);
+            let issue = match params.as_slice() {
+                [] => issue.help("declare it without parameters"),
+                params => {
+                    issue.help(format!("declare it with those of the event: `({})`", params.join(", ")))
+                }
+            };
+            self.report(match declared {
+                Some(span) => issue.label(span, "the event is declared here"),
+                None => issue,
+            });
+        }
+        Some(event)
+    }
+
+    /// `goal deliver(leg: 1..4)`
+    fn declare_goals(&mut self, index: usize, agent: &ast::Agent) {
+        let mut table = Table::default();
+        for member in &agent.members {
+            let Member::GoalType { name, params } = &member.kind else { continue };
+            let fields = self.fields(params);
+            if self.issues.declare(&mut table, Noun::Goal, name).is_none() {
+                continue;
+            }
+            match self.agents.goals[index].get_mut(&name.text) {
+                Some(entry) => {
+                    *entry = GoalEntry { arity: fields.len(), fields: Some(fields), place: name.span }
+                }
+                None if unread::in_agent(agent) => {}
+                None => {
+                    let goals: Vec<String> = self.agents.goals[index].keys().cloned().collect();
+                    let issue = no_plan(&name.text, name.span, goals.iter().map(String::as_str));
+                    let is_adopted =
+                        adopts(agent, &name.text) || self.agents.asked_goals.contains(name.text.as_str());
+                    let issue = if is_adopted {
+                        issue
+                    } else {
+                        only_declared(issue, &written(name, params), name.span)
+                    };
+                    self.report(issue);
+                }
+            }
+        }
+    }
+
+    fn agent(&mut self, index: usize, agent: &ast::Agent) {
+        let mut scope = Scope::new(index);
+        self.source.unread_members = unread::in_agent(agent);
+        for member in &agent.members {
+            match &member.kind {
+                Member::Belief { name, initial, .. } => {
+                    for fact in initial {
+                        self.initial_belief(&scope, name, fact);
+                    }
+                }
+                Member::Goal(call) => self.initial_goal(&scope, call),
+                Member::Plan(plan) => {
+                    let plan = self.plan(&mut scope, plan, member.span);
+                    self.s.agents[index].plans.extend(plan);
+                }
+                Member::Rule { .. } | Member::GoalType { .. } | Member::Allow(_) | Member::Error => {}
+            }
+        }
+        self.unadopted(&scope, agent);
+        self.source.unread_members = false;
+    }
+
+    /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
+    fn unadopted(&mut self, scope: &Scope, agent: &ast::Agent) {
+        let mut adopted: BTreeSet<&str> = self.agents.asked_goals.clone();
+        let mut here: indexmap::IndexSet<&str> = indexmap::IndexSet::new();
+        let mut broken = false;
+        for member in &agent.members {
+            match &member.kind {
+                Member::Goal(call) => here.extend([call.name.text.as_str()]),
+                Member::Plan(plan) => each_step(&plan.body, &mut |step| match &step.kind {
+                    StepKind::Achieve { call, .. } | StepKind::Spawn(call) => {
+                        here.extend([call.name.text.as_str()]);
+                    }
+                    // It may have been an adoption.
+                    StepKind::Error => broken = true,
+                    _ => {}
+                }),
+                Member::Belief { .. } | Member::Rule { .. } | Member::GoalType { .. } | Member::Allow(_) => {}
+                Member::Error => broken = true,
+            }
+        }
+        let goals = &self.agents.goals[usize::from(scope.id.0)];
+        if broken || here.iter().any(|goal| !goals.contains_key(*goal)) {
+            // An adoption is misspelt, and has its diagnostic: it may be the one that is missing.
+            return;
+        }
+        adopted.extend(here.iter().copied());
+        for member in &agent.members {
+            if let Member::Plan(plan) = &member.kind
+                && plan.trigger.kind == TriggerKind::Achieve
+                && !adopted.contains(plan.trigger.literal.call.name.text.as_str())
+            {
+                let name = &plan.trigger.literal.call.name;
+                let issue = not_adopted(&name.text, name.span, here.iter().copied());
+                let issue = match declared(agent, &name.text) {
+                    Some((written, span)) => only_declared(issue, &written, span),
+                    None => issue,
+                };
+                self.report(issue);
+            }
+        }
+    }
+
+    /// `= had(0)`: the fact must be of the belief that is being declared.
+    fn initial_belief(&mut self, scope: &Scope, declared: &ast::Name, fact: &ast::Literal) {
+        let Some(belief) = self.belief_or_negation(scope, fact) else { return };
+        let name = &fact.call.name;
+        if name.text != declared.text {
+            let near = [declared.text.as_str()];
+            self.report(
+                names::unknown(Noun::Belief, &name.text, name.span, near)
+                    .label(declared.span, "declared here"),
+            );
+        }
+        let fields = self.belief_fields(scope.id, belief);
+        let args = self.ground(Noun::Belief, &fact.call, &fields);
+        let marks = self.annotations_of(scope, belief);
+        let mut annotations = Vec::new();
+        for e in &fact.annotations {
+            let Some((annotation, value, ty)) = self.annotation(e, Some(&marks)) else { continue };
+            let value = self.expr_for(value, ty, &mut Env::constants());
+            if value.constant().is_none() && value.ty != Kind::Unknown {
+                self.report(types::not_constant(value.span));
+            }
+            annotations.extend(value.constant().map(|v| (annotation, v)));
+        }
+        if let Some(args) = args {
+            let facts = &mut self.s.agents[usize::from(scope.id.0)].initial_beliefs;
+            facts.push(Fact { belief, args, annotations });
+        }
+    }
+
+    fn initial_goal(&mut self, scope: &Scope, call: &Call) {
+        let Some(goal) = self.goal(scope, call) else { return };
+        let args = match self.goal_fields(scope.id, goal) {
+            Some(fields) => self.ground(Noun::Goal, call, &fields).unwrap_or_default(),
+            None => {
+                let mut args = Vec::new();
+                for arg in call.args.as_deref().unwrap_or_default() {
+                    args.extend(self.constant(arg, Kind::Unknown, &mut Env::constants()));
+                }
+                args
+            }
+        };
+        self.s.agents[usize::from(scope.id.0)].initial_goals.push((goal, args));
+    }
+
+    /// Constant arguments.
+    fn ground(&mut self, noun: Noun, call: &Call, fields: &Fields) -> Option<Vec<Value>> {
+        let args = self.args(noun, call, fields, &mut Env::constants());
+        for arg in &args {
+            if arg.constant().is_none() && arg.ty != Kind::Unknown {
+                self.report(types::not_constant(arg.span));
+            }
+        }
+        let values: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
+        let whole = call.args.as_ref().map_or(0, Vec::len) == fields.len();
+        values.filter(|_| whole)
+    }
+
+    pub(in crate::check) fn belief_fields(&self, agent: AgentId, belief: BeliefId) -> Fields {
+        self.agents.belief_fields[usize::from(agent.0)][usize::from(belief.0)].clone()
+    }
+
+    pub(in crate::check) fn goal_fields(&self, agent: AgentId, goal: GoalId) -> Option<Fields> {
+        let (_, entry) = self.agents.goals[usize::from(agent.0)].get_index(usize::from(goal.0))?;
+        entry.fields.clone()
+    }
+
+    /// The belief that a literal is of: a declared one, or its strong negation.
+    pub(in crate::check) fn belief_or_negation(
+        &mut self,
+        scope: &Scope,
+        literal: &ast::Literal,
+    ) -> Option<BeliefId> {
+        let belief = self.belief(scope, &literal.call.name)?;
+        if literal.negated { self.negation(scope.id, belief) } else { Some(belief) }
+    }
+
+    /// The strong negation of a belief, which is made when it is first used.
+    pub(in crate::check) fn negation(&mut self, agent: AgentId, belief: BeliefId) -> Option<BeliefId> {
+        let index = usize::from(agent.0);
+        let plain = &self.s.agents[index].beliefs[usize::from(belief.0)];
+        let name = format!("~{}", plain.name);
+        if let Some(id) = self.agents.beliefs[index].get(&name) {
+            return Some(BeliefId(id));
+        }
+        let negation = Belief { name, percept: None, negates: Some(belief), ..plain.clone() };
+        let (issues, table) = (&mut self.issues, &mut self.agents.beliefs[index]);
+        let id = issues.declare_as(table, Noun::Belief, &negation.name, negation.origin)?;
+        let fields = self.belief_fields(agent, belief);
+        self.agents.belief_fields[index].push(fields);
+        self.s.agents[index].beliefs.push(negation);
+        Some(BeliefId(id))
+    }
+
+    pub(in crate::check) fn belief(&mut self, scope: &Scope, name: &ast::Name) -> Option<BeliefId> {
+        let table = &self.agents.beliefs[usize::from(scope.id.0)];
+        if let Some(id) = table.get(&name.text) {
+            let place = table.span(id);
+            self.refer(name, place);
+            return Some(BeliefId(id));
+        }
+        let names: Vec<String> = table.names().filter(|n| !n.starts_with('~')).map(str::to_owned).collect();
+        let is_goal = self.agents.goals[usize::from(scope.id.0)].contains_key(&name.text);
+        self.unknown(Noun::Belief, name, &names, is_goal.then_some(Noun::Goal));
+        None
+    }
+
+    /// What a name is within the agent.
+    pub(in crate::check) fn kind_in_agent(&self, scope: &Scope, text: &str) -> Option<Noun> {
+        self.kind_of_agent(scope.id, text)
+    }
+
+    /// What a name is within some agent.
+    pub(in crate::check) fn kind_of_agent(&self, agent: AgentId, text: &str) -> Option<Noun> {
+        let index = usize::from(agent.0);
+        if self.agents.beliefs[index].get(text).is_some() {
+            return Some(Noun::Belief);
+        }
+        self.agents.goals[index].contains_key(text).then_some(Noun::Goal)
+    }
+
+    /// A goal with its number of arguments; there must be a plan for it.
+    pub(in crate::check) fn goal(&mut self, scope: &Scope, call: &Call) -> Option<GoalId> {
+        let name = &call.name;
+        let goals = &self.agents.goals[usize::from(scope.id.0)];
+        let Some((index, _, entry)) = goals.get_full(&name.text) else {
+            let helpless = !self.issues.compares();
+            let goals: Vec<String> = if helpless { Vec::new() } else { goals.keys().cloned().collect() };
+            self.issues.compared += goals.len();
+            let near = goals.iter().map(String::as_str);
+            let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
+            let issue = match is {
+                Some(is) => names::wrong_kind(Noun::Goal, is, &name.text, name.span, near),
+                None if self.source.unread_members => return None,
+                None => no_plan(&name.text, name.span, near),
+            };
+            let issue = Diagnostic { help: issue.help.filter(|_| !helpless), ..issue };
+            self.report(issue);
+            return None;
+        };
+        let (got, arity) = (call.args.as_ref().map_or(0, Vec::len), entry.arity);
+        let place = entry.place;
+        if got != arity {
+            let issue = match &entry.fields {
+                Some(fields) => {
+                    let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
+                    types::arity(Noun::Goal, &name.text, &names, got, call.span)
+                }
+                None => types::counts(Noun::Goal, &name.text, arity, got, call.span),
+            };
+            self.report(issue);
+            return None;
+        }
+        self.refer(name, Some(place));
+        Some(GoalId(u16::try_from(index).unwrap_or(u16::MAX)))
+    }
+
+    /// Several contexts as one.
+    pub(in crate::check) fn all_of(mut contexts: Vec<Context>) -> Context {
+        match contexts.len() {
+            0 => Context::True,
+            1 => contexts.remove(0),
+            _ => Context::And(contexts),
+        }
+    }
+
+    /// What each message's content is to each agent.
+    fn resolve_contents(&mut self) {
+        let all = self.s.contents.iter().zip(&self.s.speech);
+        let contents: Vec<(String, bool, usize)> =
+            all.map(|(c, speech)| (c.name.clone(), speech.is_goal, speech.arity)).collect();
+        let all = || (0u16..).map(AgentId).take(self.players.agents.len());
+        let agents: Vec<AgentId> = all().collect();
+        for (at, (name, is_goal, arity)) in contents.into_iter().enumerate() {
+            let of = agents.iter().map(|agent| self.subject(*agent, &name, is_goal, arity)).collect();
+            self.s.contents[at].of = of;
+        }
+    }
+
+    fn subject(&mut self, agent: AgentId, name: &str, is_goal: bool, arity: usize) -> Option<Subject> {
+        let index = usize::from(agent.0);
+        if is_goal {
+            let id = self.agents.goals[index].get_index_of(name)?;
+            let fits = usize::from(self.s.agents[index].goals.get(id)?.arity) == arity;
+            return u16::try_from(id).ok().filter(|_| fits).map(|id| Subject::Goal(GoalId(id)));
+        }
+        let plain = BeliefId(self.agents.beliefs[index].get(name.trim_start_matches('~'))?);
+        let belief = if name.starts_with('~') { self.negation(agent, plain)? } else { plain };
+        let fits = self.s.agents[index].beliefs[usize::from(belief.0)].params.len() == arity;
+        fits.then_some(Subject::Belief(belief))
+    }
+}
+
+/// The goals with a plan `+!g`, by the first plan for each.
+fn achieved(agent: &ast::Agent) -> Map<String, GoalEntry> {
+    let mut goals = Map::default();
+    for member in &agent.members {
+        if let Member::Plan(plan) = &member.kind
+            && plan.trigger.kind == TriggerKind::Achieve
+        {
+            let call = &plan.trigger.literal.call;
+            let arity = call.args.as_ref().map_or(0, Vec::len);
+            let entry = GoalEntry { arity, fields: None, place: call.name.span };
+            goals.entry(call.name.text.clone()).or_insert(entry);
+        }
+    }
+    goals
+}
+
+/// Calls `f` with each step, those within blocks too.
+fn each_step<'a>(steps: &'a [ast::Step], f: &mut dyn FnMut(&'a ast::Step)) {
+    for step in steps {
+        f(step);
+        match &step.kind {
+            StepKind::If { then, otherwise, .. } => {
+                each_step(then, f);
+                each_step(otherwise, f);
+            }
+            StepKind::While { body, .. } | StepKind::For { body, .. } => each_step(body, f),
+            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
+            _ => {}
+        }
+    }
+}
+
+/// The goals that an agent asks others to achieve.
+fn asked_goals<'a>(agent: &'a ast::Agent, goals: &mut BTreeSet<&'a str>) {
+    for member in &agent.members {
+        let Member::Plan(plan) = &member.kind else { continue };
+        each_step(&plan.body, &mut |step| {
+            let StepKind::Internal(call) = &step.kind else { return };
+            let args = call.args.as_deref().unwrap_or_default();
+            let message = match (call.name.text.as_str(), args) {
+                ("send", [_, how, what]) | ("broadcast", [how, what]) => Some((how, what)),
+                _ => None,
+            };
+            if let Some((how, what)) = message
+                && matches!(&how.kind, Syntax::Path(p) if p.names.len() == 1 && p.names[0].text == "achieve")
+                && let Syntax::Path(name) | Syntax::Call { callee: name, .. } = &what.kind
+            {
+                goals.extend(name.names.first().map(|n| n.text.as_str()));
+            }
+        });
+    }
+}

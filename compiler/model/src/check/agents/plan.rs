@@ -1,0 +1,154 @@
+//! Plans: trigger, context, body; each variable must have a value before it is read, from left to right.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Call, TriggerKind};
+
+use crate::check::{
+    agents::agent::Scope,
+    checker::{Checker, NOBODY},
+    state::{issues::too_many, scope::Env, table::MAX_NAMES},
+};
+use crate::{
+    ActorId, Annotation, Arg, BeliefId, Context, EventId, Plan, Role, Trigger, TriggerOn,
+    noun::Noun,
+    report::{agents, names, roles},
+};
+
+/// A trigger: what it is on, its arguments and annotations.
+type Matched = (TriggerOn, Vec<Arg>, Vec<(Annotation, Arg)>);
+
+impl Checker<'_> {
+    pub(in crate::check) fn plan(&mut self, scope: &mut Scope, plan: &ast::Plan, span: Span) -> Option<Plan> {
+        let (label, atomic) = self.label(scope, plan);
+        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
+        let trigger = self.trigger(scope, &plan.trigger, &mut env);
+        let context = match &plan.context {
+            Some(e) => self.context(scope, e, &mut env),
+            None => Context::True,
+        };
+        let body = self.plan_body(scope, &plan.body, &mut env);
+        if env.locals.len() > MAX_NAMES {
+            let message = format!("the plan has more than {MAX_NAMES} variables");
+            self.report(too_many(message, plan.trigger.span));
+        }
+        let vars = env.locals.iter().map(|l| l.name.clone()).collect();
+        let (on, args, annotations) = trigger?;
+        let (origin, name) = (plan.trigger.span, plan.trigger.literal.call.name.span);
+        let trigger = Trigger { on, args, annotations, origin, name };
+        Some(Plan { label, atomic, trigger, context, body, vars, origin: span })
+    }
+
+    fn label(&mut self, scope: &mut Scope, plan: &ast::Plan) -> (String, bool) {
+        let trigger = plan.trigger.literal.call.name.text.clone();
+        let count = scope.plans_of.entry(trigger.clone()).or_insert(0);
+        *count += 1;
+        let made = format!("{trigger}#{count}");
+        let Some(label) = &plan.label else { return (made, false) };
+        self.issues.declare(&mut scope.labels, Noun::Label, &label.name);
+        let atomic = match &label.atomic {
+            Some(name) if name.text == "atomic" => true,
+            Some(name) => {
+                self.report(names::unknown(Noun::Annotation, &name.text, name.span, ["atomic"]));
+                false
+            }
+            None => false,
+        };
+        (label.name.text.clone(), atomic)
+    }
+
+    fn trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
+        let literal = &trigger.literal;
+        let make: fn(BeliefId) -> TriggerOn = match trigger.kind {
+            TriggerKind::Added => TriggerOn::BeliefAdded,
+            TriggerKind::Removed => TriggerOn::BeliefRemoved,
+            TriggerKind::Test => TriggerOn::TestAdded,
+            TriggerKind::TestFailed => TriggerOn::TestFailed,
+            TriggerKind::Achieve | TriggerKind::Failed => return self.goal_trigger(scope, trigger, env),
+            TriggerKind::On => return self.event_trigger(scope, literal, env),
+        };
+        let literal = self.literal(scope, literal, env, (true, false))?;
+        Some((make(literal.belief), literal.args, literal.annotations))
+    }
+
+    fn goal_trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
+        let literal = &trigger.literal;
+        self.not_negated(literal, "a goal");
+        let goal = self.goal(scope, &literal.call);
+        let fields = goal.and_then(|g| self.goal_fields(scope.id, g));
+        let args = self.matched(Noun::Goal, &literal.call, fields.as_ref(), env, true);
+        let annotations = self.matched_annotations(&literal.annotations, Some(&[]), env, true);
+        let goal = goal?;
+        let achieve = trigger.kind == TriggerKind::Achieve;
+        let on = if achieve { TriggerOn::GoalAdded(goal) } else { TriggerOn::GoalFailed(goal) };
+        Some((on, args, annotations))
+    }
+
+    fn event_trigger(&mut self, scope: &Scope, literal: &ast::Literal, env: &mut Env) -> Option<Matched> {
+        let call = &literal.call;
+        self.not_negated(literal, "an event");
+        if let Some(first) = literal.annotations.first() {
+            self.report(agents::not_annotated("an event", first.span));
+        }
+        let local = self.kind_in_agent(scope, &call.name.text);
+        let event = self.event(Noun::EventOrStimulus, &call.name, local);
+        let fields = event.map(|e| self.fields_of(e));
+        let args = match (&call.args, event) {
+            // Without parentheses any arguments will do.
+            (None, Some(event)) => vec![Arg::Any; self.arity_of(event)],
+            (Some(_), _) | (None, None) => self.matched(Noun::Event, call, fields.as_ref(), env, true),
+        };
+        let event = event?;
+        self.perceives(self.s.agents[usize::from(scope.id.0)].actor, event, call.name.span, false);
+        Some((TriggerOn::Perceived(event), args, Vec::new()))
+    }
+
+    /// Only beliefs have a strong negation.
+    pub(in crate::check) fn not_negated(&mut self, literal: &ast::Literal, what: &str) {
+        if literal.negated {
+            self.report(agents::not_negated(what, literal.span));
+        }
+    }
+
+    /// Whether an event reaches an actor: one of another actor, addressed to it or to everybody. Automata of one actor
+    /// also hear each other.
+    pub(in crate::check) fn perceives(&mut self, actor: ActorId, event: EventId, span: Span, own_too: bool) {
+        let e = &self.s.events[usize::from(event.0)];
+        if actor == NOBODY || e.from == NOBODY {
+            return;
+        }
+        let who = self.actor_name(actor);
+        let noun = if e.stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
+        let issue = if e.from == actor {
+            if own_too {
+                return;
+            }
+            let help = format!("it is done by `{who}` itself, which only perceives what others do");
+            roles::not_perceived(noun, &e.name, who, &help, span)
+        } else if e.stimulus.is_some() && self.role_of(actor) == Role::System {
+            let help = "a stimulus is an action of a test: the system only perceives the events it emits";
+            roles::not_perceived(noun, &e.name, who, help, span)
+        } else if !e.to.is_empty() && !e.to.contains(&actor) {
+            let to: Vec<&str> = e.to.iter().map(|a| self.actor_name(*a)).collect();
+            let help = format!("it is declared `to {}`", to.join(", "));
+            roles::not_perceived(noun, &e.name, who, &help, span)
+        } else {
+            return;
+        };
+        self.report(issue);
+    }
+
+    pub(in crate::check) fn noun_of(&self, event: EventId) -> Noun {
+        let stimulus = self.s.events[usize::from(event.0)].stimulus.is_some();
+        if stimulus { Noun::Stimulus } else { Noun::Event }
+    }
+
+    /// Only the events of the actor that is played can be made.
+    pub(in crate::check) fn owns(&mut self, actor: ActorId, event: EventId, call: &Call) {
+        let from = self.s.events[usize::from(event.0)].from;
+        if from != actor && from != NOBODY && actor != NOBODY {
+            let (owner, player) = (self.actor_name(from), self.actor_name(actor));
+            let issue = roles::not_its_event(&call.name.text, owner, player, call.name.span);
+            self.report(issue);
+        }
+    }
+}

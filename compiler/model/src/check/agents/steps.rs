@@ -1,0 +1,150 @@
+//! The steps of plans.
+
+use hrdsl_syntax::ast::{self, Call, StepKind as Syntax};
+
+use crate::check::{
+    agents::{
+        agent::Scope,
+        context::{known, restore},
+    },
+    checker::Checker,
+    state::scope::Env,
+    value::expr::MAX_TIME,
+};
+use crate::{Context, Dim, Expr, GoalId, Kind, Step, StepKind, Value, noun::Noun, report::types};
+
+impl Checker<'_> {
+    pub(in crate::check) fn plan_body(
+        &mut self,
+        scope: &Scope,
+        steps: &[ast::Step],
+        env: &mut Env,
+    ) -> Vec<Step> {
+        let step = |s: &ast::Step| Some(Step { kind: self.step(scope, s, env)?, origin: s.span });
+        steps.iter().filter_map(step).collect()
+    }
+
+    fn step(&mut self, scope: &Scope, step: &ast::Step, env: &mut Env) -> Option<StepKind> {
+        Some(match &step.kind {
+            Syntax::Do(call) => self.act_of(scope, call, env)?,
+            Syntax::Achieve { call, within } => {
+                let (goal, args) = self.adopt(scope, call, env);
+                let within = within.as_ref().map(|e| self.duration(e, "the time for the goal", env));
+                StepKind::Achieve { goal: goal?, args, within }
+            }
+            Syntax::Spawn(call) => {
+                let (goal, args) = self.adopt(scope, call, env);
+                StepKind::Spawn { goal: goal?, args }
+            }
+            Syntax::Query(literal) => StepKind::Query(self.literal(scope, literal, env, (true, true))?),
+            Syntax::Test(formula) => StepKind::Test(self.context(scope, formula, env)),
+            Syntax::Unify { left, right } => StepKind::Test(self.unify(left, right, env)),
+            Syntax::Add(literal) => StepKind::Add(self.assertion(scope, literal, env)?),
+            Syntax::Remove(literal) => StepKind::Remove(self.literal(scope, literal, env, (false, false))?),
+            Syntax::Replace(literal) => StepKind::Replace(self.assertion(scope, literal, env)?),
+            Syntax::Await { events, within } => {
+                let actor = self.s.agents[usize::from(scope.id.0)].actor;
+                let mut patterns = Vec::new();
+                for (pattern, span) in self.patterns_with(events, env) {
+                    self.perceives(actor, pattern.event, span, false);
+                    patterns.push(pattern);
+                }
+                let within = within.as_ref().map(|e| self.duration(e, "the time to wait", env));
+                StepKind::Await { events: patterns, within }
+            }
+            Syntax::Wait(time) => StepKind::Wait { seconds: self.expr_of(time, Kind::Float(Dim::TIME), env) },
+            Syntax::Internal(call) => self.internal_step(scope, call, env)?,
+            Syntax::If { condition, then, otherwise } => {
+                self.if_step(scope, condition, (then, otherwise), step.span, env)
+            }
+            Syntax::While { condition, body } => {
+                let (condition, body) = self.loop_step(scope, condition, body, env);
+                StepKind::While { condition, body }
+            }
+            Syntax::For { condition, body } => {
+                let (condition, body) = self.loop_step(scope, condition, body, env);
+                StepKind::For { condition, body }
+            }
+            Syntax::Fork { all, branches } => {
+                // What a branch binds is its own.
+                let before = known(env);
+                let mut done = Vec::new();
+                for branch in branches {
+                    done.push(self.plan_body(scope, branch, env));
+                    restore(env, &before);
+                }
+                StepKind::Fork { branches: done, all: *all }
+            }
+            Syntax::Error => return None,
+        })
+    }
+
+    /// After it a variable has a value if both ways give it one.
+    fn if_step(
+        &mut self,
+        scope: &Scope,
+        condition: &ast::Expr,
+        (then, otherwise): (&[ast::Step], &[ast::Step]),
+        span: hrdsl_source::Span,
+        env: &mut Env,
+    ) -> StepKind {
+        let before = known(env);
+        let condition_span = condition.span;
+        let condition = self.context(scope, condition, env);
+        let then = self.plan_body(scope, then, env);
+        let after_then = known(env);
+        restore(env, &before);
+        let otherwise = self.plan_body(scope, otherwise, env);
+        let after_otherwise = known(env);
+        let span = if condition_span.file == span.file { condition_span } else { span };
+        self.join(&after_then, &after_otherwise, span, env);
+        StepKind::If { condition, then, otherwise }
+    }
+
+    /// What a loop binds is open again each time, and after it.
+    fn loop_step(
+        &mut self,
+        scope: &Scope,
+        condition: &ast::Expr,
+        body: &[ast::Step],
+        env: &mut Env,
+    ) -> (Context, Vec<Step>) {
+        let before = known(env);
+        let condition = self.context(scope, condition, env);
+        let body = self.plan_body(scope, body, env);
+        restore(env, &before);
+        (condition, body)
+    }
+
+    /// A time; one that is known must be positive.
+    pub(in crate::check) fn duration(&mut self, e: &ast::Expr, what: &str, env: &mut Env) -> Expr {
+        let time = self.expr_of(e, Kind::Float(Dim::TIME), env);
+        if let Some(t) = time.constant().and_then(Value::as_f64) {
+            if t <= 0.0 {
+                self.report(types::must_be(what, "more than 0 s", e.span));
+            } else if t > MAX_TIME {
+                self.report(types::must_be(what, &format!("at most {MAX_TIME} s"), e.span));
+            }
+        }
+        time
+    }
+
+    /// A stimulus or event of the agent's own actor.
+    fn act_of(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Option<StepKind> {
+        let local = self.kind_in_agent(scope, &call.name.text);
+        let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
+        self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
+        let fields = self.fields_of(event);
+        let args = self.args(self.noun_of(event), call, &fields, env);
+        Some(StepKind::Do { event, args })
+    }
+
+    fn adopt(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> (Option<GoalId>, Vec<Expr>) {
+        let goal = self.goal(scope, call);
+        let args = match goal.and_then(|g| self.goal_fields(scope.id, g)) {
+            Some(fields) => self.args(Noun::Goal, call, &fields, env),
+            None => call.args.as_deref().unwrap_or_default().iter().map(|a| self.expr(a, env)).collect(),
+        };
+        (goal, args)
+    }
+}

@@ -1,0 +1,194 @@
+//! Channels: their declarations, and what an edge does over one.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Call, ItemKind, Name};
+
+use crate::check::{
+    automata::automaton::Scope,
+    checker::Checker,
+    state::{record::Fields, scope::Env, table::Table},
+    vocabulary::layout::type_span,
+};
+use crate::{
+    Channel, ChannelId, ChannelKind, ChannelPlaces, EventId, Expr, Party, PlayerRef, Sync,
+    noun::Noun,
+    report::{automata, names::duplicate},
+    types::finite_var,
+};
+
+/// What an edge takes or gives.
+pub(in crate::check) enum Medium {
+    Event(EventId),
+    Channel(ChannelId),
+}
+
+impl Checker<'_> {
+    /// After the automata have their names: those are the parties of joint channels.
+    pub(in crate::check) fn declare_channels(&mut self) {
+        for (item, span) in self.each_item() {
+            if let ItemKind::Channel(channel) = item {
+                self.declare_channel(channel, span);
+            }
+        }
+    }
+
+    fn declare_channel(&mut self, channel: &ast::Channel, whole: Span) {
+        for one in &channel.names {
+            let name = &one.name;
+            let fields = self.channel_params(&one.params);
+            let mut parties = Vec::new();
+            let kind = match &channel.kind {
+                ast::ChannelKind::HandShake => ChannelKind::HandShake,
+                ast::ChannelKind::Broadcast => ChannelKind::Broadcast,
+                ast::ChannelKind::Joint(of) => {
+                    if let Some(param) = one.params.first() {
+                        self.report(automata::joint_params(&name.text, param.name.span));
+                    }
+                    ChannelKind::Joint(self.parties(name, of, &mut parties))
+                }
+            };
+            if let Some(event) = self.events.table.get(&name.text) {
+                let noun = self.noun_of(EventId(event));
+                self.report(duplicate(noun, &name.text, name.span, self.events.table.span(event)));
+                continue;
+            }
+            if self.issues.declare(&mut self.channels.table, Noun::Channel, name).is_none() {
+                continue;
+            }
+            let params = self.flat(&fields).iter().map(|p| finite_var(&p.name, p.ty)).collect();
+            self.channels.fields.push(fields);
+            let span = if channel.names.len() == 1 { whole } else { name.span };
+            let (text, urgent) = (name.text.clone(), channel.urgent);
+            self.s.channels.push(Channel { name: text, kind, urgent, params, origin: span });
+            self.s.places.channels.push(ChannelPlaces { name: name.span, parties });
+        }
+    }
+
+    /// Parameters of finite types.
+    fn channel_params(&mut self, params: &[ast::Param]) -> Fields {
+        let fields = self.fields(params);
+        for (param, (_, layout)) in params.iter().zip(fields.iter()) {
+            if self.plain(layout, &param.name.text, type_span(&param.ty)) {
+                self.finite_layout(layout, "a parameter of a channel", param.name.span);
+            }
+        }
+        fields
+    }
+
+    /// The automata of a joint channel; `places` gets where they are named.
+    fn parties(&mut self, channel: &Name, parties: &[ast::Party], places: &mut Vec<Span>) -> Vec<Party> {
+        let (mut resolved, mut seen) = (Vec::new(), Table::default());
+        for party in parties {
+            let name = &party.automaton;
+            let player = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
+            let Some(PlayerRef::Automaton(automaton)) = player else {
+                let all: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
+                self.unknown(Noun::Automaton, name, &all, None);
+                self.channels.vague.insert(channel.text.clone());
+                continue;
+            };
+            self.refer(name, self.players.table.span_of(&name.text));
+            if self.issues.declare(&mut seen, Noun::Automaton, name).is_some() {
+                resolved.push(Party { automaton, optional: party.optional });
+                places.push(name.span);
+            }
+        }
+        resolved
+    }
+
+    /// What `on` or `do` of an edge names.
+    pub(in crate::check) fn medium(
+        &mut self,
+        scope: &Scope,
+        name: &Name,
+        local: Option<Noun>,
+    ) -> Option<Medium> {
+        let given = self.given(&name.text).is_some();
+        if let Some(id) = self.channels.table.get(&name.text).filter(|_| !given) {
+            self.refer(name, self.channels.table.span(id));
+            return Some(Medium::Channel(ChannelId(id)));
+        }
+        let known = given || self.events.table.get(&name.text).is_some();
+        if !known && (scope.actor.is_none() || self.channels.table.names().next().is_some()) {
+            let mut names = self.near(self.channels.table.names());
+            if scope.actor.is_some() {
+                names.extend(self.near(self.events.table.names()));
+                names.extend(self.given_names(Noun::Event));
+            }
+            let noun = if scope.actor.is_some() { Noun::Medium } else { Noun::Channel };
+            self.unknown(noun, name, &names, local);
+            return None;
+        }
+        let event = self.event(Noun::EventOrStimulus, name, local)?;
+        if scope.actor.is_none() {
+            let noun = self.noun_of(event);
+            let automaton = &self.s.automata[scope.index].name;
+            self.report(automata::no_actor(automaton, noun, &name.text, name.span));
+            return None;
+        }
+        Some(Medium::Event(event))
+    }
+
+    /// `on c(…)`
+    pub(in crate::check) fn accept(
+        &mut self,
+        scope: &Scope,
+        channel: ChannelId,
+        call: &Call,
+        env: &mut Env,
+        equal: &mut Vec<Expr>,
+    ) -> Option<Sync> {
+        let fields = self.fields_of_channel(channel);
+        if !self.is_joint(channel) {
+            let args = self.received_args(Noun::Channel, call, &fields, env, equal)?;
+            return Some(Sync::Accept { channel, args });
+        }
+        if call.args.as_ref().is_some_and(|args| !args.is_empty()) {
+            self.wrong_arity(Noun::Channel, call, &fields);
+        }
+        // A template is no party, but its instances may be.
+        let vague = self.templates.by_itself || self.channels.vague.contains(&call.name.text);
+        let of = &self.s.channels[usize::from(channel.0)];
+        let party = match &of.kind {
+            ChannelKind::Joint(parties) => parties.iter().any(|p| usize::from(p.automaton.0) == scope.index),
+            ChannelKind::HandShake | ChannelKind::Broadcast => true,
+        };
+        if !party && !vague {
+            let place = self.s.places.channels[usize::from(channel.0)].name;
+            let automaton = &self.s.automata[scope.index].name;
+            self.report(automata::not_a_party(automaton, &of.name, call.name.span, place));
+        }
+        Some(Sync::Join { channel })
+    }
+
+    /// `do c(…)`
+    pub(in crate::check) fn offer(&mut self, channel: ChannelId, call: &Call, env: &mut Env) -> Option<Sync> {
+        if self.is_joint(channel) {
+            self.report(automata::joint_offered(&call.name.text, call.span));
+            return None;
+        }
+        let fields = self.fields_of_channel(channel);
+        let args = self.args(Noun::Channel, call, &fields, env);
+        let params = self.s.channels[usize::from(channel.0)].params.len();
+        (args.len() == params).then_some(Sync::Offer { channel, args })
+    }
+
+    /// The edges of an urgent channel have no clock guards, but those that accept a broadcast.
+    pub(in crate::check) fn check_urgent(&mut self, sync: &Sync, clock_guard: Option<Span>) {
+        let Some((channel, span)) = sync.channel().zip(clock_guard) else { return };
+        let place = self.s.places.channels[usize::from(channel.0)].name;
+        let channel = &self.s.channels[usize::from(channel.0)];
+        let hears = matches!(sync, Sync::Accept { .. }) && channel.kind == ChannelKind::Broadcast;
+        if channel.urgent && !hears {
+            self.report(automata::urgent_guard(&channel.name, span, place));
+        }
+    }
+
+    fn is_joint(&self, channel: ChannelId) -> bool {
+        matches!(self.s.channels[usize::from(channel.0)].kind, ChannelKind::Joint(_))
+    }
+
+    fn fields_of_channel(&self, channel: ChannelId) -> Fields {
+        self.channels.fields[usize::from(channel.0)].clone()
+    }
+}

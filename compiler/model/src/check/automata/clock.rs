@@ -1,0 +1,315 @@
+//! Clocks: those that all automata share, what clocks are compared with, and what they are set to.
+
+use std::rc::Rc;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name, TypeExpr};
+
+use crate::check::{
+    automata::automaton::Scope,
+    checker::Checker,
+    state::{record::MAX_PARTS, scope::Env},
+    value::{
+        linear::{Linear, linear},
+        lookup::names_in,
+    },
+};
+use crate::{
+    BinaryOp, ClockConstraint, ClockId, ClockOp, Dim, Kind, Time, UnaryOp, Update, Value, VarPlace,
+    noun::Noun,
+    report::{automata, types},
+};
+
+/// A sum of clocks, each with its sign, and of a time.
+#[derive(Default)]
+struct Sum {
+    clocks: Vec<(ClockId, i8)>,
+    time: Linear,
+}
+
+impl Sum {
+    fn add(&mut self, clock: ClockId, sign: i8) {
+        match self.clocks.iter_mut().find(|(c, _)| *c == clock) {
+            Some((_, known)) => *known = known.saturating_add(sign),
+            None => self.clocks.push((clock, sign)),
+        }
+    }
+
+    /// The clocks that do not cancel out, in the order of the text.
+    fn left(&self) -> Vec<(ClockId, i8)> {
+        self.clocks.iter().copied().filter(|(_, sign)| *sign != 0).collect()
+    }
+}
+
+/// The sizes of an array of clocks, and none for one clock. `None`: the type is another.
+fn sizes(ty: &TypeExpr) -> Option<Vec<&ast::Expr>> {
+    match ty {
+        TypeExpr::Named(name) => (name.text == "clock").then(Vec::new),
+        TypeExpr::Array(of, size) => {
+            let mut sizes = sizes(of)?;
+            sizes.push(size);
+            Some(sizes)
+        }
+        TypeExpr::Range(..) | TypeExpr::List(_) | TypeExpr::Error => None,
+    }
+}
+
+impl Checker<'_> {
+    /// `var total: clock`, `var t: clock[3]`; whether it is one.
+    pub(in crate::check) fn declare_shared_clocks(&mut self, var: &ast::Var, whole: Span) -> bool {
+        let named = self.types.enums.get("clock").is_some() || self.types.record_names.get("clock").is_some();
+        let Some(sizes) = sizes(&var.ty).filter(|_| !named) else { return false };
+        if let Some(init) = &var.init {
+            self.report(automata::clock_init(&var.name.text, init.span));
+        }
+        let mut counts = Vec::new();
+        for size in &sizes {
+            let n = self.count(size, "the size of an array", 1).and_then(|n| u16::try_from(n).ok());
+            counts.extend(n.filter(|n| usize::from(*n) <= MAX_PARTS));
+        }
+        let total = counts.iter().fold(1, |n: usize, c| n.saturating_mul(usize::from(*c)));
+        if counts.len() != sizes.len() || total > MAX_PARTS {
+            self.report(types::must_be(
+                "the size of an array",
+                &format!("at most {MAX_PARTS}"),
+                var.name.span,
+            ));
+            return true;
+        }
+        let mut names = vec![var.name.text.clone()];
+        for count in &counts {
+            let elements = |name: &String| (0..*count).map(|i| format!("{name}[{i}]")).collect::<Vec<_>>();
+            names = names.iter().flat_map(elements).collect();
+        }
+        let place = VarPlace { name: var.name.span, whole };
+        for name in names {
+            let (issues, table) = (&mut self.issues, &mut self.shared.clocks);
+            if issues.declare_as(table, Noun::Clock, &name, var.name.span).is_none() {
+                return true;
+            }
+            Rc::make_mut(&mut self.shared.scope).add_clock(&name, var.name.span);
+            self.s.clocks.push(name);
+            self.s.places.clocks.push(place);
+        }
+        if !counts.is_empty() {
+            let scope = Rc::make_mut(&mut self.shared.scope);
+            scope.add_clock(&var.name.text, var.name.span);
+            scope.clock_arrays.insert(var.name.text.clone(), counts);
+        }
+        true
+    }
+
+    /// The clock of this name: `x`, `t[1]`.
+    fn clock_named(&self, name: &str, scope: &Scope) -> Option<ClockId> {
+        let own = || {
+            let shared = u16::try_from(self.s.clocks.len()).unwrap_or(u16::MAX);
+            scope.clocks.get(name).map(|i| shared.saturating_add(i))
+        };
+        self.shared.clocks.get(name).or_else(own).map(ClockId)
+    }
+
+    /// The clock that an expression is. `None`: it is none; `Some(None)`: it has a diagnostic.
+    fn clock_of(&mut self, e: &ast::Expr, scope: &Scope, env: &mut Env) -> Option<Option<ClockId>> {
+        let (mut of, mut indices) = (e, Vec::new());
+        while let Syntax::Index { of: inner, index } = &of.kind {
+            indices.push(&**index);
+            of = inner;
+        }
+        indices.reverse();
+        let Syntax::Path(path) = &of.kind else { return None };
+        let [name] = path.names.as_slice() else { return None };
+        is_clock(name, env).then(|| self.clock_at(name, &indices, scope, env))
+    }
+
+    /// The clock of a name and constant indices.
+    fn clock_at(
+        &mut self,
+        name: &Name,
+        indices: &[&ast::Expr],
+        scope: &Scope,
+        env: &mut Env,
+    ) -> Option<ClockId> {
+        self.refer(name, env.place_of(&name.text));
+        let sizes = env.shared.clock_arrays.get(&name.text).cloned().unwrap_or_default();
+        if sizes.len() != indices.len() {
+            self.report(automata::clock_indices(&name.text, sizes.len(), name.span));
+            return None;
+        }
+        let mut full = name.text.clone();
+        for (index, size) in indices.iter().zip(sizes) {
+            let Value::Int(i) = self.constant(index, Kind::Int, env)? else { return None };
+            if i < 0 || i >= i64::from(size) {
+                let at = crate::Expr::value(Value::Int(i), Kind::Int, index.span);
+                self.report(types::bad_index(&at, i64::from(size) - 1));
+                return None;
+            }
+            full = format!("{full}[{i}]");
+        }
+        self.clock_named(&full, scope)
+    }
+
+    /// Adds an expression to a sum of clocks and times. `None`: it has a diagnostic.
+    fn add_to(&mut self, sum: &mut Sum, e: &ast::Expr, sign: i8, scope: &Scope, env: &mut Env) -> Option<()> {
+        if let Some(clock) = self.clock_of(e, scope, env) {
+            sum.add(clock?, sign);
+            return Some(());
+        }
+        if mentions_clock(e, env) {
+            match &e.kind {
+                Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right } => {
+                    let right_sign = if *op == BinaryOp::Add { sign } else { -sign };
+                    let left = self.add_to(sum, left, sign, scope, env);
+                    return self.add_to(sum, right, right_sign, scope, env).and(left);
+                }
+                Syntax::Unary { op: UnaryOp::Neg, operand } => {
+                    return self.add_to(sum, operand, -sign, scope, env);
+                }
+                _ => {}
+            }
+        }
+        let e = self.expr_of(e, Kind::Float(Dim::TIME), env);
+        match linear(&e) {
+            Ok(time) => sum.time.add(time, f64::from(sign)),
+            Err(Some(span)) => {
+                self.report(automata::not_linear(span));
+                return None;
+            }
+            Err(None) => return None,
+        }
+        Some(())
+    }
+
+    /// A time in nanoseconds.
+    pub(in crate::check) fn time_of(&mut self, time: Linear, sign: f64, span: Span) -> Option<Time> {
+        match time.time(sign) {
+            Ok(time) => Some(time),
+            Err(why) => {
+                self.report(automata::bad_time(why, span));
+                None
+            }
+        }
+    }
+
+    // ── bounds ──
+
+    /// A comparison of a clock, or of the difference of two, with a time. `None`: there is no clock in it, or it is no
+    /// comparison; `Some(None)`: it is a bound, but a wrong one.
+    pub(in crate::check) fn clock_bound(
+        &mut self,
+        e: &ast::Expr,
+        scope: &Scope,
+        env: &mut Env,
+    ) -> Option<Option<ClockConstraint>> {
+        let Syntax::Binary { op, left, right } = &e.kind else { return None };
+        let op = comparison(*op)?;
+        if !mentions_clock(left, env) && !mentions_clock(right, env) {
+            return None;
+        }
+        if op.is_none() {
+            self.report(automata::clock_comparison("!=", e.span));
+        }
+        let mut sum = Sum::default();
+        let left = self.add_to(&mut sum, left, 1, scope, env);
+        let right = self.add_to(&mut sum, right, -1, scope, env);
+        let Some((op, _)) = op.zip(left.and(right)) else { return Some(None) };
+        // INVARIANT: `Σ clocks + time op 0`; the first clock gets the sign +.
+        let clocks = sum.left();
+        let (clock, minus, flipped) = match clocks.as_slice() {
+            [(x, sign @ (1 | -1))] => (*x, None, *sign < 0),
+            [(x, 1), (y, -1)] => (*x, Some(*y), false),
+            [(x, -1), (y, 1)] => (*x, Some(*y), true),
+            _ => {
+                self.report(automata::clock_sum(e.span));
+                return Some(None);
+            }
+        };
+        let (op, sign) = if flipped { (mirrored(op), 1.0) } else { (op, -1.0) };
+        let bound = self.time_of(sum.time, sign, e.span);
+        Some(bound.map(|bound| ClockConstraint { clock, minus, op, bound }))
+    }
+
+    // ── updates ──
+
+    /// `x = 0`, `x = n * 1 s`, `x = y + 2 s`, `x += 1 s`, `t[0] = 0`
+    pub(in crate::check) fn set_clock(
+        &mut self,
+        (target, access): (&Name, &[Access]),
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        scope: &Scope,
+        env: &mut Env,
+    ) -> Option<Update> {
+        let mut indices = Vec::new();
+        for step in access {
+            match step {
+                Access::Index(e) => indices.push(e),
+                Access::Field(_) => {
+                    self.report(automata::clock_set(&target.text, target.span));
+                    return None;
+                }
+            }
+        }
+        let clock = self.clock_at(target, &indices, scope, env)?;
+        if op.is_none() && value.kind == Syntax::Int(0) {
+            return Some(Update::Reset { clock, from: None, to: Time::default() });
+        }
+        let mut sum = Sum::default();
+        self.add_to(&mut sum, value, if op == Some(BinaryOp::Sub) { -1 } else { 1 }, scope, env)?;
+        let from = match (op, sum.left().as_slice()) {
+            (None, []) => None,
+            (Some(_), []) => Some(clock),
+            (None, [(from, 1)]) => Some(*from),
+            (_, _) => {
+                self.report(automata::clock_set(&target.text, value.span));
+                return None;
+            }
+        };
+        let to = self.time_of(sum.time, 1.0, value.span)?;
+        if from.is_none() && to.fixed().is_some_and(|t| t < 0) {
+            self.report(types::must_be("what a clock is set to", "at least 0 s", value.span));
+            return None;
+        }
+        Some(Update::Reset { clock, from, to })
+    }
+}
+
+/// Whether a name is a clock's, or that of an array of clocks.
+pub(in crate::check) fn is_clock(name: &Name, env: &Env) -> bool {
+    env.find(&name.text).is_some_and(|l| l.noun == Noun::Clock)
+}
+
+pub(in crate::check) fn mentions_clock(e: &ast::Expr, env: &Env) -> bool {
+    let mut names = Vec::new();
+    names_in(e, &mut names);
+    names.iter().any(|name| is_clock(name, env))
+}
+
+/// A comparison; `Some(None)`: `!=`, which no clock has.
+fn comparison(op: BinaryOp) -> Option<Option<ClockOp>> {
+    match op {
+        BinaryOp::Lt => Some(Some(ClockOp::Lt)),
+        BinaryOp::Le => Some(Some(ClockOp::Le)),
+        BinaryOp::Eq => Some(Some(ClockOp::Eq)),
+        BinaryOp::Ge => Some(Some(ClockOp::Ge)),
+        BinaryOp::Gt => Some(Some(ClockOp::Gt)),
+        BinaryOp::Ne => Some(None),
+        BinaryOp::Or
+        | BinaryOp::And
+        | BinaryOp::Add
+        | BinaryOp::Sub
+        | BinaryOp::Mul
+        | BinaryOp::Div
+        | BinaryOp::Rem => None,
+    }
+}
+
+/// What an operator is when both sides change their signs.
+fn mirrored(op: ClockOp) -> ClockOp {
+    match op {
+        ClockOp::Lt => ClockOp::Gt,
+        ClockOp::Le => ClockOp::Ge,
+        ClockOp::Eq => ClockOp::Eq,
+        ClockOp::Ge => ClockOp::Le,
+        ClockOp::Gt => ClockOp::Lt,
+    }
+}

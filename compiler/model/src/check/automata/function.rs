@@ -1,0 +1,464 @@
+//! Functions of automata: their names and types, their calls, and what they read and assign.
+
+use std::{collections::BTreeSet, rc::Rc};
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, Call, ItemKind, Name};
+
+use crate::check::{
+    automata::{statement, statement::Body},
+    checker::Checker,
+    state::{
+        issues::too_many,
+        scope::{Callable, Elements, Env},
+        table::MAX_NAMES,
+    },
+    value::expr::FUNCTIONS,
+};
+use crate::{
+    AutomatonId, Effects, Expr, ExprKind, Function, FunctionId, FunctionPlaces, Kind, Leaf, Statement, Type,
+    Update, leaves,
+    noun::Noun,
+    report::{functions, names, types},
+    types::{Layout, finite_var},
+};
+
+impl Checker<'_> {
+    /// The functions of the scenario.
+    pub(in crate::check) fn shared_functions(&mut self) {
+        let start = self.s.functions.len();
+        let mut bodies = Vec::new();
+        for (item, span) in self.each_item() {
+            let ItemKind::Function(function) = item else { continue };
+            let env = Env { shared: self.shared.scope.clone(), ..Env::default() };
+            let callable = self.declare_function(function, None, &env, span);
+            // Nobody else holds the scope now: it grows without a copy.
+            drop(env);
+            if let Some(callable) = callable {
+                bodies.push((callable.id, function));
+                Rc::make_mut(&mut self.shared.scope).functions.insert(function.name.text.clone(), callable);
+            }
+        }
+        let env = Env { shared: self.shared.scope.clone(), ..Env::default() };
+        self.functions_of(start, bodies, &env);
+    }
+
+    /// The functions of an automaton.
+    pub(in crate::check) fn own_functions(
+        &mut self,
+        index: usize,
+        automaton: &ast::Automaton,
+        env: &mut Env,
+    ) {
+        let start = self.s.functions.len();
+        let owner = u16::try_from(index).ok().map(AutomatonId);
+        let mut bodies = Vec::new();
+        for member in &automaton.members {
+            let Member::Function(function) = &member.kind else { continue };
+            if let Some(callable) = self.declare_function(function, owner, env, member.span) {
+                bodies.push((callable.id, function));
+                Rc::make_mut(&mut env.own).functions.insert(function.name.text.clone(), callable);
+            }
+        }
+        self.functions_of(start, bodies, env);
+    }
+
+    /// The bodies of functions that know each other, and what follows from all of them.
+    fn functions_of(&mut self, start: usize, bodies: Vec<(FunctionId, &ast::Function)>, env: &Env) {
+        for (id, function) in bodies {
+            let env =
+                Env { noun: Some(Noun::Variable), elements: Elements::Locals, effects: true, ..env.clone() };
+            self.shared.functions.open = Some(id);
+            self.function_body(id, function, env);
+            self.shared.functions.open = None;
+        }
+        self.reach_of_functions(start);
+        self.say_impure();
+    }
+
+    // ── names and types ──
+
+    fn declare_function(
+        &mut self,
+        function: &ast::Function,
+        owner: Option<AutomatonId>,
+        env: &Env,
+        span: Span,
+    ) -> Option<Callable> {
+        let name = &function.name;
+        self.shared.functions.declared.entry(name.span).or_insert_with(|| (name.clone(), span));
+        let params = self.function_params(function);
+        let result = function.result.as_ref().map(|ty| {
+            let ty = self.ty(ty);
+            ty.filter(|ty| self.finite(*ty, "the value of a function", name.span))
+        });
+        if !self.free_function(name, env) {
+            return None;
+        }
+        let Ok(id) = u16::try_from(self.s.functions.len()) else { return None };
+        if usize::from(id) >= MAX_NAMES {
+            self.report(too_many(format!("there are more than {id} functions"), name.span));
+            return None;
+        }
+        let typed = |(name, layout): &(String, Layout)| {
+            finite_var(name, if let Layout::Scalar(ty) = layout { *ty } else { Type::Bool })
+        };
+        self.s.functions.push(Function {
+            name: name.text.clone(),
+            owner,
+            params: params.iter().map(typed).collect(),
+            locals: Vec::new(),
+            result: result.map(|ty| finite_var(&name.text, ty.unwrap_or(Type::Bool))),
+            pure: true,
+            body: Vec::new(),
+            origin: span,
+        });
+        self.s.effects.push(Effects::default());
+        self.s.places.functions.push(FunctionPlaces { name: name.span, locals: Vec::new() });
+        Some(Callable { id: FunctionId(id), params: params.into(), result, span: name.span })
+    }
+
+    fn function_params(&mut self, function: &ast::Function) -> Vec<(String, Layout)> {
+        let mut params: Vec<(String, Layout)> = Vec::new();
+        for param in &function.params {
+            let name = &param.name;
+            let ty = self.ty(&param.ty).filter(|ty| self.finite(*ty, "a parameter of a function", name.span));
+            params.push((name.text.clone(), ty.map_or(Layout::Unknown, Layout::Scalar)));
+        }
+        params
+    }
+
+    /// Nothing that is called or read like it has the name.
+    fn free_function(&mut self, name: &Name, env: &Env) -> bool {
+        let said = self.issues.list.len();
+        let text = name.text.as_str();
+        if FUNCTIONS.iter().any(|(built_in, _)| *built_in == text) {
+            self.report(functions::built_in(text, name.span));
+        } else if let Some(first) = env.function(text) {
+            let first = Some(first.span);
+            self.report(names::duplicate(Noun::Function, text, name.span, first));
+        } else {
+            match self.kind_of(text) {
+                // These are called in places of their own.
+                Some(
+                    Noun::Actor
+                    | Noun::Agent
+                    | Noun::Automaton
+                    | Noun::Network
+                    | Noun::Point
+                    | Noun::Cross
+                    | Noun::Suite
+                    | Noun::Template,
+                )
+                | None => self.check_free(env, Noun::Function, name),
+                Some(noun @ (Noun::Constant | Noun::Parameter | Noun::EnumValue | Noun::Variable)) => {
+                    let before = self.issues.list.len();
+                    self.check_free(env, Noun::Function, name);
+                    if self.issues.list.len() == before {
+                        self.report(names::duplicate(noun, text, name.span, None));
+                    }
+                }
+                Some(noun) => {
+                    let first =
+                        self.events.table.span_of(text).or_else(|| self.types.record_names.span_of(text));
+                    self.report(names::duplicate(noun, text, name.span, first));
+                }
+            }
+        }
+        self.issues.list.len() == said
+    }
+
+    fn function_body(&mut self, id: FunctionId, function: &ast::Function, mut env: Env) {
+        let callable = env.function(&function.name.text).cloned();
+        for (param, (_, layout)) in function.params.iter().zip(callable.iter().flat_map(|c| c.params.iter()))
+        {
+            match layout {
+                Layout::Scalar(_) => self.add_local(&mut env, &param.name, Noun::Parameter, layout),
+                Layout::Unknown | Layout::Record(_) | Layout::Array(..) => {
+                    // Its place among the locals stays.
+                    let (name, kind) = (&param.name, Kind::Unknown);
+                    env.push_local(&name.text, name.span, Noun::Parameter, kind);
+                }
+            }
+        }
+        let mut body = Body::new(&function.name.text, callable.and_then(|c| c.result));
+        let broken = statement::unread(&function.body);
+        let unread = self.source.unread_members;
+        self.source.unread_members |= broken;
+        let statements = self.block(&function.body, &mut env, &mut body);
+        self.source.unread_members = unread;
+        if function.result.is_some() && !statement::returns(&statements) && !broken {
+            self.report(functions::ends_without_value(&function.name.text, function.name.span));
+        }
+        let variables = self.s.shared.len() + env.own.names.len();
+        if variables + env.locals.len() > MAX_NAMES {
+            let message = format!("`{}` sees more than {} variables", function.name.text, MAX_NAMES);
+            self.report(too_many(message, function.name.span));
+        }
+        let routine = &mut self.s.functions[usize::from(id.0)];
+        let (locals, places) = body.locals.into_iter().unzip();
+        routine.locals = locals;
+        routine.body = statements;
+        self.s.places.functions[usize::from(id.0)].locals = places;
+    }
+
+    // ── calls ──
+
+    /// `f(a, b)`, if `f` is a function that is known here.
+    pub(in crate::check) fn applied_function(
+        &mut self,
+        name: &Name,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut Env,
+    ) -> Option<Expr> {
+        let callable = env.function(&name.text)?.clone();
+        let values = self.function_args(&callable, name, args, span, env);
+        let Some(result) = callable.result else {
+            self.refer(name, Some(callable.span));
+            self.report(functions::has_no_value(&name.text, span));
+            return Some(Expr::error(span));
+        };
+        self.refer(name, Some(callable.span));
+        self.called(&callable, span, env);
+        Some(match (result, values) {
+            (Some(ty), Some(args)) => {
+                Expr { kind: ExprKind::Apply(callable.id, args, ty), ty: Kind::of(ty), span }
+            }
+            (Some(_), None) | (None, _) => Expr::error(span),
+        })
+    }
+
+    /// `f(a, b)` for its effect; `None`: no function of the name is known here, or its arguments do not fit.
+    pub(in crate::check) fn called_function(
+        &mut self,
+        call: &Call,
+        env: &mut Env,
+    ) -> Option<(FunctionId, Vec<Expr>)> {
+        let callable = env.function(&call.name.text)?.clone();
+        let args = call.args.as_deref().unwrap_or_default();
+        let args = self.function_args(&callable, &call.name, args, call.span, env);
+        self.refer(&call.name, Some(callable.span));
+        self.called(&callable, call.span, env);
+        Some((callable.id, args?))
+    }
+
+    /// An action of an edge that is not a sending; says so of one that was meant to be one.
+    pub(in crate::check) fn calls_function(
+        &mut self,
+        call: &Call,
+        env: &mut Env,
+        updates: &mut Vec<Update>,
+    ) -> bool {
+        let text = call.name.text.as_str();
+        if env.function(text).is_none() {
+            let known =
+                self.given(text).is_some() || self.kind_of(text).is_some() || self.source.unread_items;
+            let meant = (!known).then(|| crate::nearest::nearest(text, env.function_names())).flatten();
+            if self.source.unread_members && self.kind_of(text).is_none() {
+                // It may be a function that could not be read.
+                return true;
+            }
+            let event = crate::nearest::nearest(text, self.events.table.names());
+            // Short names are near to all others.
+            let near = meant.filter(|near| event.is_none() && near.len() > 2);
+            let Some(near) = near else { return false };
+            let issue = names::unknown(Noun::Function, text, call.name.span, [near]);
+            self.report(issue);
+            return true;
+        }
+        env.effects = true;
+        let called = self.called_function(call, env);
+        env.effects = false;
+        updates.extend(called.map(|(id, args)| Update::Call { function: id, args }));
+        true
+    }
+
+    fn function_args(
+        &mut self,
+        callable: &Callable,
+        name: &Name,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut Env,
+    ) -> Option<Vec<Expr>> {
+        let params = Rc::clone(&callable.params);
+        if args.len() != params.len() {
+            let names: Vec<&str> = params.iter().map(|(n, _)| n.as_str()).collect();
+            self.report(types::arity(Noun::Function, &name.text, &names, args.len(), span));
+            args.iter().for_each(|a| drop(self.item(a, env)));
+            return None;
+        }
+        let mut values = Some(Vec::with_capacity(args.len()));
+        for (arg, (_, layout)) in args.iter().zip(params.iter()) {
+            if let Layout::Scalar(ty) = layout {
+                let value = self.expr_for(arg, *ty, env);
+                values.iter_mut().for_each(|v| v.push(value.clone()));
+            } else {
+                self.item(arg, env);
+                values = None;
+            }
+        }
+        values
+    }
+
+    fn called(&mut self, callable: &Callable, span: Span, env: &Env) {
+        if let Some(open) = self.shared.functions.open {
+            self.shared.functions.calls.entry(open.0).or_default().push((callable.id, span));
+        }
+        if !env.effects {
+            self.shared.functions.only_read.push((callable.id, span));
+        }
+    }
+
+    /// A function of automata that is called elsewhere; says so.
+    pub(in crate::check) fn function_elsewhere(&mut self, name: &Name) -> bool {
+        let function = |item: &ItemKind| matches!(item, ItemKind::Function(f) if f.name.text == name.text);
+        let found = self.each_item().any(|(item, _)| function(item));
+        if found {
+            self.report(functions::not_here(&name.text, name.span));
+        }
+        found
+    }
+
+    // ── what follows from bodies and calls ──
+
+    /// What the functions from `start` on read and assign, with what they call; says so of recursion.
+    fn reach_of_functions(&mut self, start: usize) {
+        let end = self.s.functions.len();
+        for id in self.in_order_of_calls(start, end) {
+            let (mut reads, mut assigns) = direct(&self.s.functions[id]);
+            for (called, _) in self.calls_of(id) {
+                let of = &self.s.effects[usize::from(called.0)];
+                reads.extend(of.reads.iter().copied().map(Ordered));
+                assigns.extend(of.assigns.iter().copied().map(Ordered));
+            }
+            self.s.functions[id].pure = assigns.is_empty();
+            self.s.effects[id] = Effects {
+                reads: reads.into_iter().map(|l| l.0).collect(),
+                assigns: assigns.into_iter().map(|l| l.0).collect(),
+            };
+        }
+        self.shared.functions.calls.clear();
+    }
+
+    fn calls_of(&self, id: usize) -> Vec<(FunctionId, Span)> {
+        let id = u16::try_from(id).unwrap_or(u16::MAX);
+        self.shared.functions.calls.get(&id).cloned().unwrap_or_default()
+    }
+
+    /// Each function after those that it calls, without recursion: a chain of calls may be long.
+    fn in_order_of_calls(&mut self, start: usize, end: usize) -> Vec<usize> {
+        let mut order = Vec::new();
+        let mut state = vec![0u8; end - start];
+        let mut cycles = Vec::new();
+        for first in start..end {
+            if state[first - start] != 0 {
+                continue;
+            }
+            state[first - start] = 1;
+            let mut open = vec![(first, self.calls_of(first))];
+            while let Some((id, left)) = open.last_mut() {
+                let id = *id;
+                let Some((called, span)) = left.pop() else {
+                    state[id - start] = 2;
+                    order.push(id);
+                    open.pop();
+                    continue;
+                };
+                let called = usize::from(called.0);
+                // The functions of the scenario are known already when those of an automaton are looked at.
+                match called.checked_sub(start).map(|c| state[c]) {
+                    Some(0) => {
+                        state[called - start] = 1;
+                        let calls = self.calls_of(called);
+                        open.push((called, calls));
+                    }
+                    Some(1) => {
+                        let from = open.iter().position(|(id, _)| *id == called).unwrap_or(0);
+                        let ring = open[from..].iter().map(|(id, _)| *id).chain([called]);
+                        cycles.push((ring.collect::<Vec<usize>>(), span));
+                    }
+                    Some(_) | None => {}
+                }
+            }
+        }
+        for (ring, span) in cycles {
+            let names: Vec<&str> = ring.iter().map(|id| self.s.functions[*id].name.as_str()).collect();
+            let issue = functions::recursion(&names, span);
+            self.report(issue);
+        }
+        order
+    }
+
+    /// Says so of functions that change something where a value is only looked at.
+    pub(in crate::check) fn say_impure(&mut self) {
+        for (id, span) in std::mem::take(&mut self.shared.functions.only_read) {
+            let id = usize::from(id.0);
+            let (Some(routine), Some(effects)) = (self.s.functions.get(id), self.s.effects.get(id)) else {
+                continue;
+            };
+            let Some(first) = effects.assigns.first() else { continue };
+            let var = match (first, routine.owner) {
+                (Leaf::Own(i), Some(owner)) => {
+                    self.s.automata.get(usize::from(owner.0)).and_then(|a| a.vars.get(usize::from(*i)))
+                }
+                (Leaf::Shared(i), _) => self.s.shared.get(usize::from(*i)),
+                (Leaf::Own(_) | Leaf::Local(_) | Leaf::Signal(_), _) => None,
+            };
+            let whole = var.map_or("?", |v| v.name.split(['.', '[']).next().unwrap_or(&v.name));
+            let issue = functions::impure(&routine.name, whole, span);
+            self.report(issue);
+        }
+    }
+}
+
+/// A variable outside of functions, in an order.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Ordered(Leaf);
+
+impl Ordered {
+    fn key(self) -> (u8, u16) {
+        match self.0 {
+            Leaf::Shared(i) => (0, i),
+            Leaf::Own(i) => (1, i),
+            Leaf::Local(i) => (2, i),
+            Leaf::Signal(s) => (3, s.0),
+        }
+    }
+}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+/// The variables outside that a body itself reads and assigns.
+fn direct(routine: &Function) -> (BTreeSet<Ordered>, BTreeSet<Ordered>) {
+    let (mut reads, mut assigns) = (BTreeSet::new(), BTreeSet::new());
+    let outside = |l: Leaf| matches!(l, Leaf::Own(_) | Leaf::Shared(_));
+    let mut all = Vec::new();
+    routine.body.iter().for_each(|s| s.each(&mut |s| all.push(s)));
+    for statement in all {
+        let mut read = |e: &Expr| {
+            e.each_leaf(&mut |l| {
+                if outside(l) {
+                    reads.insert(Ordered(l));
+                }
+            });
+        };
+        statement.expressions().into_iter().for_each(&mut read);
+        if let Statement::Assign { place, .. } = statement {
+            place.indices.iter().for_each(|i| read(&i.at));
+            assigns.extend(leaves(place).into_iter().filter(|l| outside(*l)).map(Ordered));
+        }
+    }
+    (reads, assigns)
+}

@@ -1,0 +1,10 @@
+//! Automata: locations, edges, clocks, channels, functions, and queries on their networks.
+
+pub(super) mod assign;
+pub(super) mod automaton;
+pub(super) mod channel;
+pub(super) mod clock;
+pub(super) mod edge;
+pub(super) mod function;
+pub(super) mod query;
+pub(super) mod statement;

@@ -1,0 +1,512 @@
+//! Queries: names of the automata of a network, formulas split into locations, clock bounds and data.
+
+use std::rc::Rc;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, UnaryOp};
+
+use crate::check::state::phase::Phase;
+use crate::check::{
+    checker::Checker,
+    state::{
+        scope::{Env, Local, Scope},
+        table::Map,
+    },
+    value::linear::{Linear, linear},
+};
+use crate::{
+    Ask, ClockConstraint, ClockId, ClockOp, Dim, ExprKind, Formula, Kind, Leaf, LocationId, Measure,
+    NetworkId, PlayerRef, Query,
+    noun::Noun,
+    report::{names, queries},
+};
+
+/// What the names of a network stand for.
+struct Net {
+    name: String,
+    /// In the network's order.
+    automata: Vec<String>,
+    locations: Map<String, (u16, LocationId)>,
+    /// Shared ones by their names, others as `Automaton.clock`.
+    clocks: Map<String, ClockId>,
+    /// Variables: shared ones by their names, others as `Automaton.variable`.
+    env: Env,
+}
+
+/// One side of a comparison: clocks with their signs, and what remains.
+#[derive(Default)]
+struct Sum<'e> {
+    plus: Vec<ClockId>,
+    minus: Vec<ClockId>,
+    /// Each with whether it is subtracted.
+    rest: Vec<(&'e ast::Expr, bool)>,
+}
+
+impl Checker<'_> {
+    pub(in crate::check) fn queries(&mut self) {
+        for (item, span) in self.each_item() {
+            if let ItemKind::Query(query) = item {
+                let looked_at = self.source.looks_at(Phase::Queries, span);
+                let resolved = if looked_at { self.query(query, span) } else { None };
+                let new = self.issues.declare(&mut self.networks.queries, Noun::Query, &query.name).is_some();
+                self.s.queries.extend(resolved.filter(|_| new));
+            }
+        }
+        self.say_impure();
+    }
+
+    fn query(&mut self, query: &ast::Query, span: Span) -> Option<Query> {
+        let network = self.networks.table.get(&query.network.text).map(NetworkId);
+        self.refer(&query.network, self.networks.table.span_of(&query.network.text));
+        let Some(network) = network else {
+            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            self.unknown(Noun::Network, &query.network, &all, None);
+            return None;
+        };
+        let mut net = self.net(network);
+        let ask = self.query_ask(&query.ask, &mut net);
+        Some(Query {
+            name: query.name.text.clone(),
+            title: query.title.as_ref().map_or_else(String::new, |t| t.text.clone()),
+            text: query.span,
+            network,
+            ask,
+            span,
+        })
+    }
+
+    fn query_ask(&mut self, ask: &ast::Ask, net: &mut Net) -> Ask {
+        let always = || Formula::And(Vec::new());
+        match ask {
+            ast::Ask::Possibly(f) => Ask::Possibly(self.formula(f, net)),
+            ast::Ask::Invariantly(f) => Ask::Invariantly(self.formula(f, net)),
+            ast::Ask::PotentiallyAlways(f) => Ask::PotentiallyAlways(self.formula(f, net)),
+            ast::Ask::Eventually(f) => Ask::Eventually(self.formula(f, net)),
+            ast::Ask::LeadsTo(f, g) => {
+                let f = self.formula(f, net);
+                Ask::LeadsTo(f, self.formula(g, net))
+            }
+            ast::Ask::Sup { when, of } => {
+                let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
+                Ask::Sup { of: self.measures(of, net), when }
+            }
+            ast::Ask::Inf { when, of } => {
+                let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
+                Ask::Inf { of: self.measures(of, net), when }
+            }
+        }
+    }
+
+    // ── names ──
+
+    fn net(&self, id: NetworkId) -> Net {
+        let network = &self.s.networks[usize::from(id.0)];
+        let mut net = Net {
+            name: network.name.clone(),
+            automata: Vec::new(),
+            locations: Map::default(),
+            clocks: Map::default(),
+            env: Env { noun: Some(Noun::Variable), shared: self.shared.scope.clone(), ..Env::default() },
+        };
+        for clock in self.shared.scope.clocks.keys() {
+            add_clock(&mut net.clocks, clock.clone());
+        }
+        let mut own = Scope::default();
+        for (place, automaton) in (0u16..).zip(&network.automata) {
+            let at = usize::from(automaton.0);
+            let of = &self.s.automata[at].name;
+            net.automata.push(of.clone());
+            for (number, location) in (0u16..).zip(&self.s.automata[at].locations) {
+                net.locations.insert(format!("{of}.{}", location.name), (place, LocationId(number)));
+            }
+            let Some(scope) = self.networks.scopes.get(&at) else { continue };
+            for local in scope.names.values() {
+                let name = format!("{of}.{}", local.name);
+                // INVARIANT: the number of a leaf is the name's place in the scope.
+                let leaf = u16::try_from(own.names.len()).ok().map(Leaf::Own);
+                own.names.insert(name.clone(), Local { name, leaf, ..local.clone() });
+            }
+            for (name, layout) in &scope.layouts {
+                own.layouts.insert(format!("{of}.{name}"), layout.clone());
+            }
+            for (name, function) in &scope.functions {
+                own.functions.insert(format!("{of}.{name}"), function.clone());
+            }
+            for clock in scope.clocks.keys() {
+                add_clock(&mut net.clocks, format!("{of}.{clock}"));
+            }
+        }
+        net.env.own = Rc::new(own);
+        net
+    }
+
+    /// Whether all names are known, and are variables, constants or functions; says what is not.
+    fn data_names(&mut self, e: &ast::Expr, net: &Net) -> bool {
+        let mut known = true;
+        each_path(e, &mut |path| known &= self.data_name(path, net));
+        known
+    }
+
+    fn data_name(&mut self, path: &ast::Path, net: &Net) -> bool {
+        let whole = joined(&path.names);
+        if net.clocks.contains_key(&whole) {
+            self.report(queries::clock_value(&whole, path.span));
+            return false;
+        }
+        match path.names.as_slice() {
+            [name] => {
+                if name.text == "deadlock" {
+                    self.report(queries::state_value(&name.text, path.span));
+                    return false;
+                }
+                let known = net.env.find(&name.text).is_some() || net.env.layout(&name.text).is_some();
+                if known || self.has_value(&name.text) {
+                    return true;
+                }
+                let Some(automaton) = net.automata.iter().find(|a| net.knows(a, &name.text)) else {
+                    return true;
+                };
+                self.report(queries::bare_member(automaton, &name.text, name.span));
+                false
+            }
+            [automaton, member, ..] if self.is_automaton(automaton) => {
+                if !self.has_member(automaton, member, net) {
+                    return false;
+                }
+                let name = format!("{}.{}", automaton.text, member.text);
+                let location = net.locations.contains_key(&name);
+                if location {
+                    self.report(queries::state_value(&name, path.span));
+                }
+                !location
+            }
+            [..] => true,
+        }
+    }
+
+    fn is_automaton(&self, name: &Name) -> bool {
+        let id = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
+        matches!(id, Some(PlayerRef::Automaton(_))) && self.types.enums.get(&name.text).is_none()
+    }
+
+    /// A name is that of a location, variable or clock of an automaton.
+    fn refer_member(&mut self, automaton: &Name, member: &Name) {
+        let Some(at) = self.s.automata.iter().position(|a| a.name == automaton.text) else { return };
+        let Some(scope) = self.networks.scopes.get(&at).cloned() else { return };
+        let known = Env { own: scope.clone(), ..Env::default() };
+        let place = known.place_of(&member.text).or_else(|| scope.locations.get(&member.text).copied());
+        self.refer(member, place);
+    }
+
+    /// Whether the automaton is in the network and has something of this name, and one thing only.
+    fn has_member(&mut self, automaton: &Name, member: &Name, net: &Net) -> bool {
+        if !net.automata.contains(&automaton.text) {
+            let issue = queries::not_in_network(&automaton.text, &net.name, &net.automata, automaton.span);
+            self.report(issue);
+            return false;
+        }
+        let name = format!("{}.{}", automaton.text, member.text);
+        let variable = net.env.find(&name).is_some() || net.env.layout(&name).is_some();
+        let location = net.locations.contains_key(&name);
+        if variable && location {
+            self.report(queries::location_and_variable(&automaton.text, &member.text, member.span));
+            return false;
+        }
+        let known = variable || location || net.clocks.contains_key(&name);
+        self.refer(automaton, self.players.table.span_of(&automaton.text));
+        self.refer_member(automaton, member);
+        if !known && !self.source.unread_items {
+            let all = net.members_of(&automaton.text);
+            let near = all.iter().map(String::as_str);
+            self.report(names::unknown(Noun::Member, &member.text, member.span, near));
+        }
+        known
+    }
+
+    // ── formulas ──
+
+    fn formula(&mut self, e: &ast::Expr, net: &mut Net) -> Formula {
+        match &e.kind {
+            Syntax::Binary { op: BinaryOp::And, left, right } => {
+                let left = self.formula(left, net);
+                joined_by(Formula::And, left, self.formula(right, net))
+            }
+            Syntax::Binary { op: BinaryOp::Or, left, right } => {
+                let left = self.formula(left, net);
+                joined_by(Formula::Or, left, self.formula(right, net))
+            }
+            Syntax::Unary { op: UnaryOp::Not, operand } => Formula::Not(Box::new(self.formula(operand, net))),
+            Syntax::Binary { op, left, right } => match self.clock_formula(*op, (left, right), e.span, net) {
+                Some(formula) => formula,
+                None => self.data(e, net),
+            },
+            Syntax::Path(path) => self.state(path, net).unwrap_or_else(|| self.data(e, net)),
+            Syntax::Bool(_)
+            | Syntax::Int(_)
+            | Syntax::Float(_)
+            | Syntax::Quantity { .. }
+            | Syntax::Any
+            | Syntax::Call { .. }
+            | Syntax::Index { .. }
+            | Syntax::Field { .. }
+            | Syntax::Unary { op: UnaryOp::Neg, .. }
+            | Syntax::If { .. }
+            | Syntax::Tuple(_)
+            | Syntax::Text(_)
+            | Syntax::List { .. }
+            | Syntax::Strong(_)
+            | Syntax::Annotated { .. }
+            | Syntax::Internal(_)
+            | Syntax::Unify { .. }
+            | Syntax::Error => self.data(e, net),
+        }
+    }
+
+    /// `deadlock`, or `Automaton.location`.
+    fn state(&mut self, path: &ast::Path, net: &Net) -> Option<Formula> {
+        match path.names.as_slice() {
+            [name] if name.text == "deadlock" => Some(Formula::Deadlock),
+            [automaton, member] if self.is_automaton(automaton) => {
+                let whole = joined(&path.names);
+                let (place, location) = *net.locations.get(&whole)?;
+                if !self.has_member(automaton, member, net) {
+                    return Some(nothing());
+                }
+                Some(Formula::At { automaton: place, location })
+            }
+            _ => None,
+        }
+    }
+
+    fn data(&mut self, e: &ast::Expr, net: &mut Net) -> Formula {
+        if !self.data_names(e, net) {
+            return nothing();
+        }
+        Formula::Data(self.expr_of(e, Kind::Bool, &mut net.env))
+    }
+
+    fn measures(&mut self, of: &[ast::Expr], net: &mut Net) -> Vec<Measure> {
+        let mut measures = Vec::new();
+        for e in of {
+            if let Some(clock) = clock_named(e, net) {
+                measures.push(Measure::Clock(clock));
+            } else if self.data_names(e, net) {
+                measures.push(Measure::Data(self.expr_of(e, Kind::Int, &mut net.env)));
+            }
+        }
+        measures
+    }
+
+    // ── clocks ──
+
+    /// The times of `clocks op times`, as one sum on the right of the comparison. `None`: reported.
+    fn times_on_the_right(&mut self, sum: &Sum<'_>, net: &mut Net) -> Option<Linear> {
+        // What is left of `clocks op times` moves to the right: its signs change.
+        let mut bound = Linear::default();
+        for (e, subtracted) in &sum.rest {
+            let factor = if *subtracted { 1.0 } else { -1.0 };
+            if !self.data_names(e, net) {
+                return None;
+            }
+            let time = self.expr_of(e, Kind::Float(Dim::TIME), &mut net.env);
+            if time.kind == ExprKind::Error {
+                return None;
+            }
+            match linear(&time) {
+                Ok(sum) => bound.add(sum, factor),
+                Err(at) => {
+                    if at.is_some() {
+                        self.report(queries::not_linear(e.span));
+                    }
+                    return None;
+                }
+            }
+        }
+        Some(bound)
+    }
+
+    /// A comparison in which there is a clock. `None`: there is none.
+    fn clock_formula(
+        &mut self,
+        op: BinaryOp,
+        (left, right): (&ast::Expr, &ast::Expr),
+        span: Span,
+        net: &mut Net,
+    ) -> Option<Formula> {
+        let mut sum = Sum::default();
+        sum.add(left, false, net);
+        sum.add(right, true, net);
+        if sum.plus.is_empty() && sum.minus.is_empty() {
+            return None;
+        }
+        let ops: &[ClockOp] = match op {
+            BinaryOp::Lt => &[ClockOp::Lt],
+            BinaryOp::Le => &[ClockOp::Le],
+            BinaryOp::Eq => &[ClockOp::Eq],
+            BinaryOp::Ge => &[ClockOp::Ge],
+            BinaryOp::Gt => &[ClockOp::Gt],
+            BinaryOp::Ne => &[ClockOp::Lt, ClockOp::Gt],
+            BinaryOp::And
+            | BinaryOp::Or
+            | BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::Div
+            | BinaryOp::Rem => return None,
+        };
+        let Some(bound) = self.times_on_the_right(&sum, net) else { return Some(nothing()) };
+        let (clock, minus, flipped) = match (sum.plus.as_slice(), sum.minus.as_slice()) {
+            ([x], []) => (*x, None, false),
+            ([x], [y]) => (*x, Some(*y), false),
+            ([], [y]) => (*y, None, true),
+            _ => {
+                self.report(queries::clock_sum(span));
+                return Some(nothing());
+            }
+        };
+        let Some(bound) = self.time_of(bound, if flipped { -1.0 } else { 1.0 }, span) else {
+            return Some(nothing());
+        };
+        let one = |op: &ClockOp| {
+            let op = if flipped { mirrored(*op) } else { *op };
+            Formula::Clock(ClockConstraint { clock, minus, op, bound: bound.clone() })
+        };
+        Some(match ops {
+            [only] => one(only),
+            several => Formula::Or(several.iter().map(one).collect()),
+        })
+    }
+}
+
+impl Net {
+    fn knows(&self, automaton: &str, member: &str) -> bool {
+        let name = format!("{automaton}.{member}");
+        self.locations.contains_key(&name)
+            || self.clocks.contains_key(&name)
+            || self.env.find(&name).is_some()
+            || self.env.layout(&name).is_some()
+    }
+
+    fn members_of(&self, automaton: &str) -> Vec<String> {
+        let prefix = format!("{automaton}.");
+        let whole = |name: &str| name.strip_prefix(&prefix).map(str::to_owned);
+        let vars = self.env.own.names.keys().filter(|n| !n.contains('['));
+        let arrays = self.env.own.layouts.keys();
+        let all = self.locations.keys().chain(self.clocks.keys()).chain(vars).chain(arrays);
+        all.filter_map(|name| whole(name)).collect()
+    }
+}
+
+impl<'e> Sum<'e> {
+    fn add(&mut self, e: &'e ast::Expr, negative: bool, net: &Net) {
+        if let Some(clock) = clock_named(e, net) {
+            if negative {
+                self.minus.push(clock)
+            } else {
+                self.plus.push(clock)
+            }
+            return;
+        }
+        match &e.kind {
+            Syntax::Binary { op: BinaryOp::Add, left, right } => {
+                self.add(left, negative, net);
+                self.add(right, negative, net);
+            }
+            Syntax::Binary { op: BinaryOp::Sub, left, right } => {
+                self.add(left, negative, net);
+                self.add(right, !negative, net);
+            }
+            _ => self.rest.push((e, negative)),
+        }
+    }
+}
+
+fn add_clock(clocks: &mut Map<String, ClockId>, name: String) {
+    let id = ClockId(u16::try_from(clocks.len()).unwrap_or(u16::MAX));
+    clocks.insert(name, id);
+}
+
+/// Stands for a formula with a diagnostic.
+fn nothing() -> Formula {
+    Formula::Or(Vec::new())
+}
+
+fn joined_by(join: fn(Vec<Formula>) -> Formula, left: Formula, right: Formula) -> Formula {
+    // `a and b and c` is one conjunction of three.
+    let parts = match (join(Vec::new()), left) {
+        (Formula::And(_), Formula::And(mut parts)) | (Formula::Or(_), Formula::Or(mut parts))
+            if !parts.is_empty() =>
+        {
+            parts.push(right);
+            parts
+        }
+        (_, left) => vec![left, right],
+    };
+    join(parts)
+}
+
+fn joined(names: &[Name]) -> String {
+    names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".")
+}
+
+/// The clock that an expression names: `x`, `P.x`, `x[2]`.
+fn clock_named(e: &ast::Expr, net: &Net) -> Option<ClockId> {
+    let name = match &e.kind {
+        Syntax::Path(path) => joined(&path.names),
+        Syntax::Index { of, index } => match (&of.kind, &index.kind) {
+            (Syntax::Path(path), Syntax::Int(n)) => format!("{}[{n}]", joined(&path.names)),
+            _ => return None,
+        },
+        _ => return None,
+    };
+    net.clocks.get(&name).copied()
+}
+
+fn mirrored(op: ClockOp) -> ClockOp {
+    match op {
+        ClockOp::Lt => ClockOp::Gt,
+        ClockOp::Le => ClockOp::Ge,
+        ClockOp::Eq => ClockOp::Eq,
+        ClockOp::Ge => ClockOp::Le,
+        ClockOp::Gt => ClockOp::Lt,
+    }
+}
+
+/// Calls `f` with each name, dotted or not, that an expression reads.
+fn each_path(e: &ast::Expr, f: &mut dyn FnMut(&ast::Path)) {
+    match &e.kind {
+        Syntax::Path(path) => f(path),
+        Syntax::Call { args, .. } | Syntax::Tuple(args) => args.iter().for_each(|a| each_path(a, f)),
+        Syntax::Index { of, index } => {
+            each_path(of, f);
+            each_path(index, f);
+        }
+        Syntax::Field { of, .. } => each_path(of, f),
+        Syntax::Unary { operand, .. } | Syntax::Strong(operand) => each_path(operand, f),
+        Syntax::Binary { left, right, .. } | Syntax::Unify { left, right } => {
+            each_path(left, f);
+            each_path(right, f);
+        }
+        Syntax::If { condition, then, otherwise } => {
+            each_path(condition, f);
+            each_path(then, f);
+            each_path(otherwise, f);
+        }
+        Syntax::List { items, rest } => {
+            items.iter().for_each(|a| each_path(a, f));
+            rest.iter().for_each(|a| each_path(a, f));
+        }
+        Syntax::Annotated { of, annotations } => {
+            each_path(of, f);
+            annotations.iter().for_each(|a| each_path(a, f));
+        }
+        Syntax::Bool(_)
+        | Syntax::Int(_)
+        | Syntax::Float(_)
+        | Syntax::Quantity { .. }
+        | Syntax::Any
+        | Syntax::Text(_)
+        | Syntax::Internal(_)
+        | Syntax::Error => {}
+    }
+}

@@ -1,0 +1,265 @@
+//! The statements of functions.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Access, Name, StatementKind as Syntax};
+
+use crate::check::{
+    checker::Checker,
+    state::scope::Env,
+    value::{element::type_of, range},
+};
+use crate::{
+    BinaryOp, Expr, ExprKind, Kind, Leaf, Place, Statement, Type, Value, Var, noun::Noun, report::functions,
+    types::Layout, types::starting_var,
+};
+
+/// The range of a loop's variable where nothing is known of its ends.
+const WIDE: (i64, i64) = (-(1 << 31), (1 << 31) - 1);
+
+/// The function whose statements are being checked.
+pub(in crate::check) struct Body<'n> {
+    name: &'n str,
+    /// As in [`Callable`](Callable).
+    result: Option<Option<Type>>,
+    /// INVARIANT: the locals of the environment are the parameters, then these.
+    pub locals: Vec<(Var, Span)>,
+    /// The places of the variables of loops.
+    loops: Vec<u16>,
+    /// A statement may be executed more than once.
+    again: bool,
+}
+
+impl<'n> Body<'n> {
+    pub fn new(name: &'n str, result: Option<Option<Type>>) -> Self {
+        Self { name, result, locals: Vec::new(), loops: Vec::new(), again: false }
+    }
+}
+
+/// Whether some statement could not be read.
+pub(in crate::check) fn unread(statements: &[ast::Statement]) -> bool {
+    statements.iter().any(|s| match &s.kind {
+        Syntax::Error => true,
+        Syntax::If { then, otherwise, .. } => unread(then) || unread(otherwise),
+        Syntax::While { body, .. } | Syntax::For { body, .. } => unread(body),
+        Syntax::Var(_) | Syntax::Assign { .. } | Syntax::Call(_) | Syntax::Return(_) => false,
+    })
+}
+
+/// Whether no way leads past the end of these statements.
+pub(in crate::check) fn returns(statements: &[Statement]) -> bool {
+    statements.iter().any(|s| match s {
+        Statement::Return(_) => true,
+        Statement::If { then, otherwise, .. } => returns(then) && returns(otherwise),
+        Statement::While { condition, .. } => condition.constant() == Some(Value::Bool(true)),
+        Statement::Assign { .. } | Statement::Call { .. } | Statement::For { .. } => false,
+    })
+}
+
+impl Checker<'_> {
+    /// What is declared in a block is known to its end.
+    pub(in crate::check) fn block(
+        &mut self,
+        statements: &[ast::Statement],
+        env: &mut Env,
+        body: &mut Body<'_>,
+    ) -> Vec<Statement> {
+        let (locals, layouts) = (env.locals.len(), env.layouts.len());
+        let mut out = Vec::new();
+        for statement in statements {
+            self.statement(statement, env, body, &mut out);
+        }
+        env.locals[locals..].iter_mut().for_each(|l| l.name.clear());
+        env.layouts.truncate(layouts);
+        out
+    }
+
+    fn statement(
+        &mut self,
+        statement: &ast::Statement,
+        env: &mut Env,
+        body: &mut Body<'_>,
+        out: &mut Vec<Statement>,
+    ) {
+        match &statement.kind {
+            Syntax::Var(var) => self.local_var(var, env, body, out),
+            Syntax::Assign { target, access, op, value } => {
+                self.assign_in_function((target, access), *op, value, env, body, out);
+            }
+            Syntax::Call(call) => match self.called_function(call, env) {
+                Some((id, args)) => out.push(Statement::Call { function: id, args }),
+                None if env.function(&call.name.text).is_some() => {}
+                None => self.no_such_statement(call, env),
+            },
+            Syntax::If { condition, then, otherwise } => {
+                let condition = self.expr_of(condition, Kind::Bool, env);
+                let then = self.block(then, env, body);
+                let otherwise = self.block(otherwise, env, body);
+                out.push(Statement::If { condition, then, otherwise });
+            }
+            Syntax::While { condition, body: inner } => {
+                let condition = self.expr_of(condition, Kind::Bool, env);
+                let again = std::mem::replace(&mut body.again, true);
+                let inner = self.block(inner, env, body);
+                body.again = again;
+                out.push(Statement::While { condition, body: inner });
+            }
+            Syntax::For { name, range, body: inner } => {
+                out.extend(self.for_loop(name, range, inner, env, body));
+            }
+            Syntax::Return(value) => {
+                let value = self.returned(value.as_ref(), statement, env, body);
+                out.push(Statement::Return(value));
+            }
+            Syntax::Error => {}
+        }
+    }
+
+    /// `var i: 0..5 = 0`
+    fn local_var(&mut self, var: &ast::Var, env: &mut Env, body: &mut Body<'_>, out: &mut Vec<Statement>) {
+        let span = var.name.span;
+        let layout = self.layout(&var.ty).filter(|l| {
+            self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of a function", span)
+        });
+        let layout = layout.unwrap_or(Layout::Unknown);
+        let mut values = Vec::new();
+        if let Some(e) = &var.init {
+            match &layout {
+                Layout::Unknown => drop(self.item(e, env)),
+                Layout::Scalar(_) | Layout::Record(_) | Layout::Array(..) => {
+                    self.item_for(e, &layout, env).flatten(&mut values);
+                }
+            }
+        }
+        let mut leaves = Vec::new();
+        self.leaves(&var.name.text, &layout, &mut leaves);
+        let first = env.next_local();
+        self.add_local(env, &var.name, Noun::Variable, &layout);
+        let given = values.len() == leaves.len();
+        let mut values = values.into_iter();
+        for ((name, ty), i) in leaves.into_iter().zip(first..) {
+            let init = crate::check::vocabulary::nearest_to_zero(ty);
+            body.locals.push((starting_var(&name, ty, init), span));
+            let value = values.next().filter(|_| given);
+            // In a loop it starts anew each time.
+            let again = body.again.then(|| Expr::value(init, Kind::of(ty), span));
+            if let Some(value) = value.or(again) {
+                out.push(Statement::Assign { place: Place::slot(Leaf::Local(i)), value });
+            }
+        }
+    }
+
+    /// `queue[len] = e`
+    fn assign_in_function(
+        &mut self,
+        (target, access): (&Name, &[Access]),
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        env: &mut Env,
+        body: &Body<'_>,
+        out: &mut Vec<Statement>,
+    ) {
+        let found = env.find(&target.text).map(|l| (l.leaf, l.ty, type_of(l)));
+        let layout = match found {
+            Some((None, ..)) => {
+                self.report(functions::clock(&target.text, target.span));
+                return;
+            }
+            Some((Some(Leaf::Local(i)), ..)) if body.loops.contains(&i) => {
+                self.report(functions::loop_variable(&target.text, target.span));
+                return;
+            }
+            Some((Some(_), Kind::Unknown, _)) => Layout::Unknown,
+            Some((Some(_), _, ty)) => Layout::Scalar(ty),
+            None => match env.layout(&target.text) {
+                Some(layout) => layout.clone(),
+                None => {
+                    let single = env.all().filter(|l| l.leaf.is_some()).map(|l| l.name.as_str());
+                    let single = single.filter(|n| !n.is_empty() && !n.contains(['.', '[']));
+                    let all: Vec<String> = single.chain(env.layout_names()).map(str::to_owned).collect();
+                    self.unknown(Noun::Variable, target, &all, None);
+                    Layout::Unknown
+                }
+            },
+        };
+        if layout == Layout::Unknown {
+            self.item(value, env);
+            return;
+        }
+        let assigned = self.assigned(target, (layout, access), op, value, env);
+        out.extend(assigned.into_iter().map(|(place, value)| Statement::Assign { place, value }));
+    }
+
+    /// A call of what is no function.
+    fn no_such_statement(&mut self, call: &ast::Call, env: &mut Env) {
+        let name = &call.name;
+        call.args.iter().flatten().for_each(|a| drop(self.item(a, env)));
+        match self.kind_of(&name.text) {
+            Some(is @ (Noun::Event | Noun::Stimulus)) => {
+                self.report(functions::event(&name.text, is, name.span));
+            }
+            Some(_) | None => {
+                let all: Vec<String> = env.function_names().map(str::to_owned).collect();
+                let local = env.find(&name.text).map(|l| l.noun);
+                self.unknown(Noun::Function, name, &all, local);
+            }
+        }
+    }
+
+    /// `for i in lo..hi { … }`
+    fn for_loop(
+        &mut self,
+        name: &Name,
+        range: &ast::Range,
+        inner: &[ast::Statement],
+        env: &mut Env,
+        body: &mut Body<'_>,
+    ) -> Option<Statement> {
+        let lo = self.expr_of(&range.lo, Kind::Int, env);
+        let hi = range.hi.as_ref().map(|hi| self.expr_of(hi, Kind::Int, env));
+        if hi.is_none() {
+            self.report(functions::open_range(range.span));
+        }
+        let ends = |e: Option<&Expr>| e.and_then(|e| range::of(e, env)).unwrap_or(WIDE);
+        let (least, most) = (ends(Some(&lo)).0, ends(hi.as_ref()).1);
+        let ty = Type::Int { lo: least, hi: most.max(least) };
+        let local = env.next_local();
+        self.check_free(env, Noun::Variable, name);
+        env.push_typed(&name.text, name.span, Noun::Variable, ty);
+        body.locals.push((starting_var(&name.text, ty, Value::Int(least)), name.span));
+        body.loops.push(local);
+        let again = std::mem::replace(&mut body.again, true);
+        let inner = self.block(inner, env, body);
+        body.again = again;
+        if let Some(l) = env.locals.get_mut(usize::from(local)) {
+            l.name.clear();
+        }
+        Some(Statement::For { slot: Leaf::Local(local), lo, hi: hi?, body: inner })
+    }
+
+    /// `return e`
+    fn returned(
+        &mut self,
+        value: Option<&ast::Expr>,
+        statement: &ast::Statement,
+        env: &mut Env,
+        body: &Body<'_>,
+    ) -> Option<Expr> {
+        match (value, body.result) {
+            (None, None) => None,
+            (None, Some(_)) => {
+                self.report(functions::returns_nothing(body.name, statement.span));
+                None
+            }
+            (Some(e), None) => {
+                self.item(e, env);
+                self.report(functions::returns_something(body.name, e.span));
+                None
+            }
+            (Some(e), Some(Some(ty))) => Some(self.expr_for(e, ty, env)),
+            (Some(e), Some(None)) => {
+                self.item(e, env);
+                Some(Expr { kind: ExprKind::Error, ty: Kind::Unknown, span: e.span })
+            }
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! The checker: the scenario so far, the states of the phases, and what all of them ask.
+
+use hrdsl_source::{Diagnostic, Enumeration, Span};
+use hrdsl_syntax::ast::{self, ItemKind, Name};
+
+use super::{
+    state::{
+        issues::Issues,
+        names::{
+            AgentNames, ChannelNames, ConstEntry, EventNames, JudgedNames, NetworkNames, PlayerNames,
+            SharedNames, Source, Templates, TypeNames, WorldState,
+        },
+        table::{Map, Table},
+        template::Given,
+        world::WorldNames,
+    },
+    unread,
+};
+use crate::{
+    ActorId, ArgPattern, DefinedType, Definition, EventId, Kind, PlayerRef, PointId, Resolutions, Role,
+    Scenario,
+    noun::Noun,
+    report::{
+        names::{unknown, wrong_kind},
+        types,
+    },
+};
+
+/// Stands for an actor whose name is unknown, so that nothing else is said about it.
+pub(super) const NOBODY: ActorId = ActorId(u16::MAX);
+
+/// The scenario so far and what is known for the rest of it, in the order of the phases.
+pub(crate) struct Checker<'a> {
+    pub(super) s: Scenario,
+    pub(super) issues: Issues,
+    pub(super) source: Source<'a>,
+    // 1. the vocabulary
+    pub(super) actors: Table,
+    pub(super) consts: Map<&'a str, ConstEntry<'a>>,
+    pub(super) types: TypeNames<'a>,
+    pub(super) templates: Templates<'a>,
+    pub(super) events: EventNames<'a>,
+    pub(super) players: PlayerNames<'a>,
+    pub(super) shared: SharedNames,
+    pub(super) channels: ChannelNames,
+    // 2. the world
+    pub(super) world: WorldState<'a>,
+    // 4. those who play the actors
+    pub(super) agents: AgentNames<'a>,
+    pub(super) networks: NetworkNames,
+    // 5. requirements, coverage, suites
+    pub(super) judged: JudgedNames,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(source: Source<'a>) -> Self {
+        let exists = source.items.iter().any(|i| matches!(i.kind, ItemKind::World(_)));
+        Self {
+            s: Scenario { names: Resolutions::of_items(&source.items), ..Scenario::default() },
+            issues: Issues::default(),
+            source,
+            actors: Table::default(),
+            consts: Map::default(),
+            types: TypeNames::default(),
+            templates: Templates::default(),
+            events: EventNames::default(),
+            players: PlayerNames {
+                table: Table::default(),
+                ids: Vec::new(),
+                agents: Vec::new(),
+                automata: Vec::new(),
+                agent_names: Enumeration::intern("agent", &["self", "percept"]),
+            },
+            shared: SharedNames::default(),
+            channels: ChannelNames::default(),
+            world: WorldState {
+                exists,
+                parts: Map::default(),
+                open_parts: Vec::new(),
+                names: WorldNames::default(),
+                missed: Vec::new(),
+            },
+            agents: AgentNames::default(),
+            networks: NetworkNames::default(),
+            judged: JudgedNames::default(),
+        }
+    }
+
+    /// A name means what is declared there.
+    pub(super) fn refer(&mut self, name: &Name, place: Option<Span>) {
+        if let Some(place) = place {
+            self.s.names.refer(name.span, place);
+        }
+    }
+
+    /// A name is that of a part of the declaration whose name stands there: a field, a parameter.
+    pub(super) fn refer_within(&mut self, name: &Name, place: Span, noun: &str) {
+        let whole = self.s.names.defined_at(place).map(|definition| definition.whole);
+        let part = whole.and_then(|whole| self.s.names.named_in(whole, noun, &name.text));
+        self.refer(name, part);
+    }
+
+    /// A variable that is declared where it first stands.
+    pub(super) fn define_here(&mut self, name: &Name, ty: Kind) {
+        let inferred = |ty: Kind| DefinedType::Inferred(ty.to_string());
+        self.s.names.define(Definition {
+            noun: "variable",
+            name: name.text.clone(),
+            place: name.span,
+            whole: name.span,
+            ty: if ty == Kind::Unknown { DefinedType::None } else { inferred(ty) },
+            doc: String::new(),
+        });
+    }
+
+    pub(super) fn report(&mut self, issue: Diagnostic) {
+        self.issues.list.push(issue);
+    }
+
+    /// All items' kinds, with the spans of the items. Independent of `self`, so that it can be walked while checking.
+    pub(super) fn each_item(&self) -> impl Iterator<Item = (&'a ItemKind, Span)> + use<'a> {
+        let items: Vec<&'a ast::Item> = self.source.items.clone();
+        items.into_iter().map(|i| (&i.kind, i.span))
+    }
+
+    // ── names that are visible everywhere ──
+
+    pub(super) fn actor(&mut self, name: &Name) -> Option<ActorId> {
+        match self.given(&name.text) {
+            Some(Given::Actor(id)) => {
+                let id = *id;
+                self.refer_given(name);
+                return Some(id);
+            }
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return Some(NOBODY);
+            }
+            Some(Given::Value(_) | Given::Events(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+        }
+        match self.actors.get(&name.text) {
+            Some(id) => {
+                self.refer(name, self.actors.span(id));
+                Some(ActorId(id))
+            }
+            None => {
+                let names = self.near(self.actors.names());
+                self.unknown(Noun::Actor, name, &names, None);
+                None
+            }
+        }
+    }
+
+    /// An event, a stimulus, or either.
+    pub(super) fn event(&mut self, noun: Noun, name: &Name, local: Option<Noun>) -> Option<EventId> {
+        match self.given(&name.text) {
+            Some(Given::Events(patterns)) => {
+                if let [only] = patterns.as_slice()
+                    && only.args.iter().all(|a| *a == ArgPattern::Any)
+                {
+                    let event = only.event;
+                    self.refer_given(name);
+                    return Some(event);
+                }
+                self.report(types::several_events(&name.text, name.span));
+                return None;
+            }
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return None;
+            }
+            Some(Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+        }
+        let fits = |c: &Self, id: u16| {
+            let is = c.s.events[usize::from(id)].stimulus.is_some();
+            noun == Noun::EventOrStimulus || is == (noun == Noun::Stimulus)
+        };
+        if let Some(id) = self.events.table.get(&name.text).filter(|id| fits(self, *id)) {
+            self.refer(name, self.events.table.span(id));
+            return Some(EventId(id));
+        }
+        let mut names =
+            self.near(self.events.table.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n));
+        if noun == Noun::EventOrStimulus {
+            names.extend(self.given_names(Noun::Event));
+        }
+        self.unknown(noun, name, &names, local);
+        None
+    }
+
+    /// A coverage point.
+    pub(super) fn point_named(&mut self, name: &Name) -> Option<PointId> {
+        match self.given(&name.text) {
+            Some(Given::Point(id)) => {
+                let id = *id;
+                self.refer_given(name);
+                return Some(id);
+            }
+            Some(Given::Unknown) => {
+                self.refer_given(name);
+                return None;
+            }
+            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..)) | None => {}
+        }
+        let found = self.judged.points.get(&name.text).map(PointId);
+        self.refer(name, self.judged.points.span_of(&name.text));
+        if found.is_none() {
+            let mut all = self.near(self.judged.points.names());
+            all.extend(self.given_names(Noun::Point));
+            self.unknown(Noun::Point, name, &all, None);
+        }
+        found
+    }
+
+    /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
+    pub(super) fn unknown(&mut self, noun: Noun, name: &Name, names: &[String], local: Option<Noun>) {
+        if self.templates.broken_instances.contains(&name.text) {
+            return;
+        }
+        let is = local.or_else(|| self.kind_of(&name.text));
+        if is.is_none() && unread::may_declare(noun, self.source.unread_items, self.source.unread_members) {
+            return;
+        }
+        let helpless = !self.issues.compares();
+        self.issues.compared += names.len();
+        let names = names.iter().map(String::as_str).filter(|_| !helpless);
+        let mut issue = match is {
+            Some(is) if is != noun => wrong_kind(noun, is, &name.text, name.span, names),
+            Some(_) | None => unknown(noun, &name.text, name.span, names),
+        };
+        if helpless {
+            issue.help = None;
+        }
+        self.report(issue);
+    }
+
+    /// What a globally visible name is.
+    pub(super) fn kind_of(&self, text: &str) -> Option<Noun> {
+        if let Some(id) = self.events.table.get(text) {
+            let stimulus = self.s.events[usize::from(id)].stimulus.is_some();
+            return Some(if stimulus { Noun::Stimulus } else { Noun::Event });
+        }
+        if let Some(id) = self.players.table.get(text) {
+            return Some(match self.players.ids[usize::from(id)] {
+                PlayerRef::Agent(_) => Noun::Agent,
+                PlayerRef::Automaton(_) => Noun::Automaton,
+            });
+        }
+        if self.consts.contains_key(text) {
+            return Some(Noun::Constant);
+        }
+        if self.given(text).is_some() {
+            return Some(Noun::Parameter);
+        }
+        if self.types.values.contains_key(text) {
+            return Some(Noun::EnumValue);
+        }
+        if self.is_template(text) {
+            return Some(Noun::Template);
+        }
+        let tables = [
+            (&self.actors, Noun::Actor),
+            (&self.shared.names, Noun::Variable),
+            (&self.channels.table, Noun::Channel),
+            (&self.networks.table, Noun::Network),
+            (&self.networks.queries, Noun::Query),
+            (&self.judged.requirements, Noun::Requirement),
+            (&self.judged.points, Noun::Point),
+            (&self.judged.crosses, Noun::Cross),
+            (&self.judged.suites, Noun::Suite),
+            (&self.types.enums, Noun::Enum),
+            (&self.types.record_names, Noun::Record),
+        ];
+        let found = tables.iter().find(|(t, _)| t.get(text).is_some()).map(|(_, noun)| *noun);
+        found.or_else(|| self.world.names.kind_of(text))
+    }
+
+    /// The names that a misspelt one may have been meant to be; none after many misspelt names, since looking for the
+    /// nearest takes time that grows with both.
+    pub(super) fn near<'n>(&self, names: impl Iterator<Item = &'n str>) -> Vec<String> {
+        if self.issues.compares() { names.map(str::to_owned).collect() } else { Vec::new() }
+    }
+
+    /// A word that is one of a fixed list.
+    pub(super) fn choice(&mut self, noun: Noun, name: &Name, words: &[&str]) -> Option<usize> {
+        let found = words.iter().position(|w| *w == name.text);
+        if found.is_none() {
+            self.report(unknown(noun, &name.text, name.span, words.iter().copied()));
+        }
+        found
+    }
+
+    pub(super) fn role_of(&self, actor: ActorId) -> Role {
+        self.s.actors.get(usize::from(actor.0)).map_or(Role::Environment, |a| a.role)
+    }
+
+    pub(super) fn actor_name(&self, actor: ActorId) -> &str {
+        self.s.actors.get(usize::from(actor.0)).map_or("?", |a| a.name.as_str())
+    }
+}

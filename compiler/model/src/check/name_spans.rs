@@ -1,0 +1,144 @@
+//! Where the names of a scenario stand, and which declarations it uses: read off the AST once all is resolved. Without
+//! errors the elements of the scenario are those of the AST, in the same order, those of an instance the template's.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{
+    self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
+};
+
+use crate::check::{checker::Checker, state::names::Declared, vocabulary::template::template};
+use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, VarPlace};
+
+impl Checker<'_> {
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
+    pub(in crate::check) fn places(&mut self) {
+        for (item, span) in self.each_item() {
+            match item {
+                ItemKind::Event(event) => {
+                    self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
+                }
+                ItemKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
+                ItemKind::Var(var) => {
+                    let name = var.name.text.as_str();
+                    let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
+                    let place = VarPlace { name: var.name.span, whole: span };
+                    self.s.places.shared.extend(std::iter::repeat_n(place, parts));
+                }
+                ItemKind::Network { name, .. } => self.s.places.networks.push(name.span),
+                ItemKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
+                ItemKind::Const { name, .. } => {
+                    let used = self.s.names.is_used(name.span);
+                    self.declared("the constant", name, span, used);
+                }
+                ItemKind::Enum { name, .. } => {
+                    let used = self.s.names.is_used(name.span);
+                    self.declared("the enumeration", name, span, used);
+                }
+                ItemKind::Record { name, .. } => {
+                    let used = self.s.names.is_used(name.span);
+                    self.declared("the record", name, span, used);
+                }
+                ItemKind::Part(part) => {
+                    let used = self.s.names.is_used(part.name.span);
+                    self.declared("the part", &part.name, span, used);
+                }
+                ItemKind::Agent(_)
+                | ItemKind::Automaton(_)
+                | ItemKind::Require(_)
+                | ItemKind::Cover(_)
+                | ItemKind::Cross(_) => {
+                    if let Some((_, template)) = template(item) {
+                        let used = self.s.names.is_used(template.name.span);
+                        self.declared("the template", template.name, span, used);
+                    }
+                }
+                ItemKind::Use(_)
+                | ItemKind::Allow(_)
+                | ItemKind::Channel(_)
+                | ItemKind::Function(_)
+                | ItemKind::Query(_)
+                | ItemKind::Instance(_)
+                | ItemKind::Actor { .. }
+                | ItemKind::Assume(_)
+                | ItemKind::Device(_)
+                | ItemKind::World(_)
+                | ItemKind::System(_)
+                | ItemKind::Test(_)
+                | ItemKind::Error => {}
+            }
+        }
+        for (name, span) in std::mem::take(&mut self.shared.functions.declared).into_values() {
+            let used = self.s.names.is_used(name.span);
+            self.declared("the function", &name, span, used);
+        }
+        let agents = self.players.agents.iter();
+        self.s.places.agents =
+            agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();
+        let automata = self.players.automata.iter().zip(&self.s.automata);
+        self.s.places.automata =
+            automata.map(|(a, of)| automaton_places(a.syntax, of, a.name_span(a.syntax.name.span))).collect();
+        let signals = &self.world.names.signals;
+        self.s.places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
+    }
+
+    fn declared(&mut self, noun: &'static str, name: &ast::Name, span: Span, used: bool) {
+        let (text, place) = (name.text.clone(), name.span);
+        self.s.declared.push(Named { noun, name: text, place, span, used });
+    }
+}
+
+impl<T> Declared<'_, T> {
+    /// Where the agent or automaton gets its name.
+    fn name_span(&self, plain: Span) -> Span {
+        self.instance.map_or(plain, |i| i.name.span)
+    }
+}
+
+fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
+    let mut places = AgentPlaces { name, ..AgentPlaces::default() };
+    for member in &agent.members {
+        match &member.kind {
+            AgentMember::Belief { name, .. } => places.beliefs.push(name.span),
+            AgentMember::Plan(plan) => places.triggers.push(plan.trigger.literal.span),
+            AgentMember::Rule { .. }
+            | AgentMember::GoalType { .. }
+            | AgentMember::Goal(_)
+            | AgentMember::Allow(_)
+            | AgentMember::Error => {}
+        }
+    }
+    places
+}
+
+fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> AutomatonPlaces {
+    let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
+    for member in &automaton.members {
+        match &member.kind {
+            Member::Clock(clocks) => places.clocks.extend(clocks.iter().map(|c| c.span)),
+            Member::Var(var) => {
+                let parts = of.vars.iter().filter(|v| whole_name(&v.name) == var.name.text).count();
+                let place = VarPlace { name: var.name.span, whole: member.span };
+                places.vars.extend(std::iter::repeat_n(place, parts));
+            }
+            Member::Location { name, .. } => places.locations.push(name.span),
+            Member::Edge(edge) => places.waits.push(edge.on.as_ref().map_or(member.span, |on| on.span)),
+            Member::Function(_) | Member::Allow(_) | Member::Error => {}
+        }
+    }
+    places
+}
+
+/// The variable that a single value is a part of: `to` of `to.x`, `a` of `a[0]`.
+fn whole_name(part: &str) -> &str {
+    part.split(['.', '[']).next().unwrap_or(part)
+}
+
+fn awaits(suite: &ast::Suite) -> Vec<Span> {
+    let mut spans = Vec::new();
+    for member in &suite.members {
+        if let SuiteMemberKind::Await(events) = &member.kind {
+            spans.extend(events.iter().map(|call| call.span));
+        }
+    }
+    spans
+}

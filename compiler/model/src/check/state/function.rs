@@ -1,0 +1,21 @@
+//! Functions of automata while they are checked: what each calls.
+
+use std::collections::BTreeMap;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::Name;
+
+use crate::FunctionId;
+
+/// What is known of functions while they are checked.
+#[derive(Default)]
+pub(crate) struct Functions {
+    /// The function whose body is being checked.
+    pub open: Option<FunctionId>,
+    /// By function: what its body calls, and where.
+    pub calls: BTreeMap<u16, Vec<(FunctionId, Span)>>,
+    /// Calls in places where nothing may change.
+    pub only_read: Vec<(FunctionId, Span)>,
+    /// By the place of their names: the functions that all automata know, and those of automata.
+    pub declared: BTreeMap<Span, (Name, Span)>,
+}

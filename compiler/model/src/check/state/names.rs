@@ -1,0 +1,218 @@
+//! Names that are visible everywhere, by what they are of: each table is filled by one phase, and read by those after it.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    rc::Rc,
+};
+
+use hrdsl_source::{Enumeration, FileId, Span};
+use hrdsl_syntax::ast::{self, Instance, Name, Sort};
+
+use super::{
+    function::Functions,
+    item::Item,
+    phase::Phase,
+    record::{Fields, RecordEntry},
+    scope::Scope,
+    table::{Map, Table},
+    template::{Givens, Template},
+    world::WorldNames,
+};
+use crate::PlayerRef;
+
+/// What is checked: the items of a scenario and of its modules, and what of them could not be read.
+pub(crate) struct Source<'a> {
+    pub items: Vec<&'a ast::Item>,
+    /// The first items come from modules.
+    pub from_modules: usize,
+    /// A module is missing, which may have the parts that are used.
+    pub missing_modules: bool,
+    /// A declaration of the scenario, or a member of its world, could not be read.
+    pub unread_items: bool,
+    /// A member of the agent or automaton that is being checked could not be read.
+    pub unread_members: bool,
+    /// One declaration is checked alone.
+    pub alone: Option<Alone>,
+}
+
+/// The declaration that is checked alone: the only one of its file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alone {
+    pub file: FileId,
+    pub phase: Phase,
+}
+
+impl Source<'_> {
+    /// Whether what is declared there in this phase is looked at.
+    pub fn looks_at(&self, phase: Phase, at: Span) -> bool {
+        self.alone.is_none_or(|alone| alone.file == at.file || alone.phase.speaks_of(phase))
+    }
+
+    /// Whether a phase comes to its turn: it does, unless the one declaration is of an earlier one.
+    pub fn reaches(&self, phase: Phase) -> bool {
+        self.alone.is_none_or(|alone| phase <= alone.phase)
+    }
+}
+
+/// An agent or automaton: as written, and if it is an instance of a template, what is given.
+pub(crate) struct Declared<'a, T> {
+    pub syntax: &'a T,
+    pub given: Option<Rc<Givens>>,
+    pub instance: Option<&'a Instance>,
+}
+
+impl<T> Clone for Declared<'_, T> {
+    fn clone(&self) -> Self {
+        Self { syntax: self.syntax, given: self.given.clone(), instance: self.instance }
+    }
+}
+
+/// How far the value of a constant is known.
+pub(crate) enum ConstState {
+    Unseen,
+    /// Its own value is being worked out.
+    Open,
+    Done(Item),
+}
+
+pub(crate) struct ConstEntry<'a> {
+    pub name: &'a Name,
+    pub value: &'a ast::Expr,
+    pub state: ConstState,
+}
+
+/// Enumerations and records.
+#[derive(Default)]
+pub(crate) struct TypeNames<'a> {
+    pub enums: Table,
+    /// By their bare names: the values of enumerations.
+    pub values: Map<&'a str, Vec<Enumeration>>,
+    pub record_names: Table,
+    pub records: Vec<RecordEntry<'a>>,
+    /// How many records are being resolved, each in the one before.
+    pub open_records: usize,
+}
+
+/// Templates, and the instance of one that is being checked.
+#[derive(Default)]
+pub(crate) struct Templates<'a> {
+    /// By sort and name.
+    pub declared: Map<(Sort, &'a str), Template<'a>>,
+    /// Instances that could not be made: nothing is said about their names.
+    pub broken_instances: BTreeSet<String>,
+    /// What the parameters stand for in the instance that is being checked.
+    pub given: Option<Rc<Givens>>,
+    /// A template is being checked by itself, with some values.
+    pub by_itself: bool,
+}
+
+/// Events and stimuli, which are numbered together.
+#[derive(Default)]
+pub(crate) struct EventNames<'a> {
+    pub table: Table,
+    /// By [`EventId`](crate::EventId): the parameters as declared.
+    pub fields: Vec<Fields>,
+    /// By [`EventId`](crate::EventId): the body of each stimulus.
+    pub stimuli: Vec<Option<&'a ast::Stimulus>>,
+}
+
+/// Agents and automata.
+pub(crate) struct PlayerNames<'a> {
+    pub table: Table,
+    pub ids: Vec<PlayerRef>,
+    pub agents: Vec<Declared<'a, ast::Agent>>,
+    pub automata: Vec<Declared<'a, ast::Automaton>>,
+    /// The names of all agents, `self` and `percept`.
+    pub agent_names: Enumeration,
+}
+
+/// What all automata share: variables, clocks and functions.
+#[derive(Default)]
+pub(crate) struct SharedNames {
+    /// The single values of the variables.
+    pub values: Table,
+    pub names: Table,
+    /// What every automaton sees of them, and of the shared clocks.
+    pub scope: Rc<Scope>,
+    pub clocks: Table,
+    /// What is known of the functions that are being checked.
+    pub functions: Functions,
+}
+
+/// Channels of automata.
+#[derive(Default)]
+pub(crate) struct ChannelNames {
+    pub table: Table,
+    /// By [`ChannelId`](crate::ChannelId): the parameters as declared.
+    pub fields: Vec<Fields>,
+    /// Some participant of these channels has a diagnostic.
+    pub vague: BTreeSet<String>,
+}
+
+/// The world's parts and names.
+pub(crate) struct WorldState<'a> {
+    pub exists: bool,
+    pub parts: Map<&'a str, (&'a ast::Part, Span)>,
+    /// The parts that are being taken apart, the outermost first.
+    pub open_parts: Vec<&'a str>,
+    pub names: WorldNames,
+    /// What needs a world where the scenario has none: one cause, which is said once.
+    pub missed: Vec<(Span, String)>,
+}
+
+/// What a belief's rules need of an argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Mode {
+    /// Nothing: the rules give it a value.
+    Free,
+    /// No value for a variable: some rule's head has `_` there.
+    Named,
+    /// A value.
+    Input,
+}
+
+/// A goal that some plan achieves.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct GoalEntry {
+    /// How many arguments are written.
+    pub arity: usize,
+    /// If their types are declared.
+    pub fields: Option<Fields>,
+    /// Its declaration's name, or that of the first plan for it.
+    pub place: Span,
+}
+
+/// What agents have declared, by agent.
+#[derive(Default)]
+pub(crate) struct AgentNames<'a> {
+    pub beliefs: Vec<Table>,
+    /// By belief: the parameters as declared.
+    pub belief_fields: Vec<Vec<Fields>>,
+    pub goals: Vec<Map<String, GoalEntry>>,
+    /// By agent and belief: what its rules need of its arguments.
+    pub modes: BTreeMap<(u16, u16), Vec<Mode>>,
+    /// The goals that some message asks somebody to achieve, by name.
+    pub asked_goals: BTreeSet<&'a str>,
+    /// The variables without a value that were read since this was emptied.
+    pub unbound: BTreeSet<String>,
+}
+
+/// Networks of automata, and what is asked of them.
+#[derive(Default)]
+pub(crate) struct NetworkNames {
+    pub table: Table,
+    /// By the place in the scenario's automata: what the edges of each see.
+    pub scopes: BTreeMap<usize, Rc<Scope>>,
+    pub queries: Table,
+}
+
+/// What is judged and covered, and how tests are made.
+#[derive(Default)]
+pub(crate) struct JudgedNames {
+    pub requirements: Table,
+    pub points: Table,
+    pub crosses: Table,
+    pub suites: Table,
+    /// The suite that is being checked names a player that does not exist.
+    pub unknown_player: bool,
+}

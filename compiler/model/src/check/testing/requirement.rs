@@ -1,0 +1,117 @@
+//! Requirements and assumptions.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ItemKind, Name, PatternKind, Sort};
+
+use crate::check::state::phase::Phase;
+use crate::check::{checker::Checker, state::scope::Env, vocabulary::template::template};
+use crate::{
+    Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind, noun::Noun,
+    report::requirements::says_nothing,
+};
+
+impl Checker<'_> {
+    pub(in crate::check) fn requirements(&mut self) {
+        self.templates_of(Sort::Require, |c, template| {
+            if let ItemKind::Require(require) = template.kind {
+                c.resolved(require);
+            }
+        });
+        for (item, span) in self.each_item() {
+            match item {
+                _ if template(item).is_some() => {}
+                ItemKind::Require(require) => {
+                    let looked_at = self.source.looks_at(Phase::Requirements, span);
+                    let resolved = if looked_at { self.resolved(require) } else { None };
+                    self.requirement(&require.name, resolved, require.pattern.span, span);
+                }
+                ItemKind::Instance(instance) if instance.sort == Sort::Require => {
+                    let Some((template, given)) = self.instance(instance, &Env::measured("")) else {
+                        continue;
+                    };
+                    let ItemKind::Require(require) = template.kind else { continue };
+                    let place = Some((&instance.name, instance.span));
+                    let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
+                    self.requirement(&instance.name, resolved, instance.span, span);
+                }
+                ItemKind::Assume(assume) => {
+                    if self.source.looks_at(Phase::Requirements, span) {
+                        self.assume(assume, span);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What a requirement says, whatever its name.
+    fn resolved(&mut self, require: &ast::Require) -> Option<(RequirementKind, String, Pattern)> {
+        let kind = match self.choice(Noun::RequirementKind, &require.kind, &["safety", "functional"]) {
+            Some(0) => RequirementKind::Safety,
+            Some(_) | None => RequirementKind::Functional,
+        };
+        let pattern = self.requirement_pattern(&require.pattern)?;
+        let title = require.title.as_ref().map_or_else(String::new, |t| t.text.clone());
+        Some((kind, title, pattern))
+    }
+
+    fn requirement(
+        &mut self,
+        name: &Name,
+        resolved: Option<(RequirementKind, String, Pattern)>,
+        text: Span,
+        span: Span,
+    ) {
+        self.not_a_template(Sort::Require, name);
+        let new = self.issues.declare(&mut self.judged.requirements, Noun::Requirement, name).is_some();
+        if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
+            let name = name.text.clone();
+            self.s.requirements.push(Requirement { name, kind, title, pattern, text, span });
+        }
+    }
+
+    fn requirement_pattern(&mut self, pattern: &ast::Pattern) -> Option<Pattern> {
+        Some(match &pattern.kind {
+            PatternKind::Causes { trigger, response, within } => {
+                let (trigger, response) = (self.patterns(trigger), self.patterns(response));
+                let within = within.as_ref().and_then(|e| self.time(e, "the time to respond", true));
+                Pattern::Causes { trigger, response, within }
+            }
+            PatternKind::Forbids { trigger, forbidden, until } => Pattern::Forbids {
+                trigger: self.patterns(trigger),
+                forbidden: self.patterns(forbidden),
+                until: self.patterns(until),
+            },
+            PatternKind::NeverWhile { events, condition } => {
+                let events = self.patterns(events);
+                let condition = condition.as_ref().map(|e| self.condition(e));
+                Pattern::NeverWhile { events, condition }
+            }
+            PatternKind::Globally(condition) => Pattern::Globally(self.condition(condition)),
+            PatternKind::Error => return None,
+        })
+    }
+
+    /// A boolean that depends on the world.
+    fn condition(&mut self, e: &ast::Expr) -> Expr {
+        let e = self.expr_of(e, Kind::Bool, &mut Env::measured(""));
+        let mut reads = false;
+        e.each(&mut |part| {
+            reads |=
+                matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);
+        });
+        // A parameter may stand for something measured.
+        if !reads && !self.templates.by_itself {
+            self.report(says_nothing(e.span));
+        }
+        e
+    }
+
+    fn assume(&mut self, assume: &ast::Assume, span: Span) {
+        let at_most = self.count(&assume.at_most, "the number", 0);
+        let events = self.patterns(&assume.events);
+        let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true));
+        let at_most = at_most.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
+        self.s.assumptions.push(Assumption { events, at_most, within, span });
+    }
+}

@@ -1,0 +1,505 @@
+//! Suites: how tests are made.
+
+use hrdsl_ir::value::nanos;
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{
+    self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
+};
+
+use crate::check::state::phase::Phase;
+use crate::check::unread;
+use crate::check::{
+    agents::agent::Scope,
+    checker::{Checker, NOBODY},
+    state::{issues::too_many, scope::Env, table::MAX_NAMES},
+};
+use crate::{
+    Ask, Choice, ChoiceCondition, ChoiceKind, CrossId, Delays, Dim, EventId, EventPattern, Explore, Kind,
+    Method, ModelGoal, NetworkId, Pattern, PlayerRef, QueryId, RequirementId, Role, SearchGoal, Suite, Value,
+    WitnessKind,
+    noun::Noun,
+    report::{coverage::bad_suite, names, roles, types},
+};
+
+/// What the members of a suite say, whatever its method.
+#[derive(Default)]
+struct Said {
+    choose: Vec<Choice>,
+    explore: Option<Explore>,
+    goals: Vec<SearchGoal>,
+    reached: Vec<ModelGoal>,
+    stop_after: Option<u32>,
+    minimise: bool,
+    witness: WitnessKind,
+    delays: Delays,
+    stimuli: Vec<EventId>,
+    awaits: Vec<EventPattern>,
+    length: Option<(u32, u32)>,
+    pause: Option<(f64, f64)>,
+    tests: Option<u32>,
+    horizon: Option<f64>,
+    patience: Option<f64>,
+}
+
+impl Checker<'_> {
+    pub(in crate::check) fn suites(&mut self) {
+        self.source.unread_members = self.players.agents.iter().any(|a| unread::in_agent(a.syntax));
+        for (item, span) in self.each_item() {
+            if let ItemKind::Suite(suite) = item {
+                let looked_at = self.source.looks_at(Phase::Suites, span);
+                let resolved = if looked_at { self.suite(suite, span) } else { None };
+                let new = self.issues.declare(&mut self.judged.suites, Noun::Suite, &suite.name).is_some();
+                self.s.suites.extend(resolved.filter(|_| new));
+            }
+        }
+        self.source.unread_members = false;
+    }
+
+    fn suite(&mut self, suite: &ast::Suite, span: Span) -> Option<Suite> {
+        let players = match &suite.method {
+            SyntaxMethod::Agents(names) => self.suite_players(names),
+            SyntaxMethod::Search(_) | SyntaxMethod::Random => Vec::new(),
+        };
+        let network = match &suite.method {
+            SyntaxMethod::Search(name) => self.suite_network(name),
+            SyntaxMethod::Agents(_) | SyntaxMethod::Random => None,
+        };
+        let mut said = Said::default();
+        for member in &suite.members {
+            if self.fits_method(member, &suite.method) {
+                let by_search = matches!(suite.method, SyntaxMethod::Search(_));
+                self.member(member, &players, by_search, &mut said);
+            }
+        }
+        let method = match &suite.method {
+            SyntaxMethod::Agents(_) => {
+                let explore = said.explore.unwrap_or(Explore::Wise(2));
+                let Said { choose, reached: goals, stop_after, minimise, .. } = said;
+                Method::Agents { players, choose, explore, stop_after, goals, minimise }
+            }
+            SyntaxMethod::Search(_) => {
+                if !suite.members.iter().any(is_goal) {
+                    let message = format!("the suite `{}` has nothing to reach", suite.name.text);
+                    self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
+                }
+                let Said { goals, witness, delays, .. } = said;
+                let network = self.of_network(network?, &goals, suite);
+                Method::Search { network, goals, witness, delays }
+            }
+            SyntaxMethod::Random => {
+                if !suite.members.iter().any(|m| matches!(m.kind, Member::Stimuli(_) | Member::Error)) {
+                    let message = format!("the suite `{}` has no stimuli to draw", suite.name.text);
+                    self.report(bad_suite(suite.name.span, message, "add `stimuli …`"));
+                }
+                let (stimuli, awaits) = (said.stimuli, said.awaits);
+                let (length, pause) = (said.length.unwrap_or((5, 20)), said.pause.unwrap_or((0.0, 10.0)));
+                Method::Random {
+                    stimuli,
+                    awaits,
+                    length_lo: length.0,
+                    length_hi: length.1,
+                    pause_lo: nanos(pause.0),
+                    pause_hi: nanos(pause.1),
+                }
+            }
+        };
+        Some(Suite {
+            name: suite.name.text.clone(),
+            method,
+            tests: said.tests.unwrap_or(100),
+            horizon: nanos(said.horizon.unwrap_or(300.0)),
+            patience: nanos(said.patience.unwrap_or(60.0)),
+            origin: span,
+        })
+    }
+
+    /// Agents and automata; at most one for an actor.
+    fn suite_players(&mut self, list: &[Name]) -> Vec<PlayerRef> {
+        self.judged.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
+        let mut players = Vec::new();
+        let mut actors = Vec::new();
+        for name in list {
+            let Some(id) = self.players.table.get(&name.text) else {
+                let all: Vec<String> = self.players.table.names().map(str::to_owned).collect();
+                self.unknown(Noun::Player, name, &all, None);
+                continue;
+            };
+            self.refer(name, self.players.table.span(id));
+            let player = self.players.ids[usize::from(id)];
+            let actor = match player {
+                PlayerRef::Agent(a) => Some(self.s.agents[usize::from(a.0)].actor),
+                PlayerRef::Automaton(a) => self.s.automata[usize::from(a.0)].actor,
+            };
+            let Some(actor) = actor else {
+                let message = format!("`{}` plays no actor: it cannot be a player", name.text);
+                let help = format!("write `automaton {} plays ACTOR`, or name another", name.text);
+                self.report(bad_suite(name.span, message, &help));
+                continue;
+            };
+            if let Some((_, first)) = actors.iter().find(|(a, _)| *a == actor && actor != NOBODY) {
+                let message = format!("`{}` plays `{}` a second time", name.text, self.actor_name(actor));
+                let issue = bad_suite(name.span, message, "an actor is played by at most one");
+                self.report(issue.label(*first, "this plays it already"));
+                continue;
+            }
+            actors.push((actor, name.span));
+            players.push(player);
+        }
+        let acts = actors.iter().any(|(a, _)| self.role_of(*a) == Role::Environment);
+        if let (false, [first, ..], true) = (acts, list, players.len() == list.len()) {
+            let message = "nobody here plays the environment: the tests would be empty";
+            self.report(bad_suite(first.span, message, "add an agent that plays an environment actor"));
+        }
+        players
+    }
+
+    fn suite_network(&mut self, name: &Name) -> Option<NetworkId> {
+        let found = self.networks.table.get(&name.text).map(NetworkId);
+        self.refer(name, self.networks.table.span_of(&name.text));
+        if found.is_none() {
+            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            self.unknown(Noun::Network, name, &all, None);
+        }
+        found
+    }
+
+    /// Some members belong to one method only.
+    fn fits_method(&mut self, member: &SuiteMember, method: &SyntaxMethod) -> bool {
+        let needs = match &member.kind {
+            Member::Choose { .. }
+            | Member::Explore(_)
+            | Member::StopAfter(_)
+            | Member::Minimise
+            | Member::Horizon(_) => "agents",
+            Member::ReachEach(_) if matches!(method, SyntaxMethod::Search(_)) => return true,
+            Member::ReachEach(_) => "agents",
+            // Both.
+            Member::ReachBins(_) | Member::ReachEdges if matches!(method, SyntaxMethod::Agents(_)) => {
+                return true;
+            }
+            Member::ReachBins(_)
+            | Member::ReachLocations
+            | Member::ReachEdges
+            | Member::ReachOf { .. }
+            | Member::ReachQueries(_)
+            | Member::Witness(_)
+            | Member::Delays(_) => "search",
+            Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
+            Member::Tests(_) | Member::Patience(_) | Member::Error => return true,
+        };
+        let is = match method {
+            SyntaxMethod::Agents(_) => "agents",
+            SyntaxMethod::Search(_) => "search",
+            SyntaxMethod::Random => "random",
+        };
+        if is != needs {
+            let message = format!("this belongs to a suite `by {needs}`, and this one is `by {is}`");
+            self.report(bad_suite(member.span, message, "remove it, or change the suite's method"));
+        }
+        is == needs
+    }
+
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
+    fn member(&mut self, member: &SuiteMember, players: &[PlayerRef], by_search: bool, said: &mut Said) {
+        match &member.kind {
+            Member::Choose { any, belief, agent, per, condition } => {
+                let choice = self.choose(*any, belief, agent, per.as_ref(), players);
+                let condition = condition.as_ref().and_then(|e| self.choice_condition(agent, e));
+                said.choose.extend(choice.map(|choice| Choice { condition, ..choice }));
+            }
+            Member::Explore(call) => said.explore = self.explore(call),
+            Member::StopAfter(e) => {
+                let count = self.count(e, "the number of sets without anything new", 1);
+                said.stop_after = count.and_then(|n| u32::try_from(n).ok());
+            }
+            Member::Minimise => said.minimise = true,
+            Member::ReachEach(word) if by_search => {
+                let goals = [SearchGoal::Pairs, SearchGoal::Uses];
+                let words = ["pair", "use", "location", "edge", "bin of …"];
+                let found = self.choice(Noun::SearchReach, word, &words);
+                said.goals.extend(found.and_then(|i| goals.get(i)));
+            }
+            Member::ReachEach(word) => {
+                let goals = [ModelGoal::Plans, ModelGoal::Contexts, ModelGoal::Messages, ModelGoal::Paths];
+                let words = ["plan", "context", "message", "path", "edge", "bin of …"];
+                let found = self.choice(Noun::Reach, word, &words);
+                said.reached.extend(found.and_then(|i| goals.get(i)));
+            }
+            Member::Tests(e) => {
+                said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
+            }
+            Member::ReachOf { what, names } => self.reach_of(what, names, said),
+            Member::ReachQueries(names) => {
+                for name in names {
+                    said.goals.extend(self.reach_query(name));
+                }
+            }
+            Member::Witness(word) => {
+                let kinds = [WitnessKind::Any, WitnessKind::Shortest, WitnessKind::Fastest];
+                let found = self.choice(Noun::Witness, word, &["any", "shortest", "fastest"]);
+                said.witness = found.map_or(said.witness, |i| kinds[i]);
+            }
+            Member::Delays(word) => {
+                let kinds = [Delays::Earliest, Delays::Latest, Delays::Sampled];
+                let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
+                said.delays = found.map_or(said.delays, |i| kinds[i]);
+            }
+            Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
+            Member::Patience(e) => said.patience = self.time(e, "the patience", true),
+            Member::ReachBins(name) => match self.judged.crosses.get(&name.text) {
+                Some(id) => {
+                    self.refer(name, self.judged.crosses.span(id));
+                    said.goals.push(SearchGoal::Bins(CrossId(id)));
+                    said.reached.push(ModelGoal::Bins(CrossId(id)));
+                }
+                None => {
+                    let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+                    self.unknown(Noun::Cross, name, &all, None);
+                }
+            },
+            Member::ReachLocations => said.goals.push(SearchGoal::Locations),
+            Member::ReachEdges => {
+                said.goals.push(SearchGoal::Edges);
+                said.reached.push(ModelGoal::Edges);
+            }
+            Member::Stimuli(names) => {
+                for name in names {
+                    said.stimuli.extend(self.test_stimulus(name));
+                }
+            }
+            Member::Await(events) => said.awaits.extend(self.patterns(events)),
+            Member::Length(range) => said.length = self.length(range),
+            Member::Pause(range) => said.pause = self.pause(range),
+            Member::Error => {}
+        }
+    }
+
+    /// `violation of R1, R2`, `trigger of R1`
+    fn reach_of(&mut self, what: &Name, list: &[Name], said: &mut Said) {
+        let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
+        for name in list {
+            if self.judged.requirements.get(&name.text).is_none() {
+                let all: Vec<String> = self.judged.requirements.names().map(str::to_owned).collect();
+                self.unknown(Noun::Requirement, name, &all, None);
+                continue;
+            }
+            self.refer(name, self.judged.requirements.span_of(&name.text));
+            // One with a diagnostic is in no list.
+            let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
+            if reads_signals(&self.s.requirements[at].pattern) {
+                let message =
+                    format!("`{}` reads signals of the world, which a network does not have", name.text);
+                self.report(bad_suite(name.span, message, "remove it: `hrdsl sim` judges it in every run"));
+                continue;
+            }
+            let id = RequirementId(u16::try_from(at).unwrap_or(u16::MAX));
+            match what {
+                Some(0) => said.goals.push(SearchGoal::Violation(id)),
+                Some(_) => said.goals.push(SearchGoal::Trigger(id)),
+                None => {}
+            }
+        }
+    }
+
+    fn reach_query(&mut self, name: &Name) -> Option<SearchGoal> {
+        if self.networks.queries.get(&name.text).is_none() {
+            let all: Vec<String> = self.networks.queries.names().map(str::to_owned).collect();
+            self.unknown(Noun::Query, name, &all, None);
+            return None;
+        }
+        self.refer(name, self.networks.queries.span_of(&name.text));
+        let at = self.s.queries.iter().position(|q| q.name == name.text)?;
+        match &self.s.queries[at].ask {
+            Ask::Possibly(f) if f.asks_deadlock() => {
+                let message = format!("`{}` asks for a deadlock, which is nothing to do", name.text);
+                self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
+                None
+            }
+            Ask::Possibly(_) => Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX)))),
+            Ask::Invariantly(_)
+            | Ask::PotentiallyAlways(_)
+            | Ask::Eventually(_)
+            | Ask::LeadsTo(..)
+            | Ask::Sup { .. }
+            | Ask::Inf { .. } => {
+                let message = format!("`{}` does not ask `E<>`: a test cannot reach it", name.text);
+                self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
+                None
+            }
+        }
+    }
+
+    /// The queries that a suite reaches are about its network.
+    fn of_network(&mut self, network: NetworkId, goals: &[SearchGoal], suite: &ast::Suite) -> NetworkId {
+        for goal in goals {
+            let SearchGoal::Query(id) = goal else { continue };
+            let query = &self.s.queries[usize::from(id.0)];
+            if query.network == network {
+                continue;
+            }
+            let (name, of) = (query.name.clone(), usize::from(query.network.0));
+            let message = format!("the query `{name}` is about another network than this suite");
+            let help = format!("make a suite `by search of {}`", self.s.networks[of].name);
+            self.report(bad_suite(suite.name.span, message, help));
+        }
+        network
+    }
+
+    /// `pairwise`, `wise(3)`, …
+    fn explore(&mut self, call: &ast::Call) -> Option<Explore> {
+        let words = ["exhaustive", "pairwise", "random", "learn", "wise"];
+        let way = self.choice(Noun::Explore, &call.name, &words)?;
+        let args = call.args.as_deref().unwrap_or_default();
+        let ways = [Explore::Exhaustive, Explore::Wise(2), Explore::Random, Explore::Learn];
+        let want = usize::from(words[way] == "wise");
+        if args.len() != want {
+            let issue = types::counts(Noun::Explore, words[way], want, args.len(), call.span);
+            let usage = if want == 1 { "wise(3)" } else { words[way] };
+            self.report(issue.help(format!("write `explore {usage}`")));
+            return None;
+        }
+        let Some(strength) = args.first() else { return ways.get(way).copied() };
+        let t = self.count(strength, "how many values occur together", 2)?;
+        if t > 6 {
+            self.report(types::must_be("how many values occur together", "2 to 6", strength.span));
+            return None;
+        }
+        u8::try_from(t).ok().map(Explore::Wise)
+    }
+
+    fn choose(
+        &mut self,
+        any: bool,
+        belief: &Name,
+        agent: &Name,
+        per: Option<&Name>,
+        players: &[PlayerRef],
+    ) -> Option<Choice> {
+        let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
+        let Some(PlayerRef::Agent(id)) = player else {
+            let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
+            self.unknown(Noun::Agent, agent, &all, None);
+            return None;
+        };
+        self.refer(agent, self.players.table.span_of(&agent.text));
+        // A player whose name is wrong may be the one that is missing.
+        if !players.contains(&PlayerRef::Agent(id)) && !self.judged.unknown_player {
+            let message = format!("`{}` does not play in this suite", agent.text);
+            self.report(bad_suite(agent.span, message, "add it after `by agents`"));
+        }
+        let table = &self.agents.beliefs[usize::from(id.0)];
+        let Some(belief_id) = table.get(&belief.text).map(crate::BeliefId) else {
+            let all: Vec<String> = table.names().filter(|n| !n.starts_with('~')).map(str::to_owned).collect();
+            self.unknown(Noun::Belief, belief, &all, None);
+            return None;
+        };
+        let place = table.span(belief_id.0);
+        self.refer(belief, place);
+        let params = self.s.agents[usize::from(id.0)].beliefs[usize::from(belief_id.0)].params.clone();
+        if let Some(param) = params.iter().find(|p| !p.ty.is_finite()) {
+            let message =
+                format!("`{}` cannot be chosen: `{}` has infinitely many values", belief.text, param.name);
+            self.report(bad_suite(
+                belief.span,
+                message,
+                "give the parameter the type `bool`, a range or an enumeration",
+            ));
+        }
+        let how = match per {
+            None if any => ChoiceKind::Any,
+            None => ChoiceKind::One,
+            Some(per) => {
+                let all: Vec<String> = params.iter().map(|p| p.name.clone()).collect();
+                let Some(at) = all.iter().position(|p| *p == per.text) else {
+                    self.unknown(Noun::Parameter, per, &all, Some(Noun::Parameter));
+                    return None;
+                };
+                if let Some(place) = place {
+                    self.refer_within(per, place, "parameter");
+                }
+                ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
+            }
+        };
+        Some(Choice { agent: id, belief: belief_id, how, condition: None })
+    }
+
+    /// `where F`: a formula over the beliefs of the agent.
+    fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<ChoiceCondition> {
+        let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
+        let Some(PlayerRef::Agent(id)) = player else { return None };
+        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
+        let context = self.context(&Scope::of(id), formula, &mut env);
+        if env.locals.len() > MAX_NAMES {
+            let message = format!("the condition has more than {MAX_NAMES} variables");
+            self.report(too_many(message, formula.span));
+        }
+        let vars = env.locals.iter().map(|l| l.name.clone()).collect();
+        Some(ChoiceCondition { context, vars, origin: formula.span })
+    }
+
+    /// A stimulus that a test can do.
+    pub(in crate::check) fn test_stimulus(&mut self, name: &Name) -> Option<EventId> {
+        if let Some(id) = self.events.table.get(&name.text) {
+            let event = &self.s.events[usize::from(id)];
+            if self.role_of(event.from) == Role::System {
+                let actor = self.actor_name(event.from);
+                let issue = roles::test_acts_for_system(&name.text, actor, name.span);
+                self.report(issue);
+                return None;
+            }
+        }
+        self.event(Noun::Stimulus, name, None)
+    }
+
+    fn length(&mut self, range: &ast::Range) -> Option<(u32, u32)> {
+        let lo = self.count(&range.lo, "a length", 0)?;
+        let hi = match &range.hi {
+            Some(hi) => self.count(hi, "a length", 1)?,
+            None => {
+                self.report(names::missing(range.span, "a length has an upper end", "write `length 5..20`"));
+                return None;
+            }
+        };
+        if lo > hi {
+            self.report(types::empty_range(Value::Int(lo), Value::Int(hi), range.span));
+        }
+        Some((u32::try_from(lo).ok()?, u32::try_from(hi).ok()?))
+    }
+
+    fn pause(&mut self, range: &ast::Range) -> Option<(f64, f64)> {
+        let mut end = |e: &ast::Expr| self.expr_of(e, Kind::Float(Dim::TIME), &mut Env::constants());
+        let lo = end(&range.lo);
+        let Some(hi) = range.hi.as_ref().map(end) else {
+            self.report(names::missing(range.span, "a pause has an upper end", "write `pause 0 s .. 10 s`"));
+            return None;
+        };
+        self.ordered(&lo, &hi, range.span);
+        let (lo, hi) = (lo.constant()?.as_f64()?, hi.constant()?.as_f64()?);
+        if lo < 0.0 {
+            self.report(types::must_be("a pause", "at least 0 s", range.span));
+        }
+        Some((lo, hi))
+    }
+}
+
+/// Whether a requirement needs more than events.
+fn reads_signals(pattern: &Pattern) -> bool {
+    match pattern {
+        Pattern::Causes { .. } | Pattern::Forbids { .. } => false,
+        Pattern::NeverWhile { condition, .. } => condition.is_some(),
+        Pattern::Globally(_) => true,
+    }
+}
+
+fn is_goal(member: &SuiteMember) -> bool {
+    matches!(
+        member.kind,
+        Member::ReachBins(_)
+            | Member::ReachLocations
+            | Member::ReachEdges
+            | Member::ReachEach(_)
+            | Member::ReachOf { .. }
+            | Member::ReachQueries(_)
+            | Member::Error
+    )
+}

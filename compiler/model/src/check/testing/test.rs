@@ -1,0 +1,184 @@
+//! Tests: written by hand or by a generator, in the scenario's vocabulary.
+
+use hrdsl_ir::{
+    coverage::BinName,
+    test::{Provenance, TestMethod},
+    value::nanos,
+};
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, Call, ItemKind, Name, TestMemberKind as Member, Text};
+
+use crate::check::state::phase::Phase;
+use crate::check::{
+    checker::Checker,
+    state::{scope::Env, table::Table},
+    value::measure::text,
+};
+use crate::{
+    Kind, Test, TestStep, Value,
+    noun::Noun,
+    report::{names, scenario_tests::bad_test, types},
+};
+
+impl Checker<'_> {
+    /// The tests of the scenario itself, then those of the files of tests, which hold nothing else.
+    pub(in crate::check) fn tests(&mut self, files: &[&ast::File]) {
+        let mut table = Table::default();
+        for (item, span) in self.each_item() {
+            if let ItemKind::Test(test) = item {
+                self.test(test, span, &mut table);
+            }
+        }
+        for item in files.iter().flat_map(|f| &f.items) {
+            match &item.kind {
+                ItemKind::Test(test) => self.test(test, item.span, &mut table),
+                ItemKind::Error => {}
+                _ => {
+                    let message = "a file of tests holds tests only";
+                    self.report(bad_test(item.span, message, "move this to the scenario"));
+                }
+            }
+        }
+        for scenario in files.iter().filter_map(|f| f.scenario.as_ref()) {
+            if scenario.text != self.s.name {
+                let message = format!("these are tests of `{}`, not of `{}`", scenario.text, self.s.name);
+                let issue = bad_test(scenario.span, message, format!("did you mean `{}`?", self.s.name));
+                self.report(issue);
+            }
+        }
+    }
+
+    fn test(&mut self, test: &ast::Test, span: Span, table: &mut Table) {
+        let full = text(&test.name.names);
+        // Its full name starts with the scenario's, whether that is written or not.
+        let prefix = format!("{}.", self.s.name);
+        let short = full.strip_prefix(&prefix).unwrap_or(&full);
+        let suite = short.rsplit_once('.').map_or("", |(suite, _)| suite).to_owned();
+        let mut resolved = Test {
+            name: format!("{prefix}{short}"),
+            seed: 0,
+            provenance: Provenance { suite, ..Provenance::default() },
+            steps: Vec::new(),
+            origin: span,
+        };
+        if self.source.looks_at(Phase::Tests, span) {
+            test.members.iter().for_each(|member| self.test_member(&member.kind, &mut resolved));
+        }
+        let (issues, noun) = (&mut self.issues, Noun::Test);
+        if issues.declare_as(table, noun, &full, test.name.span).is_some() {
+            self.s.tests.push(resolved);
+        }
+    }
+
+    fn test_member(&mut self, member: &Member, test: &mut Test) {
+        match member {
+            Member::Seed(e) => test.seed = self.seed(e),
+            Member::Method(name) => {
+                let words = TestMethod::ALL.map(TestMethod::word);
+                if let Some(at) = self.choice(Noun::Method, name, &words) {
+                    test.provenance.method = TestMethod::ALL[at];
+                }
+            }
+            Member::Because(text) => test.provenance.because.push(text.text.clone()),
+            Member::Predicts(text) => {
+                self.predicted(text);
+                test.provenance.predicts.extend(BinName::parse(&text.text));
+            }
+            Member::Do { call, with } => test.steps.extend(self.test_do(call, with)),
+            Member::Await { events, within } => {
+                let events = self.patterns(events);
+                let within = nanos(self.time(within, "the time to wait", true).unwrap_or(1.0));
+                test.steps.push(TestStep::Await { events, within });
+            }
+            Member::Wait(e) => {
+                let time = nanos(self.time(e, "the time to wait", false).unwrap_or(0.0));
+                test.steps.push(TestStep::Wait { time });
+            }
+            Member::Error => {}
+        }
+    }
+
+    fn seed(&mut self, e: &ast::Expr) -> u64 {
+        let Some(Value::Int(n)) = self.constant(e, Kind::Int, &mut Env::constants()) else { return 0 };
+        let seed = u64::try_from(n);
+        if seed.is_err() {
+            self.report(types::must_be("a seed", "at least 0", e.span));
+        }
+        seed.unwrap_or(0)
+    }
+
+    /// `cross.bin`
+    fn predicted(&mut self, text: &Text) {
+        let (cross, bin) = text.text.split_once('.').unwrap_or((&text.text, ""));
+        let Some(id) = self.judged.crosses.get(cross) else {
+            let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+            let name = Name { text: cross.to_owned(), span: text.span };
+            self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
+            return;
+        };
+        let bins: Vec<String> = self.s.crosses[usize::from(id)].bins.iter().map(|b| b.name.clone()).collect();
+        if !bins.iter().any(|b| b == bin) {
+            let issue = names::unknown(Noun::Bin, bin, text.span, bins.iter().map(String::as_str));
+            self.report(issue);
+        }
+    }
+
+    fn test_do(&mut self, call: &Call, with: &[(Name, ast::Expr)]) -> Option<TestStep> {
+        let event = self.test_stimulus(&call.name)?;
+        let fields = self.fields_of(event);
+        let args = self.args(Noun::Stimulus, call, &fields, &mut Env::constants());
+        for arg in &args {
+            if arg.constant().is_none() && arg.ty != Kind::Unknown {
+                self.report(types::not_constant(arg.span));
+            }
+        }
+        let samples = self.samples(event, call, with)?;
+        let args: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
+        Some(TestStep::Do { event, args: args.filter(|a| a.len() == self.arity_of(event))?, samples })
+    }
+
+    /// The values of the second tier: of every sample, or of none.
+    fn samples(
+        &mut self,
+        event: crate::EventId,
+        call: &Call,
+        with: &[(Name, ast::Expr)],
+    ) -> Option<Vec<Value>> {
+        let stimulus = self.s.events[usize::from(event.0)].stimulus.as_ref();
+        let declared = stimulus.map_or_else(Vec::new, |s| s.samples.clone());
+        let all: Vec<String> = declared.iter().map(|s| s.name.clone()).collect();
+        let mut values: Vec<Option<Value>> = vec![None; all.len()];
+        let mut misspelt = false;
+        for (name, value) in with {
+            let Some(at) = all.iter().position(|s| *s == name.text) else {
+                self.unknown(Noun::Sample, name, &all, Some(Noun::Sample));
+                misspelt = true;
+                continue;
+            };
+            if let Some(place) = self.events.table.span(event.0) {
+                self.refer_within(name, place, "sample");
+            }
+            if values[at].is_some() {
+                self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));
+            }
+            let e = self.expr_of(value, declared[at].lo.ty, &mut Env::constants());
+            self.in_range(&e, declared[at].ty);
+            if e.constant().is_none() && e.ty != Kind::Unknown {
+                self.report(types::not_constant(e.span));
+            }
+            // A value with a diagnostic of its own is not missing.
+            values[at] = Some(e.constant().unwrap_or(Value::Float(0.0)));
+        }
+        if with.is_empty() {
+            return Some(Vec::new());
+        }
+        let missing: Vec<&str> =
+            all.iter().zip(&values).filter(|(_, v)| v.is_none()).map(|(n, _)| n.as_str()).collect();
+        if !missing.is_empty() && !misspelt {
+            let message = format!("`{}` is given some of its samples only", call.name.text);
+            let help = format!("add `{}`, or leave all to the seed", missing.join("`, `"));
+            self.report(bad_test(call.name.span, message, help));
+        }
+        values.into_iter().collect()
+    }
+}

@@ -1,0 +1,278 @@
+//! Expressions where something of a certain layout is due, and arguments taken apart as their parameters are.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+
+use crate::check::{
+    checker::Checker,
+    state::{
+        item::{Item, Part},
+        scope::Env,
+    },
+};
+use crate::{Expr, Kind, noun::Noun, report::types, types::Layout};
+
+impl Checker<'_> {
+    /// An expression where something of this layout is due.
+    pub(in crate::check) fn item_for(&mut self, e: &ast::Expr, layout: &Layout, env: &mut Env) -> Item {
+        match layout {
+            Layout::Scalar(ty) => return Item::One(self.expr_for(e, *ty, env)),
+            Layout::Unknown => return Item::error(e.span),
+            Layout::Record(_) | Layout::Array(..) => {}
+        }
+        if let Syntax::Tuple(parts) = &e.kind {
+            let due = self.parts_of(layout);
+            if due.len() == parts.len() {
+                let items = parts.iter().zip(&due).map(|(p, (_, l))| self.item_for(p, l, env)).collect();
+                return self.whole(layout, items, e.span);
+            }
+        }
+        if let Syntax::If { condition, then, otherwise } = &e.kind {
+            let condition = self.expr_of(condition, Kind::Bool, env);
+            let (then, otherwise) = (self.item_for(then, layout, env), self.item_for(otherwise, layout, env));
+            return self.either_item(&condition, then, otherwise, e.span, env);
+        }
+        if let Some(of) = self.only_part(layout)
+            && (matches!(e.kind, Syntax::Tuple(_)) || self.needs_due(e))
+        {
+            let only = self.item_for(e, &of, env);
+            return self.whole(layout, vec![only], e.span);
+        }
+        let item = self.item(e, env);
+        self.coerce(item, layout, env)
+    }
+
+    /// The layout of what has one part alone: its value needs no parentheses of a tuple, which would be no tuple.
+    fn only_part(&self, layout: &Layout) -> Option<Layout> {
+        match self.parts_of(layout).as_slice() {
+            [(_, of)] => Some(of.clone()),
+            [] | [_, ..] => None,
+        }
+    }
+
+    fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
+        match layout {
+            Layout::Record(id) => Item::Record(*id, parts, span),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Item::Array(parts, span),
+        }
+    }
+
+    fn coerce(&mut self, item: Item, layout: &Layout, env: &mut Env) -> Item {
+        let span = item.span();
+        if *layout == Layout::Unknown {
+            return Item::error(span);
+        }
+        let due = self.parts_of(layout);
+        let fits = match (&item, layout) {
+            (Item::One(e), Layout::Scalar(ty)) => {
+                let e = self.fit(e.clone(), Kind::of(*ty), env);
+                self.in_range(&e, *ty);
+                return Item::One(e);
+            }
+            (Item::Record(id, ..), Layout::Record(want)) if id == want => true,
+            (_, Layout::Record(_) | Layout::Array(_, 1))
+                if due.len() == 1 && !item.is_unknown() && !item.is_one_of(layout) =>
+            {
+                let part = self.coerce(item, &due[0].1, env);
+                return self.whole(layout, vec![part], span);
+            }
+            (Item::Tuple(parts, _), Layout::Record(_) | Layout::Array(..))
+            | (Item::Array(parts, _), Layout::Array(..)) => parts.len() == due.len(),
+            (Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..), _) => false,
+        };
+        if !fits {
+            if item.is_unknown() {
+                self.not_known(&item);
+            } else {
+                let got = self.shown(&item);
+                self.other_shape(layout, &got, span);
+            }
+            return self.error_item(layout, span);
+        }
+        let parts = match item {
+            Item::One(_) => Vec::new(),
+            Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => parts,
+        };
+        let parts = parts.into_iter().zip(&due).map(|(p, (_, l))| self.coerce(p, l, env)).collect();
+        self.whole(layout, parts, span)
+    }
+
+    /// Something of another shape is needed: says which.
+    fn other_shape(&mut self, layout: &Layout, got: &str, span: Span) {
+        let issue = types::other_shape(&self.shown_layout(layout), got, span);
+        let due = self.parts_of(layout);
+        let form: Vec<&str> = match layout {
+            Layout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
+            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Vec::new(),
+        };
+        self.report(match form.as_slice() {
+            [] => issue,
+            form => issue.help(format!("write `({})`", form.join(", "))),
+        });
+    }
+
+    fn error_item(&self, layout: &Layout, span: Span) -> Item {
+        if matches!(layout, Layout::Scalar(_) | Layout::Unknown) {
+            return Item::error(span);
+        }
+        let parts = self.parts_of(layout).iter().map(|(_, l)| self.error_item(l, span)).collect();
+        self.whole(layout, parts, span)
+    }
+
+    /// The bare name of some enumeration's value, or something that holds one: what is due says which it is.
+    pub(in crate::check) fn needs_due(&self, e: &ast::Expr) -> bool {
+        match &e.kind {
+            Syntax::Path(path) => {
+                path.names.len() == 1 && self.types.values.contains_key(path.names[0].text.as_str())
+            }
+            Syntax::Tuple(parts) => parts.iter().any(|p| self.needs_due(p)),
+            Syntax::If { then, otherwise, .. } => self.needs_due(then) || self.needs_due(otherwise),
+            _ => false,
+        }
+    }
+
+    /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
+    pub(in crate::check) fn item_like(&mut self, e: &ast::Expr, like: &Item, env: &mut Env) -> Item {
+        match (&e.kind, like) {
+            (Syntax::Path(_) | Syntax::If { .. }, Item::One(Expr { ty: ty @ Kind::Enum(_), .. }))
+                if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) =>
+            {
+                self.item_due(e, *ty, env)
+            }
+            (Syntax::Tuple(parts), Item::Record(_, due, _) | Item::Array(due, _) | Item::Tuple(due, _))
+                if parts.len() == due.len() =>
+            {
+                let parts = parts.iter().zip(due).map(|(p, d)| self.item_like(p, d, env)).collect();
+                Item::Tuple(parts, e.span)
+            }
+            (_, _) => self.item(e, env),
+        }
+    }
+
+    /// An argument taken apart as its parameter is, without looking at the single values yet.
+    pub(in crate::check) fn spread<'e>(
+        &mut self,
+        arg: &'e ast::Expr,
+        layout: &Layout,
+        env: &mut Env,
+        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
+        out: &mut Vec<Part<'e>>,
+    ) {
+        if let Layout::Scalar(ty) = layout {
+            out.push(if arg.kind == Syntax::Any { Part::Any } else { Part::Syntax(arg, *ty) });
+            return;
+        }
+        if *layout == Layout::Unknown {
+            return self.bind_names(arg, env, variable);
+        }
+        let due = self.parts_of(layout);
+        let given: Option<&[ast::Expr]> = match &arg.kind {
+            Syntax::Tuple(parts) => Some(parts),
+            Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
+            _ => None,
+        };
+        if let (Some(of), Syntax::Tuple(_) | Syntax::Call { .. }) = (self.only_part(layout), &arg.kind)
+            && !matches!(&arg.kind, Syntax::Call { callee, .. } if self.is_record(callee, layout))
+        {
+            return self.spread(arg, &of, env, variable, out);
+        }
+        let mut leaves = Vec::new();
+        if let Some(parts) = given {
+            if parts.len() == due.len() {
+                for (part, (_, layout)) in parts.iter().zip(&due) {
+                    self.spread(part, layout, env, variable, out);
+                }
+                return;
+            }
+            self.other_shape(layout, &format!("a tuple of {}", parts.len()), arg.span);
+            parts.iter().for_each(|p| self.bind_names(p, env, variable));
+            self.leaves("", layout, &mut leaves);
+            out.extend(leaves.into_iter().map(|_| Part::Any));
+            return;
+        }
+        if arg.kind == Syntax::Any {
+            self.leaves("", layout, &mut leaves);
+            out.extend(leaves.into_iter().map(|_| Part::Any));
+            return;
+        }
+        if let Syntax::Path(path) = &arg.kind
+            && let [name] = path.names.as_slice()
+            && variable(self, name)
+        {
+            return self.spread_variable(name, layout, env, out);
+        }
+        let item = self.item_for(arg, layout, env);
+        self.leaves("", layout, &mut leaves);
+        if matches!(&arg.kind, Syntax::Call { .. })
+            && matches!(item.parts(), Some([first, ..]) if first.is_unknown())
+        {
+            // It may have been meant as a record, whose parts are bound.
+            self.bind_names(arg, env, variable);
+        }
+        let mut values = Vec::new();
+        item.flatten(&mut values);
+        out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
+    }
+
+    /// The parts of a variable that is bound here, or was.
+    fn spread_variable(&mut self, name: &Name, layout: &Layout, env: &mut Env, out: &mut Vec<Part<'_>>) {
+        let mut leaves = Vec::new();
+        let is_broken = env.broken.contains(&name.text);
+        let other = if is_broken { None } else { self.stands_for_other(name, layout, env) };
+        if is_broken || other.is_some() {
+            if let Some(got) = other {
+                let want = self.shown_layout(layout);
+                self.report(types::other_before(&name.text, &want, &got, name.span));
+            }
+            self.leaves("", layout, &mut leaves);
+            out.extend(leaves.into_iter().map(|_| Part::Any));
+            return;
+        }
+        self.leaves(&name.text, layout, &mut leaves);
+        env.declare_layout(&name.text, layout.clone());
+        let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
+        out.extend(leaves.into_iter().map(part));
+    }
+
+    /// What a variable stands for, if it is of another layout.
+    fn stands_for_other(&self, name: &Name, layout: &Layout, env: &Env) -> Option<String> {
+        match (env.find(&name.text), env.layout(&name.text)) {
+            (Some(local), _) => Some(local.ty.to_string()),
+            (None, Some(Layout::Unknown)) => None,
+            (None, Some(other)) => (other != layout).then(|| self.shown_layout(other)),
+            (None, None) => None,
+        }
+    }
+
+    /// What a pattern would bind is known, but not its types.
+    pub(in crate::check) fn bind_names(
+        &self,
+        e: &ast::Expr,
+        env: &mut Env,
+        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
+    ) {
+        match &e.kind {
+            Syntax::Path(path) => {
+                if let [name] = path.names.as_slice()
+                    && variable(self, name)
+                    && env.find(&name.text).is_none()
+                    && env.layout(&name.text).is_none()
+                {
+                    env.push_local(&name.text, name.span, Noun::Variable, Kind::Unknown);
+                    env.broken.push(name.text.clone());
+                }
+            }
+            Syntax::Tuple(parts) | Syntax::Call { args: parts, .. } => {
+                parts.iter().for_each(|p| self.bind_names(p, env, variable));
+            }
+            _ => {}
+        }
+    }
+
+    fn is_record(&self, callee: &ast::Path, layout: &Layout) -> bool {
+        match (callee.names.as_slice(), layout) {
+            ([name], Layout::Record(id)) => self.types.records[usize::from(*id)].name.text == name.text,
+            (_, _) => false,
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Elements of arrays of variables that are chosen at run time: an index outside of its array is a fault of the model.
+
+use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name};
+
+use hrdsl_source::Span;
+
+use crate::check::{
+    checker::Checker,
+    state::{
+        item::Item,
+        scope::{Elements, Env, Local},
+    },
+    value::range,
+};
+use crate::{
+    BinaryOp, Expr, ExprKind, Index, Kind, Leaf, Place, Type, Value, leaves,
+    report::{automata, types},
+    types::Layout,
+};
+
+/// A variable or a part of one, on the way to it.
+pub(in crate::check) struct Reached {
+    /// `a[0].x`; where an index is chosen at run time, with the first.
+    name: String,
+    layout: Layout,
+    indices: Vec<Index>,
+}
+
+impl Reached {
+    pub fn whole(name: &str, layout: Layout) -> Self {
+        Self { name: name.to_owned(), layout, indices: Vec::new() }
+    }
+}
+
+/// The type of a variable that an automaton or function has.
+pub(in crate::check) fn type_of(local: &Local) -> Type {
+    match local.ty {
+        Kind::Int => {
+            local.range.map_or(Type::Int { lo: i64::MIN, hi: i64::MAX }, |(lo, hi)| Type::Int { lo, hi })
+        }
+        Kind::Enum(of) => Type::Enum(of),
+        Kind::Bool | Kind::Float(_) | Kind::Text | Kind::List(_) | Kind::Unknown => Type::Bool,
+    }
+}
+
+/// The name that an expression of indices and fields starts with.
+fn root(e: &ast::Expr) -> Option<&ast::Path> {
+    match &e.kind {
+        Syntax::Index { of, .. } | Syntax::Field { of, .. } => root(of),
+        Syntax::Path(path) => Some(path),
+        _ => None,
+    }
+}
+
+impl Checker<'_> {
+    /// `a[i].x` of a variable; `None`: it is not one whose elements are chosen at run time.
+    pub(in crate::check) fn element(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Item> {
+        if env.elements == Elements::None {
+            return None;
+        }
+        let name = root(e)?.names.first()?;
+        if env.find(&name.text).is_some() || env.broken.contains(&name.text) {
+            return None;
+        }
+        let layout = env.layout(&name.text)?;
+        let mut leaves = Vec::new();
+        self.leaves(&name.text, layout, &mut leaves);
+        let first = env.find(&leaves.first()?.0)?.leaf?;
+        let chosen = match first {
+            Leaf::Own(_) | Leaf::Shared(_) => true,
+            Leaf::Local(_) => env.elements == Elements::Locals,
+            Leaf::Signal(_) => false,
+        };
+        if !chosen {
+            return None;
+        }
+        Some(match self.reach(e, env) {
+            Some(reached) => self.reached_item(&reached, e.span, env),
+            None => Item::error(e.span),
+        })
+    }
+
+    fn reach(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Reached> {
+        match &e.kind {
+            Syntax::Index { of, index } => {
+                let reached = self.reach(of, env)?;
+                self.at_index(reached, index, of.span, env)
+            }
+            Syntax::Field { of, name } => {
+                let reached = self.reach(of, env)?;
+                self.at_field(reached, name)
+            }
+            Syntax::Path(path) => {
+                let (first, fields) = path.names.split_first()?;
+                let whole = Reached::whole(&first.text, env.layout(&first.text)?.clone());
+                fields.iter().try_fold(whole, |reached, field| self.at_field(reached, field))
+            }
+            _ => None,
+        }
+    }
+
+    fn at_field(&mut self, reached: Reached, field: &Name) -> Option<Reached> {
+        let (part, layout) = self.field_of(&reached.layout, field)?;
+        Some(Reached { name: format!("{}{part}", reached.name), layout, indices: reached.indices })
+    }
+
+    /// An index is only looked at: what it calls changes nothing.
+    fn at_index(
+        &mut self,
+        mut reached: Reached,
+        index: &ast::Expr,
+        of: Span,
+        env: &mut Env,
+    ) -> Option<Reached> {
+        let effects = std::mem::replace(&mut env.effects, false);
+        let at = self.expr_of(index, Kind::Int, env);
+        env.effects = effects;
+        let (element, count) = match &reached.layout {
+            Layout::Array(element, count) => ((**element).clone(), *count),
+            Layout::Unknown => return None,
+            other @ (Layout::Scalar(_) | Layout::Record(_)) => {
+                let message = format!("{} has no elements", self.shown_layout(other));
+                self.report(types::no_elements(message, of));
+                return None;
+            }
+        };
+        if !self.index_possible(&at, count, env) {
+            return None;
+        }
+        match at.constant() {
+            Some(Value::Int(n)) => reached.name = format!("{}[{n}]", reached.name),
+            Some(_) => return None,
+            None => {
+                let stride = u16::try_from(self.size(&element)).unwrap_or(u16::MAX);
+                reached.name = format!("{}[0]", reached.name);
+                reached.indices.push(Index { at, count, stride });
+            }
+        }
+        reached.layout = element;
+        Some(reached)
+    }
+
+    /// Whether an index can lie within an array of so many; says so if not.
+    fn index_possible(&mut self, at: &Expr, count: u16, env: &Env) -> bool {
+        if at.ty != Kind::Int {
+            return false;
+        }
+        let last = i64::from(count) - 1;
+        let never = range::of(at, env).is_some_and(|(lo, hi)| hi < 0 || lo > last);
+        if never {
+            self.report(types::bad_index(at, last));
+        }
+        !never
+    }
+
+    /// What stands there as a value.
+    fn reached_item(&mut self, reached: &Reached, span: Span, env: &Env) -> Item {
+        if reached.indices.is_empty() {
+            return self.assembled(&reached.name, &reached.layout, env, span);
+        }
+        let copies = self.size(&reached.layout);
+        for index in &reached.indices {
+            if !self.may_copy(&Item::One(index.at.clone()), copies, span) {
+                return Item::error(span);
+            }
+        }
+        self.elements(&reached.name, &reached.layout, &reached.indices, span, env)
+    }
+
+    fn elements(&self, name: &str, layout: &Layout, indices: &[Index], span: Span, env: &Env) -> Item {
+        let parts = || {
+            let parts = self.parts_of(layout).into_iter();
+            parts.map(|(n, part)| self.elements(&format!("{name}{n}"), &part, indices, span, env)).collect()
+        };
+        match layout {
+            Layout::Scalar(_) => match env.find(name).and_then(|l| Some((l.leaf?, l.ty))) {
+                Some((leaf, ty)) => {
+                    let place = Place { slot: leaf, indices: indices.to_vec() };
+                    Item::One(Expr { kind: ExprKind::Element(Box::new(place)), ty, span })
+                }
+                None => Item::error(span),
+            },
+            Layout::Record(id) => Item::Record(*id, parts(), span),
+            Layout::Array(..) => Item::Array(parts(), span),
+            Layout::Unknown => Item::error(span),
+        }
+    }
+
+    // ── assignments ──
+
+    /// `target… = value`: what each single value of the target becomes, in order.
+    pub(in crate::check) fn assigned(
+        &mut self,
+        target: &Name,
+        (layout, access): (Layout, &[Access]),
+        op: Option<BinaryOp>,
+        value: &ast::Expr,
+        env: &mut Env,
+    ) -> Vec<(Place, Expr)> {
+        let mut reached = Some(Reached::whole(&target.text, layout));
+        for step in access {
+            let Some(before) = reached else { break };
+            reached = match step {
+                Access::Index(e) => self.at_index(before, e, target.span, env),
+                Access::Field(name) => self.at_field(before, name),
+            };
+        }
+        let Some(reached) = reached else { return Vec::new() };
+        let mut leaves = Vec::new();
+        self.leaves(&reached.name, &reached.layout, &mut leaves);
+        let place = |name: &str| {
+            let leaf = env.find(name).and_then(|l| l.leaf)?;
+            Some(Place { slot: leaf, indices: reached.indices.clone() })
+        };
+        let places: Vec<Place> = leaves.iter().filter_map(|(name, _)| place(name)).collect();
+        let values = match (op, places.as_slice(), &reached.layout) {
+            (None, _, Layout::Scalar(ty)) => vec![self.expr_for(value, *ty, env)],
+            (None, _, layout) => {
+                let mut values = Vec::new();
+                self.item_for(value, layout, env).flatten(&mut values);
+                values
+            }
+            (Some(op), [place], Layout::Scalar(ty)) => vec![self.changed(place, *ty, op, value, target, env)],
+            (Some(_), _, layout) => {
+                let got = self.shown_layout(layout);
+                let issue = types::other_shape("one number", &got, target.span);
+                self.report(issue.help("`+=` and `-=` change one number: name a part of it"));
+                return Vec::new();
+            }
+        };
+        // A part may be of a type that has a diagnostic.
+        if values.len() != places.len() || !self.apart(&places, &values, target) {
+            return Vec::new();
+        }
+        places.into_iter().zip(values).collect()
+    }
+
+    /// `target op value`
+    fn changed(
+        &mut self,
+        place: &Place,
+        ty: Type,
+        op: BinaryOp,
+        value: &ast::Expr,
+        target: &Name,
+        env: &mut Env,
+    ) -> Expr {
+        if !Kind::of(ty).is_number() {
+            self.report(types::mismatch(Kind::Int, Kind::of(ty), None, target.span));
+        }
+        let by = self.expr_of(value, Kind::Int, env);
+        let span = target.span.to(value.span);
+        let kind = if place.indices.is_empty() {
+            ExprKind::Leaf(place.slot)
+        } else {
+            ExprKind::Element(Box::new(place.clone()))
+        };
+        let old = Expr { kind, ty: Kind::of(ty), span: target.span };
+        Expr { kind: ExprKind::Binary(op, Box::new(old), Box::new(by)), ty: Kind::Int, span }
+    }
+
+    /// Several values are set one after the other: none may be read after it is set. Says so if one is.
+    fn apart(&mut self, places: &[Place], values: &[Expr], target: &Name) -> bool {
+        let mut set: Vec<Leaf> = Vec::new();
+        for (place, value) in places.iter().zip(values) {
+            let mut read = false;
+            if !set.is_empty() {
+                value.each_leaf(&mut |l| read |= set.contains(&l));
+                place.indices.iter().for_each(|i| i.at.each_leaf(&mut |l| read |= set.contains(&l)));
+            }
+            if read {
+                self.report(automata::read_while_set(&target.text, value.span));
+                return false;
+            }
+            if places.len() > 1 {
+                set.extend(leaves(place));
+            }
+        }
+        true
+    }
+}

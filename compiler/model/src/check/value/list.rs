@@ -1,0 +1,84 @@
+//! Lists, and what stands in the place of a value without being one.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ExprKind as Syntax};
+
+use crate::check::{checker::Checker, state::scope::Env};
+use crate::{
+    Dim, Expr, ExprKind, Kind, List, Value,
+    report::{agents, types},
+};
+
+impl Checker<'_> {
+    /// What belongs into a formula stands where a value is needed.
+    pub(in crate::check) fn no_value_here(&mut self, e: &ast::Expr, env: &Env) {
+        let issue = match &e.kind {
+            Syntax::Unify { .. } => agents::no_binding(e.span, env.plan),
+            Syntax::Internal(call) => {
+                let what = format!("`.{}`", call.name.text);
+                let help = if env.plan {
+                    "it is a formula of its own: let it bind a variable, and use that: `.count(F, N) && N > 2`"
+                } else {
+                    "internal actions are part of the plans and rules of agents"
+                };
+                agents::no_formula(&what, e.span, help)
+            }
+            _ => agents::no_formula("a belief", e.span, "bind its value first: `b(X) && X …`"),
+        };
+        self.report(issue);
+    }
+
+    /// `[a, b | rest]`, whose elements are all of one kind; `element`: what they are to be.
+    pub(in crate::check) fn list(
+        &mut self,
+        items: &[ast::Expr],
+        rest: Option<&ast::Expr>,
+        element: Kind,
+        span: Span,
+        env: &mut Env,
+    ) -> Expr {
+        let mut element = element;
+        let due = |element: Kind| if element == Kind::Int { Kind::Unknown } else { element };
+        let mut values = Vec::new();
+        for item in items {
+            let value = match &item.kind {
+                Syntax::List { items, rest } => {
+                    let inner = element.element().unwrap_or(Kind::Unknown);
+                    let value = self.list(items, rest.as_deref(), inner, item.span, env);
+                    self.fit(value, element, env)
+                }
+                _ => self.expr_of(item, due(element), env),
+            };
+            element = match (element, value.ty) {
+                (Kind::Int, Kind::Float(Dim::NUMBER)) => value.ty,
+                (Kind::Int, got) if got.with(Kind::Int).is_none() => {
+                    self.report(types::mismatch(Kind::Int, got, None, item.span));
+                    return Expr::error(span);
+                }
+                (known, got) => known.with(got).unwrap_or(known),
+            };
+            values.push(value);
+        }
+        let values: Vec<Expr> = values.into_iter().map(|v| self.fit(v, element, env)).collect();
+        let rest = rest.map(|r| self.expr_of(r, Kind::list(element), env));
+        if values.iter().chain(&rest).any(|v| v.kind == ExprKind::Error) {
+            return Expr::error(span);
+        }
+        let known = rest.as_ref().and_then(|r| r.ty.element()).and_then(|of| of.with(element));
+        let ty = Kind::list(known.unwrap_or(element));
+        let mut constants: Option<Vec<Value>> = values.iter().map(Expr::constant).collect();
+        if let Some(rest) = &rest {
+            constants = match (constants, rest.constant()) {
+                (Some(mut all), Some(Value::List(more))) => {
+                    all.extend(more.iter());
+                    Some(all)
+                }
+                (Some(_) | None, _) => None,
+            };
+        }
+        match constants {
+            Some(all) => Expr::value(Value::List(List::of(&all)), ty, span),
+            None => Expr { kind: ExprKind::List(values, rest.map(Box::new)), ty, span },
+        }
+    }
+}

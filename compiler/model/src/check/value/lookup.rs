@@ -1,0 +1,346 @@
+//! What names in expressions stand for: locals, parameters of templates, constants, values of enumerations, signals.
+
+use hrdsl_source::{Enumeration, Span, Symbol};
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+
+use crate::check::{
+    checker::Checker,
+    state::{
+        item::Item,
+        names::ConstState,
+        scope::{Env, Local, is_variable_name},
+        template::Given,
+    },
+    value::{expr::symbol_value, measure::text},
+};
+use crate::{
+    Expr, ExprKind,
+    noun::Noun,
+    report::{agents::unbound, automata::clock_misused, functions, names, types},
+};
+
+impl<'a> Checker<'a> {
+    pub(in crate::check) fn path(&mut self, path: &ast::Path, env: &mut Env) -> Item {
+        if let [_, _, ..] = path.names.as_slice() {
+            // A part of a local has a name of its own.
+            if let Some(leaf) =
+                env.find(&text(&path.names)).filter(|l| l.bound).and_then(|l| Some((l.leaf?, l.ty)))
+            {
+                return Item::One(Expr { kind: ExprKind::Leaf(leaf.0), ty: leaf.1, span: path.span });
+            }
+        }
+        // Of an automaton, in a query.
+        if let [_, _, fields @ ..] = path.names.as_slice()
+            && let whole = text(&path.names[..2])
+            && let Some(layout) = env.layout(&whole).cloned()
+        {
+            let item = self.assembled(&whole, &layout, env, path.span);
+            return fields.iter().fold(item, |item, field| self.field(item, field));
+        }
+        let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
+        if let ([value, parts @ ..], Some(of)) = (fields, self.types.enums.get(&first.text)) {
+            let of = self.s.enums[usize::from(of)].of;
+            self.refer(first, self.types.enums.span_of(&first.text));
+            self.refer_value(of, value);
+            let symbol = Item::One(self.symbol_named(of, value, first.span.to(value.span)));
+            return parts.iter().fold(symbol, |item, part| self.field(item, part));
+        }
+        if let ([value, ..], None, None) = (fields, env.find(&first.text), env.layout(&first.text))
+            && env.world.is_none()
+            && let Some(of) = self.misspelt_enum(first, value)
+        {
+            self.report(names::unknown(Noun::Enum, &first.text, first.span, [of]));
+            return Item::error(path.span);
+        }
+        let Some(mut item) = self.named(first, env) else {
+            let alone = fields.is_empty() || env.world.is_none();
+            return Item::One(if alone { self.without_value(first, env) } else { self.dotted(path, env) });
+        };
+        for field in fields {
+            item = self.field(item, field);
+        }
+        item
+    }
+
+    /// What a name stands for that has a value; `None` if it has none.
+    fn named(&mut self, name: &Name, env: &mut Env) -> Option<Item> {
+        if env.broken.contains(&name.text) {
+            return Some(Item::error(name.span));
+        }
+        if let Some(local) = env.find(&name.text) {
+            return Some(Item::One(self.local_named(name, local, env)));
+        }
+        if let Some(layout) = env.layout(&name.text).cloned() {
+            if !self.all_bound(&name.text, &layout, env) {
+                return Some(Item::One(self.without_value(name, env)));
+            }
+            self.refer(name, env.place_of(&name.text));
+            return Some(self.assembled(&name.text, &layout, env, name.span));
+        }
+        if self.given(&name.text).is_some() {
+            self.refer_given(name);
+        }
+        match self.given(&name.text) {
+            Some(Given::Value(item)) => {
+                let item = item.named_at(name.span);
+                return Some(if self.may_copy(&item, 1, name.span) { item } else { Item::error(name.span) });
+            }
+            Some(Given::Unknown) => return Some(Item::error(name.span)),
+            Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+        }
+        if let Some(constant) = self.consts.get(name.text.as_str()) {
+            let place = constant.name.span;
+            self.refer(name, Some(place));
+            return Some(self.const_value(name));
+        }
+        if let Some(value) = self.enumeration_value(name) {
+            return Some(value);
+        }
+        if env.plan
+            && let Some(symbol) = self.players.agent_names.symbol(&name.text)
+        {
+            return Some(Item::One(symbol_value(self.players.agent_names, symbol, name.span)));
+        }
+        self.signal_named(name, env).map(Item::One)
+    }
+
+    /// The value of a variable of the place itself: a parameter, a bound variable or a clock.
+    fn local_named(&mut self, name: &Name, local: &Local, env: &Env) -> Expr {
+        self.refer(name, Some(local.place));
+        match local.leaf {
+            Some(leaf) if local.bound => Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span },
+            Some(_) => self.without_value(name, env),
+            None => {
+                self.report(if self.shared.functions.open.is_some() {
+                    functions::clock(&name.text, name.span)
+                } else {
+                    clock_misused(&name.text, name.span)
+                });
+                Expr::error(name.span)
+            }
+        }
+    }
+
+    /// A value of an enumeration; of two enumerations that both have it, neither is meant.
+    fn enumeration_value(&mut self, name: &Name) -> Option<Item> {
+        match self.types.values.get(name.text.as_str())?.as_slice() {
+            &[of] => {
+                self.refer_value(of, name);
+                Some(Item::One(symbol_value(of, Symbol::intern(&name.text), name.span)))
+            }
+            several => {
+                let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
+                self.report(names::ambiguous(&name.text, &of, name.span));
+                Some(Item::error(name.span))
+            }
+        }
+    }
+
+    /// A name is that of a value of an enumeration, which is used by it.
+    pub(in crate::check) fn refer_value(&mut self, of: Enumeration, name: &Name) {
+        let Some(whole) = self.s.enums.iter().find(|e| e.of == of).map(|e| e.span) else { return };
+        let value = self.s.names.named_in(whole, "value", &name.text);
+        self.refer(name, value);
+        let enumeration = self.s.names.named_in(whole, "enumeration", of.name());
+        self.refer(name, enumeration);
+    }
+
+    /// A plan's variable by its full name, of which `P.x` may be one.
+    pub(in crate::check) fn variable(&mut self, name: &Name, env: &Env) -> Expr {
+        let local = env.find(&name.text).filter(|l| l.bound);
+        self.refer(name, local.map(|l| l.place));
+        match local.and_then(|l| Some((l.leaf?, l.ty))) {
+            Some((leaf, ty)) => Expr { kind: ExprKind::Leaf(leaf), ty, span: name.span },
+            None => self.without_value(name, env),
+        }
+    }
+
+    /// `Odrer.feed`: the enumeration that a name was meant to be, if it has the value and nothing has the name.
+    fn misspelt_enum(&self, name: &Name, value: &Name) -> Option<&'static str> {
+        if self.has_value(&name.text) || self.kind_of(&name.text).is_some() {
+            return None;
+        }
+        let of = self.types.values.get(value.text.as_str())?;
+        let names = of.iter().map(|of| of.name());
+        crate::nearest::nearest(&name.text, names)
+    }
+
+    /// `Order.feed`
+    fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> Expr {
+        match of.symbol(&value.text) {
+            Some(symbol) => symbol_value(of, symbol, span),
+            None => {
+                let near = of.values().iter().map(|v| v.name());
+                self.report(names::unknown(Noun::EnumValue, &value.text, value.span, near));
+                Expr::error(span)
+            }
+        }
+    }
+
+    /// A name that has no value here.
+    fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
+        let names = self.names_with_value(env);
+        self.agents.unbound.insert(name.text.clone());
+        if let Some(help) = self.values_of_type(name) {
+            let is = if self.types.enums.get(&name.text).is_some() { Noun::Enum } else { Noun::Record };
+            let noun = env.noun.unwrap_or(Noun::Constant);
+            self.report(names::wrong_kind(noun, is, &name.text, name.span, []).help(help));
+        } else if env.plan && is_variable_name(&name.text) {
+            self.report(unbound(&name.text, name.span, names.iter().map(String::as_str)));
+        } else {
+            let said = self.issues.list.len();
+            self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, None);
+            if env.plan
+                && env.noun == Some(Noun::Variable)
+                && let Some(issue) = self.issues.list.get_mut(said)
+            {
+                crate::report::agents::small_variable(issue, &name.text, &names);
+            }
+        }
+        Expr::error(name.span)
+    }
+
+    /// All names that have a value here.
+    pub(in crate::check) fn names_with_value(&self, env: &Env) -> Vec<String> {
+        let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
+        let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
+        let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));
+        let given = self.templates.given.iter().flat_map(|given| given.iter());
+        names.extend(
+            given.filter(|(_, bound)| matches!(bound.given, Given::Value(_))).map(|(n, _)| n.clone()),
+        );
+        names.extend(self.signal_names(env));
+        if env.plan {
+            names.extend(self.near(self.players.agent_names.values().iter().map(|s| s.name())));
+        }
+        names
+    }
+
+    /// How a value of the type of this name is written.
+    fn values_of_type(&self, name: &Name) -> Option<String> {
+        if let Some(of) = self.types.enums.get(&name.text) {
+            let first = self.s.enums[usize::from(of)].of.values().first().copied()?;
+            return Some(format!("name one of its values: `{}.{first}`", name.text));
+        }
+        let record = self.types.record_names.get(&name.text)?;
+        let fields: Vec<&str> =
+            self.types.records[usize::from(record)].fields.iter().map(|(n, _)| n.as_str()).collect();
+        Some(format!("write `{}({})`", name.text, fields.join(", ")))
+    }
+
+    /// The value of a constant, worked out at its first use.
+    fn const_value(&mut self, name: &Name) -> Item {
+        let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return Item::error(name.span) };
+        match std::mem::replace(&mut entry.state, ConstState::Open) {
+            ConstState::Done(item) => {
+                let here = item.named_at(name.span);
+                entry.state = ConstState::Done(item);
+                here
+            }
+            ConstState::Open => {
+                let declared = entry.name.span;
+                self.report(types::constant_cycle(&name.text, name.span, declared));
+                Item::error(name.span)
+            }
+            ConstState::Unseen => {
+                let declared = entry.name;
+                self.work_out(declared);
+                match self.consts.get(name.text.as_str()).map(|entry| &entry.state) {
+                    Some(ConstState::Done(item)) => item.named_at(name.span),
+                    Some(ConstState::Unseen | ConstState::Open) | None => Item::error(name.span),
+                }
+            }
+        }
+    }
+
+    /// Works out a constant after those that it names, without recursion: a chain of constants may be long.
+    fn work_out(&mut self, name: &'a Name) {
+        let mut open = vec![(name, self.unseen_in(name))];
+        while let Some((name, needed)) = open.last_mut() {
+            let name = *name;
+            if let Some(next) = needed.pop() {
+                let Some(entry) = self.consts.get_mut(next.text.as_str()) else { continue };
+                if matches!(entry.state, ConstState::Unseen) {
+                    entry.state = ConstState::Open;
+                    let next = entry.name;
+                    open.push((next, self.unseen_in(next)));
+                }
+                continue;
+            }
+            open.pop();
+            let Some(value) = self.consts.get(name.text.as_str()).map(|entry| entry.value) else { continue };
+            // A constant does not see the template that reads it.
+            let given = self.templates.given.take();
+            let mut item = self.item(value, &mut Env::constants());
+            self.templates.given = given;
+            if !item.is_constant() {
+                item = Item::error(item.span());
+            }
+            let ty = self.shown(&item);
+            self.s.names.infer(name.span, ty);
+            if let Some(entry) = self.consts.get_mut(name.text.as_str()) {
+                entry.state = ConstState::Done(item);
+            }
+        }
+    }
+
+    /// The constants that the value of a constant names and that are not worked out, the first last.
+    fn unseen_in(&self, name: &Name) -> Vec<&'a Name> {
+        let mut names = Vec::new();
+        if let Some(entry) = self.consts.get(name.text.as_str()) {
+            names_in(entry.value, &mut names);
+        }
+        let unseen = |n: &&Name| {
+            self.consts.get(n.text.as_str()).is_some_and(|c| matches!(c.state, ConstState::Unseen))
+        };
+        names.retain(unseen);
+        names.reverse();
+        names
+    }
+
+    /// Works out all constants, so that each fault in one is found.
+    pub(in crate::check) fn all_consts(&mut self) {
+        let names: Vec<Name> = self.consts.values().map(|c| c.name.clone()).collect();
+        for name in names {
+            self.const_value(&name);
+        }
+    }
+}
+
+/// The first names of all paths in an expression.
+pub(in crate::check) fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
+    match &e.kind {
+        Syntax::Bool(_)
+        | Syntax::Int(_)
+        | Syntax::Float(_)
+        | Syntax::Quantity { .. }
+        | Syntax::Any
+        | Syntax::Text(_)
+        | Syntax::Internal(_)
+        | Syntax::Error => {}
+        Syntax::List { items, rest } => items.iter().chain(rest.as_deref()).for_each(|e| names_in(e, names)),
+        Syntax::Strong(of) | Syntax::Annotated { of, .. } => names_in(of, names),
+        Syntax::Unify { left, right } => {
+            names_in(left, names);
+            names_in(right, names);
+        }
+        Syntax::Path(path) => names.extend(path.names.first()),
+        Syntax::Call { args, .. } => args.iter().for_each(|a| names_in(a, names)),
+        Syntax::Unary { operand, .. } => names_in(operand, names),
+        Syntax::Binary { left, right, .. } => {
+            names_in(left, names);
+            names_in(right, names);
+        }
+        Syntax::If { condition, then, otherwise } => {
+            names_in(condition, names);
+            names_in(then, names);
+            names_in(otherwise, names);
+        }
+        Syntax::Tuple(parts) => parts.iter().for_each(|p| names_in(p, names)),
+        Syntax::Index { of, index } => {
+            names_in(of, names);
+            names_in(index, names);
+        }
+        Syntax::Field { of, .. } => names_in(of, names),
+    }
+}

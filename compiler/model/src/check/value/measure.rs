@@ -1,0 +1,358 @@
+//! Names and measurements of the world in expressions.
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+
+use crate::check::{
+    checker::Checker,
+    state::{scope::Env, template::Given},
+    value::expr::FUNCTIONS,
+};
+use crate::{
+    ArmId, Axis, BodyRef, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    nearest::nearest,
+    noun::Noun,
+    report::{names, types},
+};
+
+const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed"];
+
+impl Checker<'_> {
+    /// A declared signal.
+    pub(in crate::check) fn signal_named(&mut self, name: &Name, env: &Env) -> Option<Expr> {
+        let prefix = env.world.as_ref()?;
+        let id = self.world.names.signals.get(&format!("{prefix}{}", name.text))?;
+        self.refer(name, self.world.names.signals.span(id));
+        Some(self.signal(id, name.span))
+    }
+
+    fn signal(&self, id: u16, span: Span) -> Expr {
+        let ty = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id)));
+        if ty.is_some_and(|s| self.world.names.broken.contains(&s.name)) {
+            return Expr::error(span);
+        }
+        let ty = ty.map_or(Kind::Unknown, |s| Kind::of(s.ty));
+        Expr { kind: ExprKind::Leaf(Leaf::Signal(SignalId(id))), ty, span }
+    }
+
+    pub(in crate::check) fn signal_names(&self, env: &Env) -> Vec<String> {
+        match &env.world {
+            Some(prefix) => self.world.names.below(Noun::Signal, prefix),
+            None => Vec::new(),
+        }
+    }
+
+    /// `person.hand.x`, `robot.signal`
+    pub(in crate::check) fn dotted(&mut self, path: &ast::Path, env: &Env) -> Expr {
+        let Some(prefix) = env.world.clone() else {
+            self.report(names::unknown(
+                env.noun.unwrap_or(Noun::Constant),
+                &text(&path.names),
+                path.span,
+                [],
+            ));
+            return Expr::error(path.span);
+        };
+        if let Some(id) = self.world.names.signals.get(&format!("{prefix}{}", text(&path.names))) {
+            return self.signal(id, path.span);
+        }
+        let (axis, body) = path.names.split_last().expect("a path has a name");
+        let whole = self
+            .full_name(&path.names, &prefix)
+            .is_some_and(|full| self.world.names.body_ref(&full).is_some());
+        if whole {
+            let issue = types::no_value(&format!("the body `{}`", text(&path.names)), path.span);
+            self.report(issue.help(format!("name a coordinate: `{}.x`", text(&path.names))));
+            return Expr::error(path.span);
+        }
+        if let Some(base) = self.full_name(body, &prefix).filter(|base| self.world.names.is_instance(base)) {
+            if !self.world.names.broken.contains(&base) {
+                let near = self.world.names.below(Noun::Signal, &format!("{base}."));
+                self.unknown(Noun::Signal, axis, &near, Some(Noun::Signal));
+            }
+            return Expr::error(path.span);
+        }
+        if let [only] = body
+            && let Some((noun, near)) = self.meant_in_world(only, &prefix, env)
+        {
+            self.unknown(noun, only, &near, None);
+            return Expr::error(path.span);
+        }
+        let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
+        match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
+            Some(axis) => {
+                let axis = [Axis::X, Axis::Y, Axis::Z][axis];
+                term(Term::Coordinate(body, axis), Kind::Float(Dim::LENGTH), path.span)
+            }
+            None => Expr::error(path.span),
+        }
+    }
+
+    /// What a name before a dot is near to, if that is a value or a part of the world, and no body is.
+    fn meant_in_world(&self, name: &Name, prefix: &str, env: &Env) -> Option<(Noun, Vec<String>)> {
+        let near = |names: &[String]| nearest(&name.text, names.iter().map(String::as_str)).is_some();
+        let full = self.full_name(std::slice::from_ref(name), prefix)?;
+        let bodies = self.world.names.below(Noun::Body, prefix);
+        if self.world.names.kind_of(&full).is_some() || near(&bodies) {
+            return None;
+        }
+        let values = self.names_with_value(env);
+        let parts = self.world.names.below(Noun::PartInstance, prefix);
+        let found = [(Noun::Constant, values), (Noun::PartInstance, parts)];
+        found.into_iter().find(|(_, names)| near(names))
+    }
+
+    /// A function over the world.
+    pub(in crate::check) fn measured(
+        &mut self,
+        callee: &ast::Path,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut Env,
+    ) -> Expr {
+        let name = text(&callee.names);
+        let known = MEASURES.contains(&name.as_str());
+        let Some(prefix) = env.world.clone().filter(|_| known) else {
+            self.no_function(callee, env, known);
+            args.iter().for_each(|a| self.item_quietly(a, env));
+            return Expr::error(span);
+        };
+        let want = match name.as_str() {
+            "distance" | "range" | "angle" | "visible" => 2..=2,
+            "holds" => 1..=2,
+            _ => 1..=1,
+        };
+        if !want.contains(&args.len()) {
+            self.report(types::counts(Noun::Function, &name, *want.start(), args.len(), span));
+            return Expr::error(span);
+        }
+        self.term(&name, args, &prefix, span).unwrap_or_else(|| Expr::error(span))
+    }
+
+    fn term(&mut self, name: &str, args: &[ast::Expr], prefix: &str, span: Span) -> Option<Expr> {
+        let length = Kind::Float(Dim::LENGTH);
+        let (what, ty) = match name {
+            "joint_speed" => {
+                let arm = self.world_arg(Noun::Arm, &args[0], prefix)?;
+                (Term::JointSpeed(ArmId(arm)), Kind::Float(Dim::ANGULAR_SPEED))
+            }
+            "holds" => {
+                let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
+                let body = args.get(1).map(|a| self.body_arg(a, prefix));
+                match body {
+                    Some(body) => (Term::Holds(gripper?, body?), Kind::Bool),
+                    None => (Term::HoldsAny(gripper?), Kind::Bool),
+                }
+            }
+            "speed" => (Term::Speed(self.body_arg(&args[0], prefix)?), Kind::Float(Dim::SPEED)),
+            _ => {
+                let (a, b) = (self.body_arg(&args[0], prefix), self.body_arg(&args[1], prefix));
+                let (a, b) = (a?, b?);
+                match name {
+                    "distance" => (Term::Distance(a, b), length),
+                    "range" => (Term::Range(a, b), length),
+                    "angle" => (Term::Angle(a, b), Kind::Float(Dim::ANGLE)),
+                    _ => (Term::Visible(a, b), Kind::Bool),
+                }
+            }
+        };
+        Some(term(what, ty, span))
+    }
+
+    /// An argument that names a body.
+    pub(in crate::check) fn body_arg(&mut self, arg: &ast::Expr, prefix: &str) -> Option<BodyRef> {
+        match &arg.kind {
+            Syntax::Path(path) => self.body_ref(&path.names, prefix),
+            _ => {
+                self.report(not_a_name(Noun::Body, arg.span));
+                None
+            }
+        }
+    }
+
+    fn world_arg(&mut self, noun: Noun, arg: &ast::Expr, prefix: &str) -> Option<u16> {
+        match &arg.kind {
+            Syntax::Path(path) => self.world_name(noun, &path.names, prefix),
+            _ => {
+                self.report(not_a_name(noun, arg.span));
+                None
+            }
+        }
+    }
+
+    /// A body or current body.
+    pub(in crate::check) fn body_ref(&mut self, names: &[Name], prefix: &str) -> Option<BodyRef> {
+        let full = self.full_name(names, prefix)?;
+        if let Some(body) = self.world.names.body_ref(&full) {
+            self.refer_in_world(names, &full);
+            return Some(body);
+        }
+        self.world_name(Noun::Body, names, prefix);
+        None
+    }
+
+    /// That there is no world is one fault, however much needs one.
+    pub(in crate::check) fn say_without_world(&mut self) {
+        const PLACES: usize = 8;
+        let mut places = std::mem::take(&mut self.world.missed);
+        places.sort();
+        places.dedup();
+        let Some(((span, name), others)) = places.split_first() else { return };
+        let message = match others.len() {
+            0 => format!("`{name}` needs a world, and the scenario has none"),
+            more => format!("`{name}` and {more} more need a world, and the scenario has none"),
+        };
+        let mut issue = names::missing(*span, message, "declare it: `world { … }`");
+        for (span, _) in others.iter().take(PLACES) {
+            issue = issue.label(*span, "and this");
+        }
+        self.report(issue);
+    }
+
+    /// Something in the world by its dotted name, or a diagnostic at the first name that leads nowhere.
+    pub(in crate::check) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
+        let full = self.full_name(names, prefix)?;
+        if let Some(id) = self.world.names.get(noun, &full) {
+            self.refer_in_world(names, &full);
+            return Some(id);
+        }
+        if let Some(Given::Thing(is, given)) = self.given(&names[0].text) {
+            let (is, given) = (*is, given.clone());
+            return self.not_in_given(noun, is, names, &given);
+        }
+        if !self.world.exists && prefix.is_empty() {
+            let span = names[0].span.to(names[names.len() - 1].span);
+            self.world.missed.push((span, text(names)));
+            return None;
+        }
+        let mut base = prefix.to_owned();
+        for name in &names[..names.len() - 1] {
+            let full = format!("{base}{}", name.text);
+            if !self.world.names.is_instance(&full) {
+                let near = self.world.names.below(Noun::PartInstance, &base);
+                let is = self.world.names.kind_of(&full);
+                self.unknown(Noun::PartInstance, name, &near, is);
+                return None;
+            }
+            if self.world.names.broken.contains(&full) {
+                return None;
+            }
+            base = format!("{full}.");
+        }
+        let last = &names[names.len() - 1];
+        let mut near = self.world.names.below(noun, &base);
+        if names.len() == 1 {
+            near.extend(self.given_names(noun));
+        }
+        let is = self.world.names.kind_of(&format!("{base}{}", last.text));
+        // Within a part, what the name is elsewhere says nothing.
+        let is = is.or(if base.is_empty() { None } else { Some(noun) });
+        self.unknown(noun, last, &near, is);
+        None
+    }
+
+    /// The full name of something of the world, which a parameter may stand for; `None` if that is not known.
+    pub(in crate::check) fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
+        match self.given(&names[0].text) {
+            Some(Given::Unknown) => None,
+            Some(Given::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
+            Some(Given::Thing(_, full)) => Some(format!("{full}.{}", text(&names[1..]))),
+            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Point(_)) | None => {
+                Some(format!("{prefix}{}", text(names)))
+            }
+        }
+    }
+
+    /// The names of a path in the world: each is that of an instance of a part or of something in it.
+    pub(in crate::check) fn refer_in_world(&mut self, names: &[Name], full: &str) {
+        if self.given(&names[0].text).is_some() {
+            return self.refer_given(&names[0]);
+        }
+        let mut whole = full;
+        for name in names.iter().rev() {
+            self.refer(name, self.world.names.place_of(whole));
+            let Some((outer, _)) = whole.rsplit_once('.') else { break };
+            whole = outer;
+        }
+    }
+
+    /// What a parameter stands for has no such thing, or is of another kind.
+    fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[Name], given: &str) -> Option<u16> {
+        if self
+            .world
+            .names
+            .broken
+            .iter()
+            .any(|b| given.strip_prefix(b).is_some_and(|rest| rest.starts_with('.')))
+        {
+            return None;
+        }
+        match names {
+            [only] => {
+                let base = given.rsplit_once('.').map_or(String::new(), |(base, _)| format!("{base}."));
+                let near = self.world.names.below(noun, &base).into_iter().map(|n| format!("{base}{n}"));
+                let near: Vec<String> = near.collect();
+                let is = self.world.names.kind_of(given).or((is != noun).then_some(is));
+                let before = self.issues.list.len();
+                self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
+                // What is to be mended is what the instance gives.
+                for issue in self.issues.list.iter_mut().skip(before) {
+                    let help = issue.help.take().map_or(String::new(), |help| format!(": {help}"));
+                    issue.help = Some(format!("`{}` stands for `{given}`{help}", only.text));
+                    issue.fixes.clear();
+                }
+            }
+            [_, .., last] => {
+                let near = self.world.names.below(noun, &format!("{given}."));
+                self.unknown(noun, last, &near, Some(noun));
+            }
+            [] => {}
+        }
+        None
+    }
+
+    fn no_function(&mut self, callee: &ast::Path, env: &Env, known: bool) {
+        let name = text(&callee.names);
+        if known {
+            let message = format!("`{name}` is measured in the world, which cannot be read here");
+            let issue = types::no_value("a measurement", callee.span);
+            self.report(hrdsl_source::Diagnostic { message, ..issue });
+            return;
+        }
+        if let [name] = callee.names.as_slice()
+            && self.function_elsewhere(name)
+        {
+            return;
+        }
+        let mut all: Vec<String> = FUNCTIONS.iter().map(|f| f.0.to_owned()).collect();
+        if env.world.is_some() {
+            all.extend(MEASURES.map(str::to_owned));
+        }
+        all.extend(self.types.record_names.names().map(str::to_owned));
+        all.extend(env.function_names().map(str::to_owned));
+        let callee = Name { text: name, span: callee.span };
+        self.unknown(Noun::Function, &callee, &all, None);
+    }
+
+    /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
+    fn item_quietly(&mut self, e: &ast::Expr, env: &mut Env) {
+        match &e.kind {
+            Syntax::Path(_) | Syntax::Any => {}
+            Syntax::Tuple(parts) => parts.iter().for_each(|p| self.item_quietly(p, env)),
+            _ => drop(self.item(e, env)),
+        }
+    }
+}
+
+fn not_a_name(noun: Noun, span: Span) -> hrdsl_source::Diagnostic {
+    types::no_value("this expression", span).help(format!("name {} of the world here", noun.with_article()))
+}
+
+fn term(term: Term, ty: Kind, span: Span) -> Expr {
+    Expr { kind: ExprKind::Term(term), ty, span }
+}
+
+/// A dotted name as text.
+pub(in crate::check) fn text(names: &[Name]) -> String {
+    names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".")
+}

@@ -1,0 +1,306 @@
+//! Declared types: enumerations, records, arrays, and what a type expression means.
+
+use hrdsl_ir::ListOf;
+
+use hrdsl_source::{Enumeration, Span};
+use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
+
+use crate::check::{
+    checker::Checker,
+    state::{
+        issues::too_many,
+        record::{Fields, MAX_PARTS, RecordEntry, RecordState},
+        scope::Env,
+        table::Table,
+    },
+    vocabulary::{template, template::KIND_WORDS},
+};
+use crate::{
+    Enum, Kind, Param, Type, Value,
+    noun::Noun,
+    report::{automata, names, types},
+    type_named, type_names,
+    types::Layout,
+};
+
+/// How deep records can be in records.
+const MAX_RECORDS: usize = 64;
+
+impl<'a> Checker<'a> {
+    pub(in crate::check) fn declare_enum(&mut self, name: &'a Name, values: &'a [Name], span: Span) {
+        if self.type_is_taken(name) {
+            return;
+        }
+        for value in values {
+            let constant = self.consts.get(value.text.as_str()).map(|c| c.name.span);
+            if constant.is_some() {
+                self.report(names::duplicate(Noun::Constant, &value.text, value.span, constant));
+            }
+        }
+        if values.is_empty() {
+            let help = format!("write `enum {} {{ first, second }}`", name.text);
+            self.report(names::missing(name.span, "an enumeration has values", help));
+        }
+        let mut table = Table::default();
+        if self.issues.declare(&mut self.types.enums, Noun::Enum, name).is_none() {
+            return;
+        }
+        for value in values {
+            self.issues.declare(&mut table, Noun::EnumValue, value);
+        }
+        let of = Enumeration::intern(&name.text, &table.names().collect::<Vec<_>>());
+        for value in values.iter().filter(|v| table.span_of(&v.text) == Some(v.span)) {
+            self.types.values.entry(&value.text).or_default().push(of);
+        }
+        self.s.enums.push(Enum { of, span });
+    }
+
+    pub(in crate::check) fn declare_record(&mut self, name: &'a Name, syntax: &'a [SyntaxParam]) {
+        if self.type_is_taken(name) {
+            return;
+        }
+        if self.issues.declare(&mut self.types.record_names, Noun::Record, name).is_some() {
+            let state = RecordState::Unseen;
+            self.types.records.push(RecordEntry { name, syntax, fields: Fields::default(), state, size: 0 });
+        }
+    }
+
+    /// Types have one namespace, which the language's own are in too.
+    fn type_is_taken(&mut self, name: &Name) -> bool {
+        let first = self.types.enums.get(&name.text).and_then(|id| self.types.enums.span(id));
+        let first = first.or_else(|| {
+            self.types.record_names.get(&name.text).and_then(|id| self.types.record_names.span(id))
+        });
+        let taken = first.is_some() || type_named(&name.text).is_some();
+        if taken {
+            self.report(names::duplicate(Noun::Type, &name.text, name.span, first));
+        }
+        taken
+    }
+
+    pub(in crate::check) fn all_records(&mut self) {
+        for id in 0..self.types.records.len() {
+            self.resolve_record(id, 0);
+        }
+    }
+
+    /// `outer`: how many records are being resolved that have this one in them.
+    fn resolve_record(&mut self, id: usize, outer: usize) {
+        if self.types.records[id].state != RecordState::Unseen {
+            return;
+        }
+        let (name, syntax) = (self.types.records[id].name, self.types.records[id].syntax);
+        if outer >= MAX_RECORDS {
+            let message = format!("records are in records more than {MAX_RECORDS} levels deep");
+            self.types.records[id].state = RecordState::Done;
+            return self.report(too_many(message, name.span));
+        }
+        self.types.open_records = outer + 1;
+        self.types.records[id].state = RecordState::Open;
+        if syntax.is_empty() {
+            let help = format!("write `record {} {{ x: length, y: length }}`", name.text);
+            self.report(names::missing(name.span, "a record has fields", help));
+        }
+        let fields = self.fields_as(Noun::Field, syntax);
+        self.types.records[id].size = fields.iter().fold(0, |n, (_, l)| n.saturating_add(self.size(l)));
+        self.types.records[id].fields = fields;
+        self.types.records[id].state = RecordState::Done;
+        self.types.open_records = outer;
+    }
+
+    /// The fields of a record, which may be needed before its turn; `None` if they need themselves.
+    pub(in crate::check) fn record_fields(&mut self, id: u16, name: &Name) -> Option<Fields> {
+        self.resolve_record(usize::from(id), self.types.open_records);
+        let entry = &self.types.records[usize::from(id)];
+        if entry.state == RecordState::Open {
+            self.report(types::record_cycle(&name.text, name.span));
+            return None;
+        }
+        Some(entry.fields.clone())
+    }
+
+    /// Parameters; names are distinct.
+    pub(in crate::check) fn fields(&mut self, params: &[SyntaxParam]) -> Fields {
+        self.fields_as(Noun::Parameter, params)
+    }
+
+    fn fields_as(&mut self, noun: Noun, params: &[SyntaxParam]) -> Fields {
+        let mut table = Table::default();
+        let mut resolved = Vec::new();
+        for param in params {
+            let layout = self.layout(&param.ty).unwrap_or(Layout::Unknown);
+            self.issues.declare(&mut table, noun, &param.name);
+            resolved.push((param.name.text.clone(), layout));
+        }
+        resolved.into()
+    }
+
+    /// The single values of parameters.
+    pub(in crate::check) fn flat(&self, fields: &[(String, Layout)]) -> Vec<Param> {
+        let mut leaves = Vec::new();
+        for (name, layout) in fields {
+            self.leaves(name, layout, &mut leaves);
+        }
+        leaves.into_iter().map(|(name, ty)| Param { name, ty }).collect()
+    }
+
+    /// The type of one value.
+    pub(in crate::check) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
+        match self.layout(ty)? {
+            Layout::Scalar(ty) => Some(ty),
+            Layout::Unknown => None,
+            layout @ (Layout::Record(_) | Layout::Array(..)) => {
+                let got = self.shown_layout(&layout);
+                let issue = types::other_shape("the type of one value", &got, type_span(ty));
+                self.report(issue.help("write a type such as `bool` or `length`, or a range `0..4`"));
+                None
+            }
+        }
+    }
+
+    /// What a type expression means.
+    pub(in crate::check) fn layout(&mut self, ty: &TypeExpr) -> Option<Layout> {
+        let layout = match ty {
+            TypeExpr::Error => return None,
+            TypeExpr::Named(name) => self.named_type(name)?,
+            TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
+            TypeExpr::Array(..) => self.array_type(ty)?,
+            TypeExpr::List(of) => match self.layout(of)? {
+                Layout::Scalar(of) => Layout::Scalar(Type::List(ListOf::new(of))),
+                Layout::Unknown => return None,
+                other @ (Layout::Record(_) | Layout::Array(..)) => {
+                    let got = self.shown_layout(&other);
+                    let issue = types::other_shape("the type of one value", &got, type_span(of));
+                    self.report(issue.help("the elements of a list are single values, or lists"));
+                    return None;
+                }
+            },
+        };
+        let size = self.size(&layout);
+        if size > MAX_PARTS {
+            self.report(types::too_many_parts(size, MAX_PARTS, type_span(ty)));
+            return None;
+        }
+        Some(layout)
+    }
+
+    /// `T[2][3]`: two of three; the indices are written in the order of the sizes.
+    fn array_type(&mut self, ty: &TypeExpr) -> Option<Layout> {
+        let (mut of, mut sizes) = (ty, Vec::new());
+        while let TypeExpr::Array(inner, size) = of {
+            sizes.push(size);
+            of = inner;
+        }
+        let mut layout = self.layout(of);
+        for size in sizes {
+            let n = self.count(size, "the size of an array", 1);
+            let fits = n.and_then(|n| u16::try_from(n).ok()).filter(|n| usize::from(*n) <= MAX_PARTS);
+            if n.is_some() && fits.is_none() {
+                let rule = format!("at most {MAX_PARTS}");
+                self.report(types::must_be("the size of an array", &rule, size.span));
+            }
+            layout = layout.zip(fits).map(|(of, n)| Layout::Array(Box::new(of), n));
+        }
+        layout
+    }
+
+    /// How many single values there are.
+    pub(in crate::check) fn size(&self, layout: &Layout) -> usize {
+        match layout {
+            Layout::Scalar(_) => 1,
+            Layout::Unknown => 0,
+            Layout::Record(id) => self.types.records[usize::from(*id)].size,
+            Layout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
+        }
+    }
+
+    /// Parameters of what is not an agent's: neither strings nor lists.
+    pub(in crate::check) fn plain_fields(&mut self, params: &[SyntaxParam]) -> Fields {
+        let fields = self.fields(params);
+        for (param, (_, layout)) in params.iter().zip(fields.iter()) {
+            self.plain(layout, &param.name.text, type_span(&param.ty));
+        }
+        fields
+    }
+
+    /// Says if a string or list is in something that no agent has.
+    pub(in crate::check) fn plain(&mut self, layout: &Layout, name: &str, span: Span) -> bool {
+        let mut leaves = Vec::new();
+        self.leaves(name, layout, &mut leaves);
+        let found = leaves.into_iter().find(|(_, ty)| ty.is_of_agents());
+        if let Some((name, ty)) = &found {
+            self.report(types::of_agents_only(name, *ty, span));
+        }
+        found.is_none()
+    }
+
+    fn named_type(&mut self, name: &Name) -> Option<Layout> {
+        if name.text == "agent" {
+            return Some(Layout::Scalar(Type::Enum(self.players.agent_names)));
+        }
+        if let Some(ty) = type_named(&name.text) {
+            return Some(Layout::Scalar(ty));
+        }
+        if let Some(id) = self.types.enums.get(&name.text) {
+            self.refer(name, self.types.enums.span(id));
+            return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
+        }
+        if let Some(id) = self.types.record_names.get(&name.text) {
+            self.refer(name, self.types.record_names.span(id));
+            self.resolve_record(usize::from(id), self.types.open_records);
+            if self.types.records[usize::from(id)].state == RecordState::Open {
+                self.report(types::record_cycle(&name.text, name.span));
+                return None;
+            }
+            // One without fields has a diagnostic.
+            return (self.types.records[usize::from(id)].size > 0).then_some(Layout::Record(id));
+        }
+        if name.text == "clock" {
+            self.report(automata::clock_type(name.span));
+            return None;
+        }
+        let mut all = self.type_names();
+        if self.templates.given.is_some() {
+            all.extend(KIND_WORDS.map(str::to_owned));
+        }
+        let issue_before = self.issues.list.len();
+        self.unknown(Noun::Type, name, &all, None);
+        if template::is_kind_word(&name.text)
+            && let Some(issue) = self.issues.list.get_mut(issue_before)
+        {
+            issue.help = Some("only a template has parameters of this kind".to_owned());
+        }
+        None
+    }
+
+    pub(in crate::check) fn type_names(&self) -> Vec<String> {
+        let own = self.types.enums.names().chain(self.types.record_names.names()).map(str::to_owned);
+        type_names().chain(["agent"]).map(str::to_owned).chain(own).collect()
+    }
+
+    fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
+        let span = lo.span.to(hi.span);
+        let lo = self.constant(lo, Kind::Int, &mut Env::constants());
+        let hi = self.constant(hi, Kind::Int, &mut Env::constants());
+        let (Some(Value::Int(lo)), Some(Value::Int(hi))) = (lo, hi) else { return None };
+        if lo > hi {
+            self.report(types::empty_range(Value::Int(lo), Value::Int(hi), span));
+            return None;
+        }
+        Some(Type::Int { lo, hi })
+    }
+}
+
+/// Where a type is written.
+pub(crate) fn type_span(ty: &TypeExpr) -> Span {
+    match ty {
+        TypeExpr::Named(name) => name.span,
+        TypeExpr::Range(lo, hi) => lo.span.to(hi.span),
+        TypeExpr::Array(of, size) => match of.as_ref() {
+            TypeExpr::Error => size.span,
+            of => type_span(of).to(size.span),
+        },
+        TypeExpr::List(of) => type_span(of),
+        TypeExpr::Error => Span::default(),
+    }
+}

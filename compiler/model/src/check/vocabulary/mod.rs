@@ -1,0 +1,314 @@
+//! Declarations that everything else speaks of: actors, constants, events, shared variables, and the names of players.
+
+pub(in crate::check) mod layout;
+pub(in crate::check) mod template;
+
+use std::rc::Rc;
+
+use hrdsl_source::{Enumeration, Span};
+use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
+
+use crate::check::{
+    checker::{Checker, NOBODY},
+    state::{
+        names::{ConstEntry, ConstState, Declared},
+        record::Fields,
+        scope::Env,
+        table::{Map, Table},
+    },
+    vocabulary::template::template,
+};
+use crate::{
+    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, PlayerRef, Role,
+    Stimulus, Type, Value, Var,
+    noun::Noun,
+    report::{names, roles, types},
+    types::{Layout, starting_var},
+};
+
+impl<'a> Checker<'a> {
+    /// The names of all agents, `self` and `percept`: the values of the type `agent`.
+    fn name_agents(&mut self) {
+        let named = self.each_item().filter_map(|(item, _)| match item {
+            ItemKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
+            ItemKind::Instance(instance) if instance.sort == Sort::Agent => Some(instance.name.text.as_str()),
+            _ => None,
+        });
+        let names: Vec<&str> = named.chain(["self", "percept"]).collect();
+        self.players.agent_names = Enumeration::intern("agent", &names);
+    }
+
+    pub(in crate::check) fn vocabulary(&mut self) {
+        self.name_agents();
+        for (item, _) in self.each_item() {
+            match item {
+                ItemKind::Actor { name, role } => self.declare_actor(name, role),
+                ItemKind::Const { name, value } => self.declare_const(name, value),
+                ItemKind::Part(part) => self.declare_part(part),
+                ItemKind::Record { name, fields } => self.declare_record(name, fields),
+                _ => {}
+            }
+        }
+        for (item, span) in self.each_item() {
+            if let ItemKind::Enum { name, values } = item {
+                self.declare_enum(name, values, span);
+            }
+        }
+        self.declare_templates();
+        self.all_records();
+        self.all_consts();
+        for (item, span) in self.each_item() {
+            match item {
+                ItemKind::Event(event) => self.declare_events(event, span),
+                ItemKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
+                _ => {}
+            }
+        }
+        for (item, span) in self.each_item() {
+            match item {
+                _ if template(item).is_some() => {}
+                ItemKind::Agent(syntax) => {
+                    let plain = Declared { syntax, given: None, instance: None };
+                    self.declare_agent(plain, &syntax.name, span);
+                }
+                ItemKind::Automaton(syntax) => {
+                    let plain = Declared { syntax, given: None, instance: None };
+                    self.declare_automaton(plain, &syntax.name, span);
+                }
+                ItemKind::Instance(instance) => self.declare_instance(instance, span),
+                ItemKind::Var(var) => self.declare_shared(var, span),
+                _ => {}
+            }
+        }
+        self.declare_channels();
+    }
+
+    /// An instance of a template of agents or automata.
+    fn declare_instance(&mut self, instance: &'a Instance, span: Span) {
+        if !matches!(instance.sort, Sort::Agent | Sort::Automaton) {
+            return;
+        }
+        let Some((template, given)) = self.instance(instance, &Env::constants()) else { return };
+        let (given, instance_of) = (Some(given), Some(instance));
+        match template.kind {
+            ItemKind::Agent(syntax) => {
+                let declared = Declared { syntax, given, instance: instance_of };
+                self.declare_agent(declared, &instance.name, span);
+            }
+            ItemKind::Automaton(syntax) => {
+                let declared = Declared { syntax, given, instance: instance_of };
+                self.declare_automaton(declared, &instance.name, span);
+            }
+            _ => {}
+        }
+    }
+
+    fn declare_actor(&mut self, name: &Name, role: &Name) {
+        let role = match self.choice(Noun::Role, role, &["environment", "system"]) {
+            Some(1) => Role::System,
+            Some(_) | None => Role::Environment,
+        };
+        if self.issues.declare(&mut self.actors, Noun::Actor, name).is_some() {
+            self.s.actors.push(Actor { name: name.text.clone(), role, origin: name.span });
+        }
+    }
+
+    fn declare_const(&mut self, name: &'a Name, value: &'a ast::Expr) {
+        if let Some(first) = self.consts.get(name.text.as_str()) {
+            let issue = names::duplicate(Noun::Constant, &name.text, name.span, Some(first.name.span));
+            return self.report(issue);
+        }
+        self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen });
+    }
+
+    fn declare_part(&mut self, part: &'a ast::Part) {
+        let name = &part.name;
+        if let Some((_, first)) = self.world.parts.get(name.text.as_str()) {
+            let issue = names::duplicate(Noun::Part, &name.text, name.span, Some(*first));
+            return self.report(issue);
+        }
+        self.world.parts.insert(&name.text, (part, name.span));
+    }
+
+    fn declare_events(&mut self, event: &'a ast::Event, span: Span) {
+        let from = self.actor(&event.from);
+        let to: Vec<ActorId> = event.to.iter().filter_map(|a| self.actor(a)).collect();
+        for one in &event.names {
+            let fields = self.plain_fields(&one.params);
+            let span = if event.names.len() == 1 { span } else { one.name.span };
+            self.push_event(&one.name, fields, from, to.clone(), None, span);
+        }
+    }
+
+    fn declare_stimulus(&mut self, stimulus: &'a ast::Stimulus, span: Span) {
+        let fields = self.plain_fields(&stimulus.params);
+        let by = self.actor(&stimulus.by);
+        if let Some(actor) = by.filter(|a| self.role_of(*a) == Role::System) {
+            let issue = roles::stimulus_by_system(self.actor_name(actor), stimulus.by.span);
+            let near: Vec<&str> = self
+                .s
+                .actors
+                .iter()
+                .filter(|a| a.role == Role::Environment)
+                .map(|a| a.name.as_str())
+                .collect();
+            let issue = match near.as_slice() {
+                [] => issue,
+                _ => issue.help(format!("a stimulus is done by the environment: `{}`", near.join("`, `"))),
+            };
+            self.report(issue);
+        }
+        self.push_event(&stimulus.name, fields, by, Vec::new(), Some(stimulus), span);
+    }
+
+    fn push_event(
+        &mut self,
+        name: &Name,
+        fields: Fields,
+        from: Option<ActorId>,
+        to: Vec<ActorId>,
+        stimulus: Option<&'a ast::Stimulus>,
+        span: Span,
+    ) {
+        let noun = if stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
+        if self.issues.declare(&mut self.events.table, noun, name).is_some() {
+            // Without its actor, which has a diagnostic, the event still is a name.
+            let from = from.unwrap_or(NOBODY);
+            let body = stimulus.map(|_| Stimulus { samples: Vec::new(), steps: Vec::new() });
+            let params = self.flat(&fields);
+            self.events.fields.push(fields);
+            self.s.events.push(Event {
+                name: name.text.clone(),
+                params,
+                from,
+                to,
+                stimulus: body,
+                origin: span,
+            });
+            self.events.stimuli.push(stimulus);
+        }
+    }
+
+    fn declare_agent(&mut self, agent: Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Agent, name);
+        if self.issues.declare(&mut self.players.table, Noun::Agent, name).is_some() {
+            let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
+            self.players.ids.push(PlayerRef::Agent(id));
+            self.push_agent(&agent, name, span);
+            self.players.agents.push(agent);
+        }
+    }
+
+    /// An agent that has nothing yet.
+    pub(in crate::check) fn push_agent(&mut self, agent: &Declared<'a, ast::Agent>, name: &Name, span: Span) {
+        let plays = &agent.syntax.plays;
+        let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
+        self.agents.beliefs.push(Table::default());
+        self.agents.goals.push(Map::default());
+        self.agents.belief_fields.push(Vec::new());
+        self.s.agents.push(Agent {
+            name: name.text.clone(),
+            actor,
+            beliefs: Vec::new(),
+            goals: Vec::new(),
+            rules: Vec::new(),
+            initial_beliefs: Vec::new(),
+            initial_goals: Vec::new(),
+            plans: Vec::new(),
+            origin: span,
+        });
+    }
+
+    fn declare_automaton(&mut self, automaton: Declared<'a, ast::Automaton>, name: &Name, span: Span) {
+        self.not_a_template(Sort::Automaton, name);
+        if self.issues.declare(&mut self.players.table, Noun::Automaton, name).is_some() {
+            let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
+            self.players.ids.push(PlayerRef::Automaton(id));
+            self.push_automaton(&automaton, name, span);
+            self.players.automata.push(automaton);
+        }
+    }
+
+    /// An automaton that has nothing yet.
+    pub(in crate::check) fn push_automaton(
+        &mut self,
+        automaton: &Declared<'a, ast::Automaton>,
+        name: &Name,
+        span: Span,
+    ) {
+        let plays = automaton.syntax.plays.as_ref();
+        let actor = plays.map(|plays| {
+            self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY)
+        });
+        self.s.automata.push(Automaton {
+            name: name.text.clone(),
+            actor,
+            clocks: Vec::new(),
+            vars: Vec::new(),
+            locations: Vec::new(),
+            initial: LocationId(0),
+            edges: Vec::new(),
+            origin: span,
+        });
+    }
+
+    fn declare_shared(&mut self, var: &ast::Var, span: Span) {
+        self.check_free(&Env::constants(), Noun::Variable, &var.name);
+        let (issues, names) = (&mut self.issues, &mut self.shared.names);
+        if issues.declare(names, Noun::Variable, &var.name).is_none() {
+            return;
+        }
+        if self.declare_shared_clocks(var, span) {
+            return;
+        }
+        let (layout, vars) = self.var(var);
+        let place = var.name.span;
+        for var in vars {
+            // The parts of one variable have names that no other can have.
+            let (issues, table) = (&mut self.issues, &mut self.shared.values);
+            let Some(i) = issues.declare_as(table, Noun::Variable, &var.name, place) else {
+                return;
+            };
+            Rc::make_mut(&mut self.shared.scope).add_variable(Leaf::Shared(i), &var, place);
+            self.s.shared.push(var);
+        }
+        if !matches!(layout, Layout::Scalar(_)) {
+            Rc::make_mut(&mut self.shared.scope).layouts.insert(var.name.text.clone(), layout);
+        }
+    }
+
+    /// A variable of an automaton or shared: of finite types, each part with a value at the start.
+    pub(in crate::check) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
+        let span = var.name.span;
+        let layout = self.layout(&var.ty).filter(|l| {
+            self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of automata", span)
+        });
+        let layout = layout.unwrap_or(Layout::Unknown);
+        let mut values = Vec::new();
+        if let Some(e) = &var.init {
+            self.item_for(e, &layout, &mut Env::constants()).flatten(&mut values);
+        }
+        for e in &values {
+            if e.constant().is_none() && e.ty != crate::Kind::Unknown {
+                self.report(types::not_constant(e.span));
+            }
+        }
+        let mut leaves = Vec::new();
+        self.leaves(&var.name.text, &layout, &mut leaves);
+        let mut values = values.into_iter();
+        let vars = leaves.into_iter().map(|(name, ty)| {
+            let init = values.next().and_then(|e: Expr| e.constant());
+            starting_var(&name, ty, init.unwrap_or(nearest_to_zero(ty)))
+        });
+        (layout, vars.collect())
+    }
+}
+
+/// What a variable holds that is given no value.
+pub(in crate::check) fn nearest_to_zero(ty: Type) -> Value {
+    match ty {
+        Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => Value::Bool(false),
+        Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
+        Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
+    }
+}

@@ -1,0 +1,442 @@
+//! Templates: declarations with parameters, what an instance gives for them, and the check of a template by itself.
+
+use std::{collections::BTreeSet, rc::Rc};
+
+use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_syntax::ast::{self, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
+
+use crate::check::{
+    checker::Checker,
+    state::{
+        item::Item,
+        scope::Env,
+        template::{BoundParam, Given, Givens, Template},
+    },
+    value::measure,
+};
+use crate::{
+    BinaryOp, EventPattern, Expr, Kind, List, Text, Type, Value,
+    noun::Noun,
+    report::{names, types},
+    types::Layout,
+};
+
+/// Values that stand for the parameters of a template that is checked by itself.
+#[derive(Clone, Copy)]
+pub(in crate::check) enum Trial {
+    Least,
+    Greatest,
+    /// Least and greatest in turn.
+    Mixed,
+    Mirrored,
+}
+
+impl Trial {
+    pub const ALL: [Trial; 4] = [Trial::Greatest, Trial::Least, Trial::Mixed, Trial::Mirrored];
+
+    fn great(self, index: usize) -> bool {
+        match self {
+            Trial::Least => false,
+            Trial::Greatest => true,
+            Trial::Mixed => index.is_multiple_of(2),
+            Trial::Mirrored => !index.is_multiple_of(2),
+        }
+    }
+}
+
+/// A kind of parameter that is no type of values.
+fn kind_word(text: &str) -> Option<Noun> {
+    Some(match text {
+        "event" => Noun::Event,
+        "actor" => Noun::Actor,
+        "cover" => Noun::Point,
+        "place" => Noun::Body,
+        "arm" => Noun::Arm,
+        "gripper" => Noun::Gripper,
+        _ => return None,
+    })
+}
+
+/// What parameters of templates can be besides values.
+pub(in crate::check) const KIND_WORDS: [&str; 6] = ["event", "actor", "cover", "place", "arm", "gripper"];
+
+pub(in crate::check) fn is_kind_word(text: &str) -> bool {
+    kind_word(text).is_some()
+}
+
+/// The kind of a parameter that is no value.
+fn kind_of_param(param: &ast::Param) -> Option<Noun> {
+    match &param.ty {
+        TypeExpr::Named(name) => kind_word(&name.text),
+        TypeExpr::Range(..) | TypeExpr::Array(..) | TypeExpr::List(_) | TypeExpr::Error => None,
+    }
+}
+
+/// The template that an item declares, if it has parameters.
+pub(in crate::check) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)> {
+    let (sort, name, params) = match kind {
+        ItemKind::Agent(a) => (Sort::Agent, &a.name, &a.params),
+        ItemKind::Automaton(a) => (Sort::Automaton, &a.name, &a.params),
+        ItemKind::Require(r) => (Sort::Require, &r.name, &r.params),
+        ItemKind::Cover(c) => (Sort::Cover, &c.name, &c.params),
+        ItemKind::Cross(c) => (Sort::Cross, &c.name, &c.params),
+        ItemKind::Use(_)
+        | ItemKind::Allow(_)
+        | ItemKind::Enum { .. }
+        | ItemKind::Record { .. }
+        | ItemKind::Actor { .. }
+        | ItemKind::Const { .. }
+        | ItemKind::Event(_)
+        | ItemKind::Stimulus(_)
+        | ItemKind::Var(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Query(_)
+        | ItemKind::Network { .. }
+        | ItemKind::Assume(_)
+        | ItemKind::Suite(_)
+        | ItemKind::Part(_)
+        | ItemKind::Device(_)
+        | ItemKind::World(_)
+        | ItemKind::System(_)
+        | ItemKind::Test(_)
+        | ItemKind::Instance(_)
+        | ItemKind::Error => return None,
+    };
+    params.as_deref().map(|params| (sort, Template { kind, name, params }))
+}
+
+impl<'a> Checker<'a> {
+    pub(in crate::check) fn declare_templates(&mut self) {
+        for (item, _) in self.each_item() {
+            let Some((sort, template)) = template(item) else { continue };
+            let name = template.name;
+            let key = (sort, name.text.as_str());
+            if let Some(first) = self.templates.declared.get(&key) {
+                let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
+                self.report(issue);
+                continue;
+            }
+            self.templates.declared.insert(key, template);
+        }
+    }
+
+    /// A name that a template of the sort has already.
+    pub(in crate::check) fn not_a_template(&mut self, sort: Sort, name: &Name) {
+        let first = self.templates.declared.get(&(sort, name.text.as_str())).map(|t| t.name.span);
+        if first.is_some() {
+            self.report(names::duplicate(Noun::Template, &name.text, name.span, first));
+        }
+    }
+
+    pub(in crate::check) fn is_template(&self, text: &str) -> bool {
+        let sorts = [Sort::Agent, Sort::Automaton, Sort::Require, Sort::Cover, Sort::Cross];
+        sorts.into_iter().any(|sort| self.templates.declared.contains_key(&(sort, text)))
+    }
+
+    /// What a name stands for in the instance that is being checked.
+    pub(in crate::check) fn given(&self, name: &str) -> Option<&Given> {
+        self.templates.given.as_ref()?.get(name).map(|bound| &bound.given)
+    }
+
+    /// A name is that of a parameter of the template.
+    pub(in crate::check) fn refer_given(&mut self, name: &Name) {
+        let place =
+            self.templates.given.as_ref().and_then(|given| given.get(&name.text)).map(|bound| bound.place);
+        self.refer(name, place);
+    }
+
+    /// The parameters that stand for something of this kind, or may do so.
+    pub(in crate::check) fn given_names(&self, kind: Noun) -> Vec<String> {
+        let given = self.templates.given.iter().flat_map(|given| given.iter());
+        given.filter(|(_, bound)| bound.given.is(kind)).map(|(name, _)| name.clone()).collect()
+    }
+
+    /// A name that is never bound by a pattern: a constant, a value of an enumeration, a parameter of the template.
+    pub(in crate::check) fn has_value(&self, text: &str) -> bool {
+        self.consts.contains_key(text) || self.types.values.contains_key(text) || self.given(text).is_some()
+    }
+
+    /// The template that an instance is of, and what is given for its parameters.
+    pub(in crate::check) fn instance(
+        &mut self,
+        instance: &'a ast::Instance,
+        env: &Env,
+    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        let made = self.make_instance(instance, env);
+        if made.is_none() {
+            self.templates.broken_instances.insert(instance.name.text.clone());
+        }
+        made
+    }
+
+    fn make_instance(
+        &mut self,
+        instance: &'a ast::Instance,
+        env: &Env,
+    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        let Some(template) =
+            self.templates.declared.get(&(instance.sort, instance.of.text.as_str())).copied()
+        else {
+            let sort = instance.sort;
+            let all: Vec<String> = self
+                .templates
+                .declared
+                .keys()
+                .filter(|(s, _)| *s == sort)
+                .map(|(_, n)| (*n).to_owned())
+                .collect();
+            // That the name is one of a plain declaration says that it has no parameters.
+            self.unknown(Noun::Template, &instance.of, &all, None);
+            return None;
+        };
+        self.refer(&instance.of, Some(template.name.span));
+        let given = self.bind(template.name, template.params, &instance.args, instance.span, env, true)?;
+        Some((template, given))
+    }
+
+    /// What the arguments give for the parameters. `whole`: the world is there, and what they name must be in it.
+    pub(in crate::check) fn bind(
+        &mut self,
+        name: &Name,
+        params: &[ast::Param],
+        args: &[ast::Expr],
+        span: Span,
+        env: &Env,
+        whole: bool,
+    ) -> Option<Rc<Givens>> {
+        if args.len() != params.len() {
+            let names: Vec<&str> = params.iter().map(|p| p.name.text.as_str()).collect();
+            self.report(types::arity(Noun::Template, &name.text, &names, args.len(), span));
+            return None;
+        }
+        let mut given = Givens::default();
+        for (param, arg) in params.iter().zip(args) {
+            let value = match kind_of_param(param) {
+                Some(kind) => self.given_thing(kind, arg, env, whole),
+                None => {
+                    let layout = self.inside(&given, |c| c.layout(&param.ty));
+                    match layout {
+                        Some(layout) => Given::Value(self.item_for(arg, &layout, &mut env.clone())),
+                        None => Given::Unknown,
+                    }
+                }
+            };
+            let bound = BoundParam { given: value, place: param.name.span };
+            given.insert(param.name.text.clone(), bound);
+        }
+        Some(Rc::new(given))
+    }
+
+    /// Something that sees these parameters.
+    fn inside<T>(&mut self, given: &Givens, f: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = self.templates.given.replace(Rc::new(given.clone()));
+        let result = f(self);
+        self.templates.given = outer;
+        result
+    }
+
+    fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &Env, whole: bool) -> Given {
+        if kind == Noun::Event
+            && let Some(patterns) = self.alternatives(arg)
+        {
+            return patterns.map_or(Given::Unknown, Given::Events);
+        }
+        let Syntax::Path(path) = &arg.kind else {
+            if arg.kind != Syntax::Error {
+                self.report(types::needs_name(kind, arg.span));
+            }
+            return Given::Unknown;
+        };
+        if let [name] = path.names.as_slice()
+            && let Some(outer) = self.given(&name.text).cloned()
+        {
+            if outer.is(kind) {
+                return outer;
+            }
+            let issue = names::wrong_kind(kind, Noun::Parameter, &name.text, name.span, []);
+            self.report(issue.help(format!("this parameter does not stand for {}", kind.with_article())));
+            return Given::Unknown;
+        }
+        match (kind, path.names.as_slice()) {
+            (Noun::Actor, [name]) => self.actor(name).map_or(Given::Unknown, Given::Actor),
+            (Noun::Point, [name]) => self.point_named(name).map_or(Given::Unknown, Given::Point),
+            (Noun::Actor | Noun::Point | Noun::Event, _) => {
+                self.report(types::needs_name(kind, arg.span));
+                Given::Unknown
+            }
+            (_, _) => {
+                let prefix = env.world.clone().unwrap_or_default();
+                let known = !whole
+                    || match kind {
+                        Noun::Body => self.body_ref(&path.names, &prefix).is_some(),
+                        _ => self.world_name(kind, &path.names, &prefix).is_some(),
+                    };
+                let full = format!("{prefix}{}", measure::text(&path.names));
+                if known { Given::Thing(kind, full) } else { Given::Unknown }
+            }
+        }
+    }
+
+    /// `a`, `a(true)`, `a or b(_)`: `None` if it is nothing of this form.
+    fn alternatives(&mut self, arg: &ast::Expr) -> Option<Option<Vec<EventPattern>>> {
+        match &arg.kind {
+            Syntax::Binary { op: BinaryOp::Or, left, right } => {
+                let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
+                Some(left.zip(right).map(|(mut l, r)| {
+                    l.extend(r);
+                    l
+                }))
+            }
+            Syntax::Path(path) if path.names.len() == 1 => {
+                let call = ast::Call { name: path.names[0].clone(), args: None, span: arg.span };
+                Some(self.pattern_of(&call))
+            }
+            Syntax::Call { callee, args } if callee.names.len() == 1 => {
+                let args = Some(args.clone());
+                let call = ast::Call { name: callee.names[0].clone(), args, span: arg.span };
+                Some(self.pattern_of(&call))
+            }
+            _ => None,
+        }
+    }
+
+    fn pattern_of(&mut self, call: &ast::Call) -> Option<Vec<EventPattern>> {
+        let before = self.issues.list.len();
+        let patterns = self.patterns(std::slice::from_ref(call));
+        (self.issues.list.len() == before && !patterns.is_empty()).then_some(patterns)
+    }
+
+    // ── the template by itself ──
+
+    /// What the parameters are in the check of the template by itself: some value of their type, or nothing known.
+    fn placeholders(&mut self, params: &[ast::Param], trial: Trial) -> Rc<Givens> {
+        let mut given = Givens::default();
+        for (index, param) in params.iter().enumerate() {
+            let value = if kind_of_param(param).is_some() {
+                Given::Unknown
+            } else {
+                match self.inside(&given, |c| c.layout(&param.ty)) {
+                    Some(layout) => {
+                        Given::Value(self.some_value(&layout, param.name.span, trial.great(index)))
+                    }
+                    None => Given::Unknown,
+                }
+            };
+            let bound = BoundParam { given: value, place: param.name.span };
+            if given.insert(param.name.text.clone(), bound).is_some() {
+                self.report(names::duplicate(Noun::Parameter, &param.name.text, param.name.span, None));
+            }
+        }
+        Rc::new(given)
+    }
+
+    fn some_value(&self, layout: &Layout, span: Span, great: bool) -> Item {
+        let one = |ty: Type| {
+            let value = match ty {
+                Type::Bool => Value::Bool(great),
+                Type::Int { lo, hi } => Value::Int(if great { hi } else { lo }),
+                Type::Float(_) => Value::Float(if great { 1000.0 } else { 1.0 }),
+                Type::Enum(of) => {
+                    let values = of.values();
+                    let value = if great { values.last() } else { values.first() };
+                    value.map_or(Value::Bool(false), |v| Value::Symbol(*v))
+                }
+                Type::Text => Value::Text(Text::new(if great { "b" } else { "a" })),
+                Type::List(_) => Value::List(List::EMPTY),
+            };
+            Item::One(Expr::value(value, Kind::of(ty), span))
+        };
+        match layout {
+            Layout::Scalar(ty) => one(*ty),
+            Layout::Unknown => Item::error(span),
+            Layout::Record(id) => {
+                let fields = &self.types.records[usize::from(*id)].fields;
+                let parts = fields.iter().map(|(_, l)| self.some_value(l, span, great)).collect();
+                Item::Record(*id, parts, span)
+            }
+            Layout::Array(of, n) => {
+                Item::Array((0..*n).map(|_| self.some_value(of, span, great)).collect(), span)
+            }
+        }
+    }
+
+    /// Checks each template of a sort by itself.
+    pub(in crate::check) fn templates_of(&mut self, sort: Sort, check: impl Fn(&mut Self, Template<'a>)) {
+        let of_sort = |((s, _), t): (&(Sort, &'a str), &Template<'a>)| (*s == sort).then_some(*t);
+        let templates: Vec<Template<'a>> = self.templates.declared.iter().filter_map(of_sort).collect();
+        for template in templates {
+            self.by_itself(template.params, |c| check(c, template));
+        }
+    }
+
+    /// Checks something with parameters by itself. Wrong is what is wrong whatever the parameters stand for: with each
+    /// of several values. What is wrong with some values only is found in the instances that give them.
+    pub(in crate::check) fn by_itself(&mut self, params: &[ast::Param], check: impl Fn(&mut Self)) {
+        let before = self.issues.list.len();
+        let mut always: Option<Vec<Diagnostic>> = None;
+        // What is said in one trial may be taken back.
+        let (said, said_of) = (self.issues.said.clone(), self.issues.said_of);
+        for trial in Trial::ALL {
+            let given = self.placeholders(params, trial);
+            let outer = self.templates.given.replace(given);
+            let alone = std::mem::replace(&mut self.templates.by_itself, true);
+            check(self);
+            self.templates.by_itself = alone;
+            self.templates.given = outer;
+            let found = self.issues.list.split_off(before);
+            self.issues.said.clone_from(&said);
+            self.issues.said_of = said_of;
+            let places: BTreeSet<(Code, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
+            let again = |known: &Diagnostic| places.contains(&(known.code, known.span()));
+            always = Some(match always {
+                None => found,
+                Some(known) => known.into_iter().filter(again).collect(),
+            });
+            if always.as_ref().is_some_and(Vec::is_empty) {
+                break;
+            }
+        }
+        self.issues.list.extend(always.unwrap_or_default());
+    }
+
+    /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with
+    /// the instance that it is wrong in.
+    pub(in crate::check) fn as_instance<T>(
+        &mut self,
+        given: Option<Rc<Givens>>,
+        instance: Option<(&Name, Span)>,
+        check: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let Some(given) = given else { return check(self) };
+        let outer = self.templates.given.replace(given);
+        let before = self.issues.list.len();
+        let result = check(self);
+        self.templates.given = outer;
+        self.said_in(before, instance);
+        result
+    }
+
+    /// The diagnostics since then are of an instance: what is new in them is said with the instance.
+    pub(in crate::check) fn said_in(&mut self, before: usize, instance: Option<(&Name, Span)>) {
+        let new = self.issues.list.split_off(before);
+        let found = !new.is_empty();
+        if found {
+            // Each issue is entered once, however many instances there are.
+            let unseen = self.issues.list.get(self.issues.said_of..).unwrap_or_default();
+            self.issues.said.extend(unseen.iter().map(|i| (i.code, i.span())));
+        }
+        for issue in new {
+            if !self.issues.said.insert((issue.code, issue.span())) {
+                continue;
+            }
+            self.issues.list.push(match instance {
+                Some((name, span)) => issue.label(span, format!("in the instance `{}`", name.text)),
+                None => issue,
+            });
+        }
+        if found {
+            self.issues.said_of = self.issues.list.len();
+        }
+    }
+}

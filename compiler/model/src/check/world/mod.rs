@@ -1,0 +1,380 @@
+//! The world: bodies, joints, arms, grippers, signals and rules.
+
+pub(in crate::check) mod device;
+pub(in crate::check) mod parts;
+pub(in crate::check) mod stimulus;
+
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{
+    self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member,
+};
+
+use crate::check::{
+    checker::Checker,
+    state::{scope::Env, world::WorldNames},
+    vocabulary::layout,
+    world::parts::Placed,
+};
+use crate::{
+    ActorId, BodyId, Current, Dim, GripperId, JointId, Kind, Motion, Shape, Value,
+    noun::Noun,
+    report::{names, types, world::bad_world},
+    world::{Arm, Body, Frame, Gripper, Joint, RuleOn, Signal, World, WorldRule},
+};
+
+const LENGTH: Kind = Kind::Float(Dim::LENGTH);
+const ANGLE: Kind = Kind::Float(Dim::ANGLE);
+const NUMBER: Kind = Kind::Float(Dim::NUMBER);
+
+impl<'a> Checker<'a> {
+    pub(in crate::check) fn world(&mut self) {
+        let mut found: Option<Span> = None;
+        for (item, span) in self.each_item() {
+            let ItemKind::World(world) = item else { continue };
+            if let Some(first) = found {
+                self.report(names::twice("world", span, first));
+                continue;
+            }
+            found = Some(span);
+            self.build(&world.members, span);
+        }
+        self.unused_parts();
+    }
+
+    fn build(&mut self, members: &'a [WorldMember], span: Span) {
+        self.s.world = Some(World {
+            step: 0.01,
+            sample: 0.05,
+            gravity: [0.0, 0.0, -9.81],
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            arms: Vec::new(),
+            grippers: Vec::new(),
+            currents: Vec::new(),
+            signals: Vec::new(),
+            rules: Vec::new(),
+            parts: Vec::new(),
+            span,
+        });
+        let placed = self.flatten(members, "", Frame::default(), None);
+        // What is named first must exist first: by kind, not by place.
+        let passes: [fn(&mut Self, &Placed<'a>); 7] = [
+            Self::settings_and_bodies,
+            Self::joint,
+            Self::gripper,
+            Self::arm,
+            Self::current,
+            Self::signals,
+            Self::rules,
+        ];
+        for pass in passes {
+            for p in &placed {
+                let outer = std::mem::replace(&mut self.templates.given, p.given.clone());
+                let before = self.issues.list.len();
+                pass(self, p);
+                self.templates.given = outer;
+                if let Some((name, span)) = &p.instance {
+                    self.said_in(before, Some((name, *span)));
+                }
+            }
+        }
+    }
+
+    /// Parts of the scenario that the world does not use are checked as if they stood alone in a world.
+    fn unused_parts(&mut self) {
+        let own: Vec<&'a ast::Part> = self.source.items[self.source.from_modules..]
+            .iter()
+            .filter_map(|i| if let ItemKind::Part(part) = &i.kind { Some(part) } else { None })
+            .collect();
+        for part in own {
+            if self.s.names.is_used(part.name.span) {
+                continue;
+            }
+            let kept_names = std::mem::take(&mut self.world.names);
+            // What is checked for itself counts, too.
+            self.world.names.members = kept_names.members;
+            let kept_world = self.s.world.take();
+            let kept_flag = std::mem::replace(&mut self.world.exists, true);
+            match &part.params {
+                Some(params) => self.by_itself(params, |c| {
+                    c.world.names = WorldNames::default();
+                    c.build(&part.members, part.name.span);
+                }),
+                None => self.build(&part.members, part.name.span),
+            }
+            let members = self.world.names.members;
+            self.world.names = kept_names;
+            self.world.names.members = members;
+            self.s.world = kept_world;
+            self.world.exists = kept_flag;
+        }
+    }
+
+    pub(in crate::check) fn world_mut(&mut self) -> &mut World {
+        self.s.world.as_mut().expect("`build` has made it")
+    }
+
+    fn settings_and_bodies(&mut self, p: &Placed<'a>) {
+        match &p.member.kind {
+            Member::Step(_) | Member::Sample(_) | Member::Gravity(_) if !p.prefix.is_empty() => {
+                let message = "a part has no step, sample or gravity of its own";
+                self.report(bad_world(p.member.span, message, "write it in the `world`"));
+            }
+            Member::Step(e) => {
+                if let Some(t) = self.time(e, "the step", true) {
+                    self.world_mut().step = t;
+                }
+            }
+            Member::Sample(e) => {
+                if let Some(t) = self.time(e, "the sampling period", true) {
+                    self.world_mut().sample = t;
+                }
+            }
+            Member::Gravity(e) => {
+                if let Some(g) = self.vector(e, NUMBER) {
+                    self.world_mut().gravity = g;
+                }
+            }
+            Member::Body(body) => self.body(p, body),
+            Member::Part { .. }
+            | Member::Joint { .. }
+            | Member::Arm { .. }
+            | Member::Gripper { .. }
+            | Member::Current { .. }
+            | Member::Signal { .. }
+            | Member::Rule(_)
+            | Member::Allow(_)
+            | Member::Error => {}
+        }
+    }
+
+    fn body(&mut self, p: &Placed<'a>, body: &'a ast::Body) {
+        let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic"]) {
+            Some(1) => Motion::Dynamic,
+            Some(2) => Motion::Kinematic,
+            Some(_) | None => Motion::Fixed,
+        };
+        let shape = self.shape(body);
+        let position = self.vector(&body.at, LENGTH).unwrap_or_default();
+        let rotation = body.rotated.as_ref().and_then(|r| self.vector(r, ANGLE)).unwrap_or_default();
+        let mass = body.mass.as_ref().and_then(|m| self.more_than_zero(m, Dim::MASS, "a mass"));
+        if motion == Motion::Dynamic && body.mass.is_none() {
+            let message = format!("the dynamic body `{}` has no mass", body.name.text);
+            self.report(bad_world(body.name.span, message, "add `mass 1 kg`"));
+        }
+        let name = format!("{}{}", p.prefix, body.name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.bodies);
+        if issues.declare_as(table, Noun::Body, &name, body.name.span).is_some() {
+            let body = Body {
+                name,
+                motion,
+                shape: shape.unwrap_or(Shape::Sphere { radius: 0.1 }),
+                frame: p.frame,
+                position,
+                rotation,
+                mass: mass.unwrap_or(0.0),
+                ghost: body.ghost,
+                graspable: body.graspable,
+                span: p.member.span,
+            };
+            self.world_mut().bodies.push(body);
+        }
+    }
+
+    fn shape(&mut self, body: &ast::Body) -> Option<Shape> {
+        let shapes = ["box", "sphere", "capsule", "cylinder"];
+        let usage = ["box(X, Y, Z)", "sphere(RADIUS)", "capsule(RADIUS, LENGTH)", "cylinder(RADIUS, LENGTH)"];
+        let chosen = self.choice(Noun::Shape, &body.shape, &shapes)?;
+        let want = [3, 1, 2, 2][chosen];
+        if body.sizes.len() != want {
+            let span = body.shape.span;
+            let issue = types::counts(Noun::Shape, &body.shape.text, want, body.sizes.len(), span);
+            self.report(issue.help(format!("write `{}`", usage[chosen])));
+            return None;
+        }
+        let sizes: Vec<Option<f64>> =
+            body.sizes.iter().map(|e| self.more_than_zero(e, Dim::LENGTH, "a size")).collect();
+        let size = |i: usize| sizes[i];
+        Some(match chosen {
+            0 => Shape::Box { size: [size(0)?, size(1)?, size(2)?] },
+            1 => Shape::Sphere { radius: size(0)? },
+            2 => Shape::Capsule { radius: size(0)?, length: size(1)? },
+            _ => Shape::Cylinder { radius: size(0)?, length: size(1)? },
+        })
+    }
+
+    fn more_than_zero(&mut self, e: &ast::Expr, dim: Dim, what: &str) -> Option<f64> {
+        let x = self.quantity_of(e, dim)?;
+        if x <= 0.0 {
+            let rule = format!("more than 0 {}", dim.symbol().unwrap_or_default());
+            self.report(types::must_be(what, &rule, e.span));
+            return None;
+        }
+        Some(x)
+    }
+
+    fn local_body(&mut self, name: &Name, prefix: &str) -> Option<BodyId> {
+        self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
+    }
+
+    fn joint(&mut self, p: &Placed<'a>) {
+        let Member::Joint { name, parent, child, at, axis, limits } = &p.member.kind else { return };
+        let bodies = (self.local_body(parent, &p.prefix), self.local_body(child, &p.prefix));
+        if parent.text == child.text {
+            let message = format!("the joint `{}` joins a body to itself", name.text);
+            self.report(bad_world(child.span, message, "name another body"));
+        }
+        let anchor = self.vector(at, LENGTH).unwrap_or_default();
+        let direction = self.vector(axis, NUMBER);
+        if direction == Some([0.0; 3]) {
+            self.report(bad_world(axis.span, "an axis has a direction", "write `axis (0, 0, 1)`"));
+        }
+        let (lo, hi) = self.limits(limits);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
+        if issues.declare_as(table, Noun::Joint, &full, name.span).is_some() {
+            self.world_mut().joints.push(Joint {
+                name: full,
+                parent: bodies.0.unwrap_or(BodyId(0)),
+                child: bodies.1.unwrap_or(BodyId(0)),
+                frame: p.frame,
+                anchor,
+                axis: direction.unwrap_or([0.0, 0.0, 1.0]),
+                lo,
+                hi,
+            });
+        }
+    }
+
+    fn gripper(&mut self, p: &Placed<'a>) {
+        let Member::Gripper { name, palm, tool, reach, delay } = &p.member.kind else { return };
+        let palm = self.local_body(palm, &p.prefix).unwrap_or(BodyId(0));
+        let tool = self.vector(tool, LENGTH).unwrap_or_default();
+        let reach = self.more_than_zero(reach, Dim::LENGTH, "the reach").unwrap_or(0.0);
+        let delay = self.time(delay, "the delay", false).unwrap_or(0.0);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.grippers);
+        if issues.declare_as(table, Noun::Gripper, &full, name.span).is_some() {
+            self.world_mut().grippers.push(Gripper { name: full, palm, tool, reach, delay });
+        }
+    }
+
+    fn limits(&mut self, limits: &ast::Range) -> (f64, f64) {
+        let lo = self.quantity_of(&limits.lo, Dim::ANGLE);
+        let Some(hi) = &limits.hi else {
+            self.report(bad_world(limits.span, "limits have two ends", "write `limits -90 deg .. 90 deg`"));
+            return (0.0, 0.0);
+        };
+        let hi = self.quantity_of(hi, Dim::ANGLE);
+        let (Some(lo), Some(hi)) = (lo, hi) else { return (0.0, 0.0) };
+        if lo > hi {
+            self.report(types::empty_range(Value::Float(lo), Value::Float(hi), limits.span));
+        }
+        (lo, hi)
+    }
+
+    fn arm(&mut self, p: &Placed<'a>) {
+        let Member::Arm { name, joints, tip, tool, speed } = &p.member.kind else { return };
+        let ids: Vec<JointId> = joints
+            .iter()
+            .filter_map(|j| self.world_name(Noun::Joint, std::slice::from_ref(j), &p.prefix))
+            .map(JointId)
+            .collect();
+        let tip_id = self.local_body(tip, &p.prefix);
+        if let (true, Some(tip_id)) = (ids.len() == joints.len(), tip_id) {
+            self.chain(&ids, joints, tip, tip_id);
+        }
+        let tool = self.vector(tool, LENGTH).unwrap_or_default();
+        let speed = self.more_than_zero(speed, Dim::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
+        if issues.declare_as(table, Noun::Arm, &full, name.span).is_some() {
+            let tip = tip_id.unwrap_or(BodyId(0));
+            self.world_mut().arms.push(Arm { name: full, joints: ids, tip, tool, speed });
+        }
+    }
+
+    fn current(&mut self, p: &Placed<'a>) {
+        let Member::Current { name, of, by } = &p.member.kind else { return };
+        let bodies = of.iter().filter_map(|path| self.world_name(Noun::Body, &path.names, &p.prefix));
+        let of: Vec<BodyId> = bodies.map(BodyId).collect();
+        let by = self.world_name(Noun::Gripper, &by.names, &p.prefix).map_or(GripperId(0), GripperId);
+        let full = format!("{}{}", p.prefix, name.text);
+        if let Some(id) = self.world.names.bodies.get(&full) {
+            let first = self.world.names.bodies.span(id);
+            self.report(names::duplicate(Noun::Body, &full, name.span, first));
+        }
+        let (issues, table) = (&mut self.issues, &mut self.world.names.currents);
+        if issues.declare_as(table, Noun::Current, &full, name.span).is_some() {
+            self.world_mut().currents.push(Current { name: full, of, by });
+        }
+    }
+
+    /// An arm's joints follow each other from the base to the tip.
+    fn chain(&mut self, ids: &[JointId], names: &[Name], tip: &Name, tip_id: BodyId) {
+        let joints: Vec<(BodyId, BodyId)> = {
+            let world = self.world_mut();
+            ids.iter().map(|j| &world.joints[usize::from(j.0)]).map(|j| (j.parent, j.child)).collect()
+        };
+        for (pair, name) in joints.windows(2).zip(&names[1..]) {
+            if pair[0].1 != pair[1].0 {
+                let message = format!("the joint `{}` does not follow the one before it", name.text);
+                self.report(bad_world(
+                    name.span,
+                    message,
+                    "name the joints in order, from the base to the tip",
+                ));
+            }
+        }
+        if joints.last().is_some_and(|last| last.1 != tip_id) {
+            let message = format!("the arm's last joint does not move `{}`", tip.text);
+            self.report(bad_world(tip.span, message, "the tip is the child of the last joint"));
+        }
+    }
+
+    fn signals(&mut self, p: &Placed<'a>) {
+        let Member::Signal { name, ty, to, value } = &p.member.kind else { return };
+        self.check_free(&Env::constants(), Noun::Signal, name);
+        let to: Vec<ActorId> = to.iter().filter_map(|a| self.actor(a)).collect();
+        let ty = self
+            .ty(ty)
+            .filter(|of| self.plain(&crate::types::Layout::Scalar(*of), &name.text, layout::type_span(ty)));
+        let mut env = Env::measured(&p.prefix);
+        let value = match ty {
+            Some(ty) => self.expr_for(value, ty, &mut env),
+            None => self.expr(value, &mut env),
+        };
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.signals);
+        if issues.declare_as(table, Noun::Signal, &full, name.span).is_some() {
+            if ty.is_none() {
+                self.world.names.broken.insert(full.clone());
+            }
+            let ty = ty.unwrap_or(crate::Type::Bool);
+            self.world_mut().signals.push(Signal { name: full, ty, to, value, span: p.member.span });
+        }
+    }
+
+    fn rules(&mut self, p: &Placed<'a>) {
+        let Member::Rule(rule) = &p.member.kind else { return };
+        let on = match &rule.on {
+            SyntaxRuleOn::Event(call) => {
+                let mut patterns = self.patterns(std::slice::from_ref(call)).into_iter();
+                let first = patterns.next();
+                if patterns.next().is_some() {
+                    self.report(types::several_events(&call.name.text, call.span));
+                }
+                first.map(RuleOn::Event)
+            }
+            SyntaxRuleOn::Commanded { command, device } => self.commanded(command, device, &p.prefix),
+        };
+        let mut env = Env::measured(&p.prefix);
+        let guard = rule.when.as_ref().map(|e| self.expr_of(e, Kind::Bool, &mut env));
+        let Some(event) = self.event(Noun::Event, &rule.emit.name, None) else { return };
+        let fields = self.fields_of(event);
+        let args = self.args(Noun::Event, &rule.emit, &fields, &mut env);
+        if let Some(on) = on {
+            self.world_mut().rules.push(WorldRule { on, guard, event, args, span: p.member.span });
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! One declaration, whose text has changed, checked again alone: what an editor asks at every key.
+
+use hrdsl_model::{DefinedType, Resolutions};
+use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_syntax::ast::{self, ItemKind};
+
+use crate::Compilation;
+
+/// What is to be said of a declaration with other text.
+#[derive(Clone, Debug)]
+pub struct Recheck {
+    /// Errors, and warnings that need no look at the whole scenario. Places are those in the first file with the new text in
+    /// place of the old.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Whether it declares what it declared before. If it does not, the rest of the scenario is to be checked as well.
+    pub same_names: bool,
+}
+
+/// Checks a declaration of the first file again: the one that holds the byte `at`, as if `text` stood in its place. `None`: no
+/// declaration is there, or the text is not one; or it is a `use` or an `allow`, which speak of others.
+///
+/// Everything else is as it was compiled; of the other declarations no more is looked at than their names.
+#[must_use]
+pub fn recheck(compilation: &Compilation, at: usize, text: &str) -> Option<Recheck> {
+    let scenario = compilation.ast.first()?;
+    let index = scenario.items.iter().position(|item| item.span.range().contains(&at))?;
+    let old = &scenario.items[index];
+    let mut files = compilation.files.clone();
+    let file = files.add("declaration", text);
+    let (read, mut diagnostics) = hrdsl_syntax::parse(file, text);
+    let [item] = read.items.as_slice() else { return None };
+    if read.scenario.is_some() || [old, item].iter().any(|i| is_of_the_whole(&i.kind)) {
+        return None;
+    }
+    let modules: Vec<&ast::File> =
+        compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
+    let missing = compilation.diagnostics.iter().any(|d| d.code == Code::UNKNOWN_MODULE);
+    diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, missing));
+    let same_names = declares(&files, old) == declares(&files, item);
+    let moved = Moved { alone: file, old: old.span, len: text.len() };
+    diagnostics.iter_mut().for_each(|d| moved.diagnostic(d));
+    diagnostics.sort_by_key(|d| (d.span(), d.code));
+    Some(Recheck { diagnostics, same_names })
+}
+
+fn is_of_the_whole(kind: &ItemKind) -> bool {
+    matches!(kind, ItemKind::Use(_) | ItemKind::Allow(_))
+}
+
+/// What the rest of a scenario sees of a declaration. Of some all is seen: the value of a constant, the parts of the world.
+fn declares(files: &hrdsl_source::Files, item: &ast::Item) -> Vec<(&'static str, String, String)> {
+    let whole = match &item.kind {
+        ItemKind::Agent(_)
+        | ItemKind::Automaton(_)
+        | ItemKind::Stimulus(_)
+        | ItemKind::Require(_)
+        | ItemKind::Assume(_)
+        | ItemKind::Query(_)
+        | ItemKind::Suite(_)
+        | ItemKind::System(_)
+        | ItemKind::Test(_) => String::new(),
+        ItemKind::Use(_)
+        | ItemKind::Allow(_)
+        | ItemKind::Enum { .. }
+        | ItemKind::Record { .. }
+        | ItemKind::Actor { .. }
+        | ItemKind::Const { .. }
+        | ItemKind::Event(_)
+        | ItemKind::Var(_)
+        | ItemKind::Channel(_)
+        | ItemKind::Function(_)
+        | ItemKind::Network { .. }
+        | ItemKind::Cover(_)
+        | ItemKind::Cross(_)
+        | ItemKind::Part(_)
+        | ItemKind::Device(_)
+        | ItemKind::World(_)
+        | ItemKind::Instance(_)
+        | ItemKind::Error => files.text(item.span).to_owned(),
+    };
+    let names = Resolutions::of_declaration(item);
+    let ty = |ty: &DefinedType| match ty {
+        DefinedType::None => String::new(),
+        DefinedType::Written(span) => files.text(*span).to_owned(),
+        DefinedType::Inferred(ty) => ty.clone(),
+    };
+    let names = names.definitions().map(|d| (d.noun, d.name.clone(), ty(&d.ty)));
+    names.chain([("", whole, String::new())]).collect()
+}
+
+/// How places change when the text of a declaration does.
+struct Moved {
+    /// The file that held the new text alone.
+    alone: FileId,
+    old: Span,
+    /// Of the new text, in bytes.
+    len: usize,
+}
+
+impl Moved {
+    fn diagnostic(&self, of: &mut Diagnostic) {
+        of.labels.iter_mut().for_each(|label| label.span = self.span(label.span));
+        let edits = of.fixes.iter_mut().flat_map(|fix| &mut fix.edits);
+        edits.for_each(|edit| edit.span = self.span(edit.span));
+    }
+
+    fn span(&self, span: Span) -> Span {
+        let start = self.old.start as usize;
+        let at = |n: u32| match span.file {
+            file if file == self.alone => start + n as usize,
+            FileId(0) if n >= self.old.end => n as usize - self.old.range().len() + self.len,
+            _ => n as usize,
+        };
+        let file = if span.file == self.alone { FileId(0) } else { span.file };
+        Span::new(file, at(span.start), at(span.end))
+    }
+}
