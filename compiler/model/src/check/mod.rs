@@ -93,6 +93,9 @@ fn source<'a>(own: Vec<&'a ast::Item>, modules: &[&'a ast::File], missing: bool)
     }
 }
 
+/// A phase's work.
+type Check<'a> = fn(&mut Checker<'a>);
+
 fn phases<'a>(
     source: Source<'a>,
     name: Option<&ast::Name>,
@@ -103,7 +106,7 @@ fn phases<'a>(
     checker.vocabulary();
     checker.devices();
     checker.world();
-    let later: [(Phase, fn(&mut Checker<'a>)); 8] = [
+    let later: [(Phase, Check<'a>); 8] = [
         (Phase::Stimuli, Checker::stimuli),
         (Phase::Agents, Checker::agents),
         (Phase::Automata, Checker::automata),

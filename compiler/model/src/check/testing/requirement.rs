@@ -34,10 +34,8 @@ impl Checker<'_> {
                     let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
                     self.requirement(&instance.name, resolved, instance.span, span);
                 }
-                ItemKind::Assume(assume) => {
-                    if self.source.looks_at(Phase::Requirements, span) {
-                        self.assume(assume, span);
-                    }
+                ItemKind::Assume(assume) if self.source.looks_at(Phase::Requirements, span) => {
+                    self.assume(assume, span);
                 }
                 _ => {}
             }
