@@ -181,3 +181,38 @@ fn whoever_allows_what_a_lint_forbids_says_why() {
     assert!(seen > 20, "only {seen} were found: does the test still see them?");
     assert!(faults.is_empty(), "{faults}");
 }
+
+/// Which crates deny which of the two lints, as CONTRIBUTING.md says and as they do.
+#[test]
+fn the_table_of_lints_is_true() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).unwrap();
+    let folder_of = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        (cells[1].to_owned(), cells[2].to_owned())
+    };
+    let crates = read("ARCHITECTURE.md");
+    let crates = crates.lines().filter(|l| l.starts_with("| hrdsl")).map(folder_of);
+    let contributing = read("CONTRIBUTING.md");
+    let mut faults = String::new();
+    for (name, folder) in crates.filter(|(name, _)| name != "hrdsl-tests") {
+        let row = contributing.lines().find(|l| l.starts_with(&format!("| {name} |")));
+        let Some(row) = row else {
+            faults += &format!("{name} is not in the table\n");
+            continue;
+        };
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let library = root().join(&folder).join("src/lib.rs");
+        let text = fs::read_to_string(library).unwrap_or_else(|_| read(&format!("{folder}/src/main.rs")));
+        let denied = text.lines().find(|l| l.contains("deny(clippy::")).unwrap_or_default();
+        for (lint, count, said) in
+            [("wildcard_enum_match_arm", cells[2], cells[4]), ("indexing_slicing", cells[3], cells[5])]
+        {
+            let is_denied = denied.contains(lint);
+            if said != if is_denied { "yes" } else { "no" } || (count == "0" && !is_denied) {
+                faults +=
+                    &format!("{name}: {lint}: {count}, denied: {said}, and in the source: {is_denied}\n");
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults}");
+}
