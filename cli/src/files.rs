@@ -13,9 +13,12 @@ use crate::{fault::Fault, terminal};
 /// # Errors
 /// The file's name and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, Fault> {
-    let fault = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => format!("no such file: {}", terminal::shown(path)),
-        _ => format!("cannot read {}: {e}", terminal::shown(path)),
+    let fault = |e: std::io::Error| {
+        if e.kind() == std::io::ErrorKind::NotFound {
+            format!("no such file: {}", terminal::shown(path))
+        } else {
+            format!("cannot read {}: {e}", terminal::shown(path))
+        }
     };
     let mut bytes = Vec::new();
     // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.

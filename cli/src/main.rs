@@ -1,5 +1,6 @@
-//! `hrdsl`, the command line: one file for each command; the only place with clap, stdout and files.
-
+//! `hrdsl`, the command line: one file for each command; the only place with clap and stdout, and with the files of
+//! scenarios and results.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 #![warn(
     clippy::print_stdout,
     clippy::print_stderr,

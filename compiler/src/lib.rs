@@ -8,6 +8,7 @@
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!
 //! [`compile`] does them all. [`recheck`] does the first three for one declaration whose text has changed.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod allow;
 mod beside;

@@ -2,6 +2,7 @@
 //!
 //! Each form is a template in `templates/` with places for lists of words; [`generated`] fills them. The results are
 //! committed where the editors expect them, and a test fails when they are not what comes out here.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod template;
 pub mod words;

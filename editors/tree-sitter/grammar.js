@@ -767,7 +767,7 @@ module.exports = grammar({
       ),
     world_declaration: ($) => seq(keyword($, "world"), field("body", $.world_body)),
     world_body: ($) =>
-      block($, 
+      block($,
         choice(
           alias($._world_setting, $.setting),
           $.placement,

@@ -1,3 +1,4 @@
+//! The whole compiler, on a scenario, a module and tests in one input.
 #![no_main]
 
 #[path = "../targets.rs"]

@@ -1,3 +1,4 @@
+//! The formatter, on any text.
 #![no_main]
 
 #[path = "../targets.rs"]

@@ -1,3 +1,4 @@
+//! The lexer, on any text.
 #![no_main]
 
 #[path = "../targets.rs"]

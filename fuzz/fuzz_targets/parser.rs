@@ -1,3 +1,4 @@
+//! The parser, on any text.
 #![no_main]
 
 #[path = "../targets.rs"]

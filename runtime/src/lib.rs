@@ -11,6 +11,7 @@
 //!
 //! Besides, [`prove`] asks the networks of automata themselves. Each of these is a crate, for a build that leaves out what it
 //! does not need.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub use hrdsl_campaign as campaign;
 pub use hrdsl_harness as harness;

@@ -1,4 +1,5 @@
 //! The standard modules, embedded: `std.robots.bert2` is `stdlib/robots/bert2.hri`.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 /// The module that every scenario has without using it: what devices can be told.
 pub const DEVICES: &str = "std.devices";

@@ -9,7 +9,7 @@ mod answers;
 #[path = "../../runtime/ta/tests/common/oracle/mod.rs"]
 mod oracle;
 #[path = "spec/page.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "the pages of the specification need the rest")]
 mod page;
 
 use std::{collections::BTreeSet, fs};

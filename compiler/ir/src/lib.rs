@@ -5,6 +5,7 @@
 //!
 //! All quantities are in SI units (metre, second, radian, kilogram, newton and what is made of them) as `f64`; all times that an engine counts
 //! with are integer nanoseconds ([`Nanos`]).
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 pub mod bdi;
 pub mod coverage;

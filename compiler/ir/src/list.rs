@@ -263,10 +263,12 @@ pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError
         (F::Empty, [Value::Text(t)]) => Ok(Some(Value::Bool(t.as_str().is_empty()))),
         (F::Prefix | F::Suffix | F::Sublist, [Value::Text(a), Value::Text(b)]) => {
             let (a, b) = (a.as_str(), b.as_str());
-            Ok(Some(Value::Bool(match f {
-                F::Prefix => b.starts_with(a),
-                F::Suffix => b.ends_with(a),
-                _ => b.contains(a),
+            Ok(Some(Value::Bool(if f == F::Prefix {
+                b.starts_with(a)
+            } else if f == F::Suffix {
+                b.ends_with(a)
+            } else {
+                b.contains(a)
             })))
         }
         (F::Prefix | F::Suffix | F::Sublist, [Value::List(a), Value::List(b)]) => {
@@ -275,10 +277,12 @@ pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError
                 let part = b.get(from..from + a.len());
                 part.is_some_and(|p| p.iter().zip(&a).all(|(x, y)| same(*x, *y)))
             };
-            Ok(Some(Value::Bool(match f {
-                F::Prefix => at(0),
-                F::Suffix => b.len() >= a.len() && at(b.len() - a.len()),
-                _ => (0..=b.len()).any(at),
+            Ok(Some(Value::Bool(if f == F::Prefix {
+                at(0)
+            } else if f == F::Suffix {
+                b.len() >= a.len() && at(b.len() - a.len())
+            } else {
+                (0..=b.len()).any(at)
             })))
         }
         (
@@ -305,10 +309,7 @@ pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError
 
 fn concat(args: &[Value]) -> Result<Option<Value>, EvalError> {
     if args.iter().any(|a| matches!(a, Value::Text(_))) {
-        let text = |v: &Value| match v {
-            Value::Text(t) => t.as_str().to_owned(),
-            other => other.to_string(),
-        };
+        let text = |v: &Value| if let Value::Text(t) = v { t.as_str().to_owned() } else { v.to_string() };
         let all: String = args.iter().map(text).collect();
         return Ok(Some(Value::Text(Text::new(&all))));
     }

@@ -66,6 +66,7 @@ impl Diagnostic {
 
     /// The text at the primary span.
     #[must_use]
+    #[expect(clippy::indexing_slicing, reason = "the first label is made with the diagnostic")]
     pub fn here(mut self, text: impl Into<String>) -> Self {
         self.labels[0].text = text.into();
         self
@@ -100,6 +101,7 @@ impl Diagnostic {
 
     /// The place of the fault.
     #[must_use]
+    #[expect(clippy::indexing_slicing, reason = "the first label is made with the diagnostic")]
     pub fn span(&self) -> Span {
         self.labels[0].span
     }

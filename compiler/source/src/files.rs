@@ -109,7 +109,7 @@ impl SourceFile {
     }
 
     fn start_of(&self, line: usize) -> usize {
-        self.line_starts[line] as usize
+        self.line_starts.get(line).map_or(self.text.len(), |start| *start as usize)
     }
 
     /// How many characters begin before this byte.
@@ -117,7 +117,7 @@ impl SourceFile {
         let byte = byte.min(self.text.len());
         let block = (byte / BLOCK).min(self.chars_before.len().saturating_sub(1));
         let before = self.chars_before.get(block).copied().unwrap_or(0);
-        before + starts(&self.text.as_bytes()[(block * BLOCK).min(byte)..byte])
+        before + self.text.as_bytes().get((block * BLOCK).min(byte)..byte).map_or(0, starts)
     }
 }
 

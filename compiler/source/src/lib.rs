@@ -1,4 +1,5 @@
 //! Where text came from: spans, files, line index, diagnostics and the registry of diagnostic codes.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod codes;
 mod diagnostic;

@@ -34,11 +34,8 @@ pub(crate) fn expr(e: &model::Expr, read: &mut dyn FnMut(Source) -> Expr) -> Exp
             Expr::List(items, rest)
         }
         ExprKind::Element(of) => {
-            let slot = match read(Source::Leaf(of.slot)) {
-                Expr::Var(slot) => slot,
-                // INVARIANT: only automata and functions choose elements at run time, and their leaves are variables.
-                _ => u16::MAX,
-            };
+            // INVARIANT: only automata and functions choose elements at run time, and their leaves are variables.
+            let slot = if let Expr::Var(slot) = read(Source::Leaf(of.slot)) { slot } else { u16::MAX };
             let index = |i: &model::Index| Index { at: expr(&i.at, read), count: i.count, stride: i.stride };
             let indices = of.indices.iter().map(index).collect();
             Expr::Element(Box::new(Place { slot, indices }))

@@ -26,7 +26,7 @@ mod run;
 pub mod token;
 mod words;
 
-#[allow(clippy::all, clippy::pedantic, unused, missing_docs)]
+#[allow(clippy::all, clippy::pedantic, unused, missing_docs, reason = "lalrpop writes it")]
 mod grammar {
     lalrpop_util::lalrpop_mod!(generated, "/grammar.rs");
     pub use generated::UnitParser;

@@ -181,10 +181,8 @@ impl LogNames<'_, '_> {
             ApplicabilityVerdict::Applicable => format!("{label} is applicable"),
             ApplicabilityVerdict::False { part } => {
                 let plan = &self.agent.plans[usize::from(plan)];
-                let context = match &plan.context {
-                    Context::And(all) => all.get(part).unwrap_or(&plan.context),
-                    other => other,
-                };
+                let parts = if let Context::And(all) = &plan.context { all.get(part) } else { None };
+                let context = parts.unwrap_or(&plan.context);
                 // What the event says is known; what the parts before found is not, and need not be the same each time.
                 let mut slots = vec![None; plan.vars.len()];
                 let likes =
@@ -212,24 +210,23 @@ impl LogNames<'_, '_> {
             | TriggerOn::TestFailed(_) => &on[1..],
             TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => on.as_str(),
         };
-        let cause = match failure.cause {
-            FailureCause::NoValue(error) => self.fault(failure.plan, BeliefQueryError::NoValue(error)),
-            other => other.to_string(),
+        let cause = if let FailureCause::NoValue(error) = failure.cause {
+            self.fault(failure.plan, BeliefQueryError::NoValue(error))
+        } else {
+            failure.cause.to_string()
         };
         format!("{goal} in {}: {cause}", self.plan(failure.plan))
     }
 
     /// A fault with the name of the variable.
     fn fault(&self, plan: u16, fault: BeliefQueryError) -> String {
-        match fault {
-            BeliefQueryError::NoValue(EvalError::Unbound(u16::MAX)) => "`_` has no value".to_owned(),
-            BeliefQueryError::NoValue(EvalError::Unbound(var)) => {
-                let plan = self.agent.plans.get(usize::from(plan));
-                let name = plan.and_then(|p| p.vars.get(usize::from(var)));
-                format!("`{}` has no value", name.map_or("?", |n| n))
-            }
-            other => other.to_string(),
+        let BeliefQueryError::NoValue(EvalError::Unbound(var)) = fault else { return fault.to_string() };
+        if var == u16::MAX {
+            return "`_` has no value".to_owned();
         }
+        let plan = self.agent.plans.get(usize::from(plan));
+        let name = plan.and_then(|p| p.vars.get(usize::from(var)));
+        format!("`{}` has no value", name.map_or("?", |n| n))
     }
 
     fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: StepOutcome) -> String {

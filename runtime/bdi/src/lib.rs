@@ -19,6 +19,7 @@
 //! event) → `query` (answers of a formula in `belief`s and rules, with `unify`) → `step` (a line of `code`; `block`, `control`,
 //! `mail`) → `recover` (plans that end or fail, on the stacks of `intention`). `repeat` finds livelocks, `bounds` agents that hold too much; `log`, `describe`, `show` and
 //! `measure` tell.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod belief;
 mod block;

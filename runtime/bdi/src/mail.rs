@@ -122,9 +122,10 @@ impl<'p> AgentMachine<'p> {
         crate::unify::well_bound(terms, slots)?;
         let mut args = Args::new();
         for term in terms {
-            let value = match term {
-                Term::Expr(expr) if closed => Some(eval(expr, slots)?),
-                _ => known(term, slots),
+            let value = if closed && let Term::Expr(expr) = term {
+                Some(eval(expr, slots)?)
+            } else {
+                known(term, slots)
             };
             if closed && value.is_none() {
                 let variable = if let Term::Var(v) = term { *v } else { u16::MAX };
@@ -343,28 +344,25 @@ impl<'p> AgentMachine<'p> {
         let line = self.mind.library.code(top.plan).get(usize::from(top.at));
         let Some(PlanOp::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
         let step: &'p StepKind = step;
-        match step {
-            StepKind::Ask { args, .. } => {
-                let answer = answers.first().ok_or(FailureCause::NoAnswer)?;
-                let vars = self.mind.pool.at(place).vars_mut();
-                let fits = unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(FailureCause::NoAnswer) }
-            }
-            StepKind::AskAll { template, args, out, .. } => {
-                let vars = self.mind.pool.see(place).vars();
-                let mut all = Vec::new();
-                for answer in answers {
-                    let mut own = vars.to_vec();
-                    if unify_all(args, answer.iter().copied(), 0, &mut own, &mut Trail::new())? {
-                        all.push(eval(template, &own)?);
-                    }
+        let fits = if let StepKind::Ask { args, .. } = step {
+            let answer = answers.first().ok_or(FailureCause::NoAnswer)?;
+            let vars = self.mind.pool.at(place).vars_mut();
+            unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?
+        } else if let StepKind::AskAll { template, args, out, .. } = step {
+            let vars = self.mind.pool.see(place).vars();
+            let mut all = Vec::new();
+            for answer in answers {
+                let mut own = vars.to_vec();
+                if unify_all(args, answer.iter().copied(), 0, &mut own, &mut Trail::new())? {
+                    all.push(eval(template, &own)?);
                 }
-                let vars = self.mind.pool.at(place).vars_mut();
-                let fits = unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?;
-                if fits { Ok(()) } else { Err(FailureCause::NoAnswer) }
             }
+            let vars = self.mind.pool.at(place).vars_mut();
+            unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?
+        } else {
             // INVARIANT: only these two ask.
-            _ => Ok(()),
-        }
+            true
+        };
+        if fits { Ok(()) } else { Err(FailureCause::NoAnswer) }
     }
 }

@@ -39,10 +39,7 @@ impl AgentCounts {
     #[must_use]
     pub fn new(agent: &Agent) -> Self {
         let plans = agent.plans.len();
-        let parts = |context: &Context| match context {
-            Context::And(all) => all.len(),
-            _ => 1,
-        };
+        let parts = |context: &Context| if let Context::And(all) = context { all.len() } else { 1 };
         Self {
             selected: vec![0; plans],
             completed: vec![0; plans],

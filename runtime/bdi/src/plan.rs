@@ -131,13 +131,16 @@ fn named_goals(program: &Program, id: AgentId, agent: &Agent) -> Vec<bool> {
     let mut named = vec![false; agent.goals.len()];
     for plan in &agent.plans {
         in_context(&plan.context, &mut named);
-        each_step(&plan.body, &mut |step| match &step.kind {
-            StepKind::Control { goal: Some((goal, _)), .. } => name(*goal, &mut named),
-            StepKind::Test(condition)
+        each_step(&plan.body, &mut |step| {
+            if let StepKind::Control { goal: Some((goal, _)), .. } = &step.kind {
+                name(*goal, &mut named);
+            } else if let StepKind::Test(condition)
             | StepKind::If { condition, .. }
             | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } => in_context(condition, &mut named),
-            _ => {}
+            | StepKind::For { condition, .. } = &step.kind
+            {
+                in_context(condition, &mut named);
+            }
         });
     }
     agent.rules.iter().for_each(|rule| in_context(&rule.body, &mut named));

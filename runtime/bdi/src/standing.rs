@@ -27,12 +27,13 @@ pub struct IntentionSummary {
 impl AgentMachine<'_> {
     /// The event that an entry is about, if it is about the choice of a plan.
     pub fn event_of(&self, entry: &LogEntry) -> Option<String> {
-        match &entry.what {
-            LogItem::Selected { on, args, .. }
-            | LogItem::Tried { on, args, .. }
-            | LogItem::Unhandled { on, args, .. } => Some(self.names()?.on(*on, args)),
-            _ => None,
-        }
+        let (LogItem::Selected { on, args, .. }
+        | LogItem::Tried { on, args, .. }
+        | LogItem::Unhandled { on, args, .. }) = &entry.what
+        else {
+            return None;
+        };
+        Some(self.names()?.on(*on, args))
     }
 
     /// What it intends, in the order of adoption.

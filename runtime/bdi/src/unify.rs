@@ -31,13 +31,14 @@ pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
 /// The whole number that a constant or a variable is.
 #[inline]
 fn whole(expr: &Expr, slots: &[Slot]) -> Option<i64> {
-    match expr {
-        Expr::Const(Value::Int(n)) => Some(*n),
-        Expr::Var(i) => match slots.get(usize::from(*i)) {
-            Some(Some(Value::Int(n))) => Some(*n),
-            _ => None,
-        },
-        _ => None,
+    if let Expr::Const(Value::Int(n)) = expr {
+        Some(*n)
+    } else if let Expr::Var(i) = expr
+        && let Some(Some(Value::Int(n))) = slots.get(usize::from(*i))
+    {
+        Some(*n)
+    } else {
+        None
     }
 }
 
@@ -58,12 +59,11 @@ fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[Slot]) -> Result<Value, Ev
             }
         };
     }
-    match op {
-        BinaryOp::And | BinaryOp::Or => {
-            let left = eval(a, slots)?.as_bool().ok_or(EvalError::Type)?;
-            if left == (op == BinaryOp::Or) { Ok(Value::Bool(left)) } else { eval(b, slots) }
-        }
-        _ => binary(op, eval(a, slots)?, eval(b, slots)?),
+    if matches!(op, BinaryOp::And | BinaryOp::Or) {
+        let left = eval(a, slots)?.as_bool().ok_or(EvalError::Type)?;
+        if left == (op == BinaryOp::Or) { Ok(Value::Bool(left)) } else { eval(b, slots) }
+    } else {
+        binary(op, eval(a, slots)?, eval(b, slots)?)
     }
 }
 

@@ -1,4 +1,5 @@
 //! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod tally;
 

@@ -59,6 +59,7 @@ impl CoverageCollector {
     }
 
     /// An event happened. It counts once for a point, however many of the point's patterns it matches.
+    #[expect(clippy::indexing_slicing, reason = "`by_event` and `numbers` are made from these points")]
     pub fn event(&mut self, event: EventId, args: &[Value]) {
         for &point in self.by_event.get(usize::from(event.0)).into_iter().flatten() {
             if self.declared.points[point].count.iter().any(|p| p.matches(event, args)) {

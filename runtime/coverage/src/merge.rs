@@ -65,6 +65,7 @@ impl MergedCoverage {
     ///
     /// # Errors
     /// [`CoverageMismatchError`]; then nothing is added.
+    #[expect(clippy::indexing_slicing, reason = "`fits` has compared the bins")]
     pub fn add(&mut self, test: &str, coverage: &TestCoverage) -> Result<(), CoverageMismatchError> {
         fits(&self.points, &coverage.points)?;
         fits(&self.crosses, &coverage.crosses)?;

@@ -9,6 +9,7 @@
 //! - a [`WorldBackend`] holds the bodies, and says when it next changes by itself;
 //! - a [`SystemActor`] plays the system actor: it asks, and is answered, by a [`SystemPlayer`];
 //! - a [`TimeSource`] lets time pass: at once, or as the outside wants.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod argument;
 mod clock;

@@ -9,6 +9,7 @@
 //! 3. [`TraceJudge::finish`] gives the [`Judgement`].
 //!
 //! [`judge_recording`] does all three with a recording, which it reads in one pass.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod recording;
 
@@ -62,6 +63,7 @@ impl TraceObserver for TraceJudge<'_> {
     }
 }
 
+#[expect(clippy::indexing_slicing, reason = "the verdicts are of this program's monitors")]
 fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult {
     let monitor = &program.monitors[verdict.monitor];
     let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());

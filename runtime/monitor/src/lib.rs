@@ -11,6 +11,7 @@
 //! 3. [`TraceObserver::end`] fires the deadlines reached up to and including the end of the run: the time of such an
 //!    obligation is over, and no event can meet it any more.
 //! 4. [`MonitorRunner::verdicts`] judges.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod latest;
 mod machine;

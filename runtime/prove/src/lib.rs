@@ -9,6 +9,7 @@
 //! [Assumptions](hrdsl_ir::monitor::Assumption) restrict the model. Those about the whole test are limits of the search. Those
 //! with a window are first left out: what cannot happen without them cannot happen with them, and a witness that keeps them
 //! counts. Only if neither decides are they added as automata of their own ([`ObservedNetwork::restrict`]).
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod goals;
 pub mod held;

@@ -5,6 +5,7 @@
 //! - [`explain_text`] says what a suite's tests are for;
 //! - [`text`] cleans. Whatever comes from a scenario, a test or a robot program is untrusted: it is cleaned and escaped before
 //!   it reaches a terminal, a browser or an XML parser.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod facts;
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! - [`Results`] is the file `results.json`; [`Results::to_json`] writes it, [`Results::from_json`] reads it back.
 //! - [`TestResult`] is one test: how its run ended, and the [`Judgement`] on it.
 //! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod code;
 mod judgement;

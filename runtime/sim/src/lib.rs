@@ -19,6 +19,7 @@
 //! The same calls give the same bits, on every platform with IEEE 754 arithmetic. The physics runs on a grid of steps
 //! that begins when the world leaves its rest, so that it does not matter in which pieces time is advanced; what is asked
 //! for between two steps takes effect from then on. The engine computes in single precision.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod arm;
 mod command;

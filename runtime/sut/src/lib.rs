@@ -13,6 +13,7 @@
 //!
 //! Whatever the program does (die, hang, flood its output, write rubbish) is a [`SutError`], never a panic and never a
 //! blocked harness. The protocol is `spec/protocol.md`.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod affinity;
 pub mod cell;

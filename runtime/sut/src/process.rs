@@ -152,7 +152,10 @@ impl Process {
     /// # Errors
     /// [`SutError::Exited`], [`SutError::Overrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
     /// system fails. After an error, [`finish`](Self::finish) is the only sensible call.
-    #[allow(clippy::should_implement_trait)] // not an iterator: each request must be answered first
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "no iterator: each request must be answered before the next"
+    )]
     pub fn next(&mut self) -> Result<Request, SutError> {
         let mut patience = Patience::new(self.limits.budget);
         let mut refused = 0_usize;

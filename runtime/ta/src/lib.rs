@@ -35,6 +35,7 @@
 //!
 //! An event is one occurrence: the body of a stimulus is not executed, so a model that speaks of a stimulus's events
 //! sends them itself.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod decide;
 pub mod local;

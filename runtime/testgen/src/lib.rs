@@ -8,6 +8,7 @@
 //! 3. [`concrete`] draws the second tier's values: test number n of a suite has seed n (Section "Experimental setup");
 //! 4. [`model`] says what of the agents' programs was reached, what each test is for, and why goals stayed uncovered;
 //! 5. [`write`] prints tests in the language.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod agents;
 mod bins;

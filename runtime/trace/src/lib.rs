@@ -1,11 +1,12 @@
 //! `Trace`: what happened in one run.
 //!
 //! This is the waist between execution, which makes it, and judgement (monitors, coverage, reports), which reads it and
-//! nothing else. A run in virtual time on a model, a run in simulation and a recording of a real robot all have this form.
+//! nothing else. A run in virtual time on a model, a run in simulation and a recording, whoever wrote it, all have this form.
 //!
 //! A trace is kept as text: [`record`] writes the recording format, [`parse`] reads it back, step by step if it is long.
 //! [`print`] shows a step to people, [`decimal`] turns nanoseconds into seconds and back without loss, [`vocabulary`] tells
 //! scenarios apart whose recordings are not each other's. `spec/traces.md` defines the format.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub mod decimal;
 pub mod parse;

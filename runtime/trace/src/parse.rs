@@ -244,14 +244,14 @@ impl<'a> StepReader<'a> {
         let params = &self.program.event(event).params;
         let mut args: Vec<Option<Value>> = vec![None; params.len()];
         for (arg, json) in given {
-            let Some(index) = params.iter().position(|p| p.name == arg) else {
+            let Some((param, place)) = params.iter().zip(&mut args).find(|(p, _)| p.name == arg) else {
                 let near = nearest(&arg, params.iter().map(|p| p.name.as_str()));
                 return Err(LineProblem::UnknownArgument { event: name.to_owned(), name: arg, near });
             };
-            if args[index].is_some() {
+            if place.is_some() {
                 return Err(LineProblem::DoubleArgument { event: name.to_owned(), name: arg });
             }
-            args[index] = Some(typed(&arg, params[index].ty, &json)?);
+            *place = Some(typed(&arg, param.ty, &json)?);
         }
         let missing =
             |param: &Param| LineProblem::MissingArgument { event: name.to_owned(), name: param.name.clone() };
@@ -259,6 +259,7 @@ impl<'a> StepReader<'a> {
         Ok(TraceStepKind::Event { event, args: all.collect::<Result<_, _>>()? })
     }
 
+    #[expect(clippy::indexing_slicing, reason = "the names are of this program's signals")]
     fn sample(&self, name: &str, json: &Json) -> Result<TraceStepKind, LineProblem> {
         let Some(&signal) = self.signals.get(name) else {
             let near = nearest(name, self.signals.keys().copied());
@@ -330,6 +331,7 @@ fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Strin
 }
 
 /// How many letters have to be added, dropped or changed (Levenshtein's edit distance).
+#[expect(clippy::indexing_slicing, reason = "the row has a place for each letter, and one before them")]
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

@@ -143,17 +143,14 @@ fn fact(
 /// Where a belief's declaration ends, and whether it says what is believed at the start.
 fn declaration(compilation: &Compilation, wanted: &str, origin: hrdsl_source::Span) -> Option<(usize, bool)> {
     let file = compilation.ast.get(usize::from(origin.file.0))?;
-    let agents = file.items.iter().filter_map(|item| match &item.kind {
-        ast::ItemKind::Agent(agent) => Some(agent),
-        _ => None,
+    let agents = file.items.iter().filter_map(|item| {
+        let ast::ItemKind::Agent(agent) = &item.kind else { return None };
+        Some(agent)
     });
-    agents.flat_map(|a| &a.members).find_map(|member| match &member.kind {
-        ast::AgentMemberKind::Belief { name, initial, .. } => {
-            let is_it =
-                name.text == wanted && member.span.start <= origin.start && origin.end <= member.span.end;
-            is_it.then_some((member.span.range().end, !initial.is_empty()))
-        }
-        _ => None,
+    agents.flat_map(|a| &a.members).find_map(|member| {
+        let ast::AgentMemberKind::Belief { name, initial, .. } = &member.kind else { return None };
+        let is_it = name.text == wanted && member.span.start <= origin.start && origin.end <= member.span.end;
+        is_it.then_some((member.span.range().end, !initial.is_empty()))
     })
 }
 

@@ -102,10 +102,8 @@ fn asked_networks(args: &Args, program: &Program) -> Result<Vec<String>, Fault> 
 /// The names of the queries that there are.
 fn names(compilation: &Compilation) -> Vec<String> {
     let items = compilation.ast.iter().flat_map(|f| &f.items);
-    let query = |i: &ast::Item| match &i.kind {
-        ast::ItemKind::Query(q) => Some(q.name.text.clone()),
-        _ => None,
-    };
+    let query =
+        |i: &ast::Item| if let ast::ItemKind::Query(q) = &i.kind { Some(q.name.text.clone()) } else { None };
     items.filter_map(query).collect()
 }
 

@@ -1,3 +1,5 @@
+//! Functions of automata: their values are those of the same functions in Rust, and their limits hold.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -129,11 +129,12 @@ impl<'a> BeliefExplorer<'a> {
         };
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let space = AllowedSpace::new(sizes(factors), scopes, Box::new(holds), &mut rng);
-        let mut explorer = Self::within(space, factors, (explore, tests), rng).map_err(|e| match e {
-            ChooseError::NothingAllowed { choices, is_proved, .. } => {
+        let mut explorer = Self::within(space, factors, (explore, tests), rng).map_err(|e| {
+            if let ChooseError::NothingAllowed { choices, is_proved, .. } = e {
                 ChooseError::NothingAllowed { choices, is_proved, fault: fault.get() }
+            } else {
+                e
             }
-            other => other,
         })?;
         if let Some(fault) = fault.get() {
             let note = format!("where a condition had no value, its belief set was left out: {fault}");

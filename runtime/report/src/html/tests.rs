@@ -1,3 +1,5 @@
+//! The page holds what is in the results, and nothing that anybody wrote in them is taken for HTML.
+
 use super::*;
 use hrdsl_results::BinName;
 

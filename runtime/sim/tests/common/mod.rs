@@ -1,5 +1,5 @@
 //! The table and its people as a world by hand, with the numbers of `std.robots.bert2` and `std.person`.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Nanos, Span, Type, Unit, Value};

@@ -383,10 +383,12 @@ impl ProgramWatch<'_> {
     fn reap(&mut self, child: &Child) {
         let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
         while let Ok(status) = waitid(Id::All, look) {
-            let (pid, exit) = match status {
-                WaitStatus::Exited(pid, code) => (pid, Exit::Code(code)),
-                WaitStatus::Signaled(pid, signal, _) => (pid, Exit::Signal(signal as i32)),
-                _ => return,
+            let (pid, exit) = if let WaitStatus::Exited(pid, code) = status {
+                (pid, Exit::Code(code))
+            } else if let WaitStatus::Signaled(pid, signal, _) = status {
+                (pid, Exit::Signal(signal as i32))
+            } else {
+                return;
             };
             if pid.as_raw().unsigned_abs() == child.id() {
                 // While it is not yet waited for, the kernel still tells.

@@ -70,15 +70,15 @@ fn ask_one(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutError> {
     // Isolated and in the program's folder: a tool that chooses versions by folder chooses as it does for the
     // program, and no module there is taken for one of the standard library.
     command.current_dir(dir).args(["-I", "-c", PROBE]).args(with_pip.then_some("pip"));
-    let output = command.output().map_err(|e| match e.kind() {
-        ErrorKind::NotFound if dir.is_dir() => SutError::Absent {
-            what: "Python",
-            looked_for: format!("`{shown}` (install Python 3.8 or newer, or name another one in `run`)"),
-        },
-        ErrorKind::NotFound => {
+    let output = command.output().map_err(|e| {
+        if e.kind() != ErrorKind::NotFound {
+            SutError::io(format!("cannot start {shown}"))(e)
+        } else if dir.is_dir() {
+            let looked_for = format!("`{shown}` (install Python 3.8 or newer, or name another one in `run`)");
+            SutError::Absent { what: "Python", looked_for }
+        } else {
             SutError::Absent { what: "folder of the program", looked_for: dir.display().to_string() }
         }
-        _ => SutError::io(format!("cannot start {shown}"))(e),
     })?;
     match told(&output) {
         Some(probe) if probe.version >= (3, 8, 0) => Ok(probe),

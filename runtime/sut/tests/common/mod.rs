@@ -53,7 +53,7 @@ pub fn reply(process: &mut Process, time: i64, answer: Answer) {
 }
 
 /// Runs a program to its normal end, with a harness whose sleeps pass time and who says yes to all else.
-#[allow(dead_code)] // not every test file uses it
+#[allow(dead_code, reason = "not every test file uses it")]
 pub fn run(launch: &Launch) -> (Vec<Request>, Finished) {
     let mut process = Process::spawn(launch).unwrap();
     let mut requests = Vec::new();

@@ -329,13 +329,12 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
 
     /// A fault of the model with the path to it.
     fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
-        match failure {
-            LocalSearchError::Search(SearchError::Model { error, witness: None }) => {
-                match self.faulty(id, error) {
-                    Ok(error) | Err(error) => error.into(),
-                }
+        if let LocalSearchError::Search(SearchError::Model { error, witness: None }) = failure {
+            match self.faulty(id, error) {
+                Ok(error) | Err(error) => error.into(),
             }
-            other => other,
+        } else {
+            failure
         }
     }
 

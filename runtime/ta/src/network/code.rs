@@ -497,10 +497,7 @@ impl CompiledExpr {
     }
 
     pub(crate) fn constant(&self) -> Option<i64> {
-        match self {
-            CompiledExpr::Const(n) => Some(*n),
-            _ => None,
-        }
+        if let CompiledExpr::Const(n) = self { Some(*n) } else { None }
     }
 
     /// The least and greatest value that it can have, and whether it always has one. `locals` are the frame's ranges.
@@ -1010,6 +1007,7 @@ fn comparison(op: NumberComparison, a: CompiledExpr, b: CompiledExpr) -> Compile
 }
 
 /// Of constants: the value, if it has one.
+#[expect(clippy::wildcard_enum_match_arm, reason = "what is not folded here is folded where it is made")]
 fn fold(code: CompiledExpr) -> CompiledExpr {
     let value = match &code {
         CompiledExpr::Not(a) => a.constant().map(|n| i64::from(n == 0)),

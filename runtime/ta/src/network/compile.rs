@@ -487,11 +487,11 @@ impl<'p> NetworkCompiler<'p> {
         let mut units = time.nanos / self.unit;
         for t in &time.terms {
             let factor = t.factor / self.unit;
-            match self.library.compile(names, &t.value, NumberType::Int) {
-                CompiledExpr::Const(n) => {
-                    units = n.checked_mul(factor).and_then(|n| units.checked_add(n)).ok_or_else(far)?;
-                }
-                code => terms.push((factor, code)),
+            let code = self.library.compile(names, &t.value, NumberType::Int);
+            if let CompiledExpr::Const(n) = code {
+                units = n.checked_mul(factor).and_then(|n| units.checked_add(n)).ok_or_else(far)?;
+            } else {
+                terms.push((factor, code));
             }
         }
         let times = TimeExpr { units, terms };

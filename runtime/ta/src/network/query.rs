@@ -214,10 +214,7 @@ impl StateFormula {
     #[must_use]
     #[expect(clippy::should_implement_trait, reason = "it is a constructor, as `And` and `Or` are")]
     pub fn not(self) -> Self {
-        match self {
-            StateFormula::Not(f) => *f,
-            other => StateFormula::Not(Box::new(other)),
-        }
+        if let StateFormula::Not(f) = self { *f } else { StateFormula::Not(Box::new(self)) }
     }
 
     /// Whether it holds in a state; without clocks, so `Clock` and `Deadlock` have no value.

@@ -619,7 +619,10 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     }
 
     /// An extrapolated state, for the batch unless a stored one covers it.
-    #[allow(clippy::too_many_arguments)]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "what a worker has at hand, taken apart for the borrow checker"
+    )]
     fn offer(
         &self,
         m: &mut WorkerMemory<N>,

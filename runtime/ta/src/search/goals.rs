@@ -89,12 +89,12 @@ impl CompiledGoals {
                 self.tests.push(StateTest { goal: i, settled: goal.settled, code });
             }
             GoalKind::Formula(f) => {
-                match symbolic(model, &model.slot_scope(), f)? {
-                    SymbolicFormula::Data(code) => {
-                        self.tests.push(StateTest { goal: i, settled: goal.settled, code })
-                    }
-                    other => self.symbolic.push((i, goal.settled, other)),
-                };
+                let formula = symbolic(model, &model.slot_scope(), f)?;
+                if let SymbolicFormula::Data(code) = formula {
+                    self.tests.push(StateTest { goal: i, settled: goal.settled, code });
+                } else {
+                    self.symbolic.push((i, goal.settled, formula));
+                }
             }
         }
         Ok(())
@@ -250,10 +250,14 @@ fn symbolic(
         Formula::Deadlock => {
             return Err(ModelError::Question("`deadlock` is no goal of a search by zones alone".into()));
         }
-        Formula::Not(f) => match symbolic(model, names, f)? {
-            SymbolicFormula::Data(code) => SymbolicFormula::Data(CompiledExpr::Not(Box::new(code))),
-            other => SymbolicFormula::Not(Box::new(other)),
-        },
+        Formula::Not(f) => {
+            let formula = symbolic(model, names, f)?;
+            if let SymbolicFormula::Data(code) = formula {
+                SymbolicFormula::Data(CompiledExpr::Not(Box::new(code)))
+            } else {
+                SymbolicFormula::Not(Box::new(formula))
+            }
+        }
         Formula::And(fs) => many(fs, 1, true)?,
         Formula::Or(fs) => many(fs, 0, false)?,
     })

@@ -182,10 +182,12 @@ fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> Model
     let mut warnings: Vec<String> = Vec::new();
     let mut log = Vec::new();
     for (agent, entry) in society.log() {
-        let origin = match &entry.what {
-            LogItem::Failed(failure) => Some(failure.origin),
-            LogItem::Fault { origin, .. } | LogItem::Unhandled { origin, .. } => Some(*origin),
-            _ => None,
+        let origin = if let LogItem::Failed(failure) = &entry.what {
+            Some(failure.origin)
+        } else if let LogItem::Fault { origin, .. } | LogItem::Unhandled { origin, .. } = &entry.what {
+            Some(*origin)
+        } else {
+            None
         };
         let is_warning = matches!(
             entry.what,

@@ -1,3 +1,5 @@
+//! Local zones against sets of local valuations, one by one.
+
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;

@@ -2,7 +2,7 @@
 //!
 //! It shares nothing with the engine but the program form and the operators of expressions. Every state is made, so it is
 //! for small networks: a clock is a whole number and the rank of its fraction among the fractions, which is exact.
-#![allow(dead_code, unused_imports)]
+#![allow(dead_code, unused_imports, reason = "each test binary uses its own part")]
 
 pub mod data;
 pub mod graph;
