@@ -1,4 +1,4 @@
-//! `hrdsl check` on many files: what is found, which tests belong where, what is denied, what is mended.
+//! `hrdsl check` on many files: what is found, which tests belong where, what is denied, what is fixed.
 
 mod support;
 
