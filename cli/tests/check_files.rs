@@ -207,7 +207,7 @@ fn fixes_that_are_certain_are_applied() {
 
 #[cfg(unix)]
 #[test]
-fn a_mended_file_keeps_its_rights_and_its_links() {
+fn a_fixed_file_keeps_its_rights_and_its_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder(&[("real/a.hri", &(scenario("a", "ask") + CROOKED))]);
     let real = folder.path().join("real/a.hri");
