@@ -66,9 +66,8 @@ impl ShownOutcome for Outcome {
 
     fn meaning(self) -> &'static str {
         match self {
-            Outcome::Pass | Outcome::Fail | Outcome::Error => "",
+            Outcome::Pass | Outcome::Fail | Outcome::Inconclusive | Outcome::Error => "",
             Outcome::Vacuous => "never triggered",
-            Outcome::Inconclusive => "pending",
         }
     }
 }
