@@ -26,7 +26,7 @@ pub fn lexer(data: &[u8]) {
     within(&diagnostics, |_| Some(&text));
 }
 
-/// Every text gives a tree, and diagnostics whose places and mendings lie in it.
+/// Every text gives a tree, and diagnostics whose places and fixes lie in it.
 pub fn parser(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let (file, diagnostics) = hrdsl_syntax::parse(FileId(0), &text);

@@ -14,7 +14,7 @@ pub enum Exit {
     /// A requirement was violated, a query is not satisfied, or a test broke off.
     Findings = 3,
     /// A requirement or query was not decided within the budget.
-    Open = 4,
+    Inconclusive = 4,
     /// A campaign was interrupted; what had ended is published.
     Interrupted = 5,
 }

@@ -1,4 +1,4 @@
-//! Mending texts by the certain fixes of their diagnostics.
+//! Fixing texts by the certain fixes of their diagnostics.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub struct Applied {
     pub title: String,
 }
 
-/// Mending brings new things to light; a text that is not at rest after so many rounds is left as it is then.
+/// A fix brings new things to light; a text that is not at rest after so many rounds is left as it is then.
 const ROUNDS: usize = 10;
 
 /// An edit of a source of the project.
@@ -28,7 +28,7 @@ struct Change {
 }
 
 /// Applies what is certain to the texts in memory, until nothing more is.
-pub fn mend(project: &mut Project) -> Vec<Applied> {
+pub fn apply(project: &mut Project) -> Vec<Applied> {
     let mut applied = Vec::new();
     for _ in 0..ROUNDS {
         let mut chosen = Chosen::default();

@@ -187,7 +187,7 @@ fn a_robot_that_hurries_violates_the_limit_of_speed() {
     );
 }
 
-/// What is recorded is what is judged: each failure's witness lines are in the recording at their place.
+/// What is recorded is what is judged: each counterexample's lines are in the recording at their place.
 #[test]
 fn failures_are_borne_out_by_recordings() {
     let folder = tempfile::tempdir().unwrap();
@@ -200,10 +200,10 @@ fn failures_are_borne_out_by_recordings() {
         let recording = fs::read_to_string(path).unwrap();
         let lines: Vec<Value> = recording.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
         for verdict in test["verdicts"].as_array().unwrap() {
-            let Some(witness) = verdict["failure"]["witness"].as_array() else { continue };
+            let Some(counterexample) = verdict["failure"]["counterexample"].as_array() else { continue };
             failures += 1;
-            assert!(!witness.is_empty());
-            for step in witness {
+            assert!(!counterexample.is_empty());
+            for step in counterexample {
                 let line = &lines[step["step"].as_u64().unwrap() as usize + 1];
                 assert_eq!(line["t"].as_f64(), step["time"].as_f64());
                 let named = line["event"].as_str().or(line["signal"].as_str()).unwrap();
@@ -244,8 +244,8 @@ fn the_readme_shows_a_test_that_fails() {
     );
 }
 
-/// The results that the example comes with. To renew them after a change that is meant to change them:
-/// `HRDSL_RENEW=1 cargo test -p hrdsl --test campaign`, and read the difference.
+/// The results that the example comes with. To update them after a change that is meant to change them:
+/// `HRDSL_UPDATE=1 cargo test -p hrdsl --test campaign`, and read the difference.
 #[test]
 fn the_example_gives_the_expected_results() {
     let folder = tempfile::tempdir().unwrap();
@@ -258,7 +258,7 @@ fn the_example_gives_the_expected_results() {
     let summary: String =
         summary.lines().filter(|l| !l.starts_with("  hrdsl sim ")).map(|l| format!("{l}\n")).collect();
     let path = root().join("examples/handover/expected.txt");
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(&path, &summary).unwrap();
     }
     assert_eq!(summary, fs::read_to_string(path).unwrap());

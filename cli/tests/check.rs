@@ -43,7 +43,7 @@ fn a_file_that_is_no_text_is_refused() {
 
 /// Several errors at once, each at its place with the right name.
 #[test]
-fn misspelt_names_are_found_and_mended() {
+fn misspelt_names_are_found_and_fixed() {
     let folder = tempfile::tempdir().unwrap();
     let text = fs::read_to_string(handover()).unwrap();
     let text = text

@@ -1,4 +1,4 @@
-//! `hrdsl check` on many files: what is found, which tests belong where, what is denied, what is mended.
+//! `hrdsl check` on many files: what is found, which tests belong where, what is denied, what is fixed.
 
 mod support;
 
@@ -207,7 +207,7 @@ fn fixes_that_are_certain_are_applied() {
 
 #[cfg(unix)]
 #[test]
-fn a_mended_file_keeps_its_rights_and_its_links() {
+fn a_fixed_file_keeps_its_rights_and_its_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder(&[("real/a.hri", &(scenario("a", "ask") + CROOKED))]);
     let real = folder.path().join("real/a.hri");

@@ -1,8 +1,8 @@
 //! What the examples give, as digests: a change that is not meant to change it does not.
 //!
 //! Every test compares small campaigns; the whole ones run with
-//! `HRDSL_SOAK=1 cargo test -p hrdsl --test digests`. To renew the digests after a change that is meant to change them, add
-//! `HRDSL_RENEW=1`, and say in the change log what is different.
+//! `HRDSL_SOAK=1 cargo test -p hrdsl --test digests`. To update the digests after a change that is meant to change them, add
+//! `HRDSL_UPDATE=1`, and say in the change log what is different.
 
 mod support;
 
@@ -85,7 +85,7 @@ fn the_examples_give_what_they_gave() {
     let path = root().join("cli/tests/digests.txt");
     let before = fs::read_to_string(&path).unwrap_or_default();
     let (own, others): (Vec<&str>, Vec<&str>) = before.lines().partition(|l| l.starts_with(size));
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         let mut lines: Vec<&str> = others.into_iter().chain(found.lines()).collect();
         lines.sort_unstable();
         fs::write(&path, lines.join("\n") + "\n").unwrap();

@@ -52,7 +52,7 @@ fn recordings_have_the_verdicts_failures_and_bins_of_their_runs() {
     let (before, after) = (judgements(&results), judgements(&judged));
     assert_eq!(before.len(), 18);
     assert_eq!(before, after, "byte for byte");
-    assert!(before.iter().any(|(_, text)| text.contains("\"witness\": [\n")));
+    assert!(before.iter().any(|(_, text)| text.contains("\"counterexample\": [\n")));
     let (results, judged) = (json(&results), json(&judged));
     for key in ["name", "seed", "ended", "error", "duration"] {
         let of = |document: &Value| {
@@ -123,10 +123,10 @@ fn results_are_what_their_schema_says() {
     campaign(&out, &[]);
     let printed = stdout(&hrdsl(["report", "--schema"]));
     let path = root().join("spec/results.schema.json");
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(&path, &printed).unwrap();
     }
-    assert_eq!(printed, fs::read_to_string(path).unwrap(), "renew with HRDSL_RENEW=1");
+    assert_eq!(printed, fs::read_to_string(path).unwrap(), "update with HRDSL_UPDATE=1");
     let schema = jsonschema::validator_for(&json(&printed)).unwrap();
     let mut results = json(&fs::read_to_string(out.join("results.json")).unwrap());
     let faults: Vec<String> = schema.iter_errors(&results).map(|e| e.to_string()).collect();
@@ -201,10 +201,10 @@ fn recordings_of_another_scenario_are_refused_and_the_others_judged() {
         let tests = json(text)["tests"].as_array().unwrap().clone();
         tests.iter().map(|t| format!("{} {}", t["name"], t["verdicts"][0]["outcome"])).collect()
     };
-    assert_eq!(outcomes(&stdout(&out)), ["\"late\" \"fail\"", "\"open\" \"open\""]);
+    assert_eq!(outcomes(&stdout(&out)), ["\"late\" \"fail\"", "\"open\" \"inconclusive\""]);
     let out = hrdsl_in(folder.path(), "judge s.hri logs/changed.jsonl logs/other.jsonl --changed --json");
     expect_code(&out, 3);
-    assert_eq!(outcomes(&stdout(&out)), ["\"changed\" \"open\"", "\"other\" \"fail\""]);
+    assert_eq!(outcomes(&stdout(&out)), ["\"changed\" \"inconclusive\"", "\"other\" \"fail\""]);
     let out = hrdsl_in(folder.path(), "judge s.hri logs/late.jsonl");
     expect_code(&out, 3);
     assert!(

@@ -97,7 +97,7 @@ fn requirements_and_queries_are_decided() {
     assert_eq!(requirement("R2")["verdict"], "holds");
     assert!(requirement("R2").get("remark").is_none());
     assert_eq!(requirement("R3")["verdict"], "holds");
-    assert_eq!(requirement("R3")["remark"], "it is never triggered");
+    assert_eq!(requirement("R3")["remark"], "vacuously: it is never triggered");
     assert_eq!(requirement("R4")["verdict"], "not_on_the_model");
     assert_eq!(requirement("R5")["verdict"], "holds");
     assert_eq!(query("waits")["verdict"], "satisfied");
@@ -110,8 +110,8 @@ fn requirements_and_queries_are_decided() {
     assert_eq!(bounds, ["6 s", "3"]);
     // The second time is asked 2 s after the first at the earliest, and the obligation counts from the first.
     let run = &requirement("R1")["run"];
-    let scenes = run["scenes"].as_array().unwrap();
-    assert_eq!(scenes.len(), 2, "{run:#}");
+    let steps = run["steps"].as_array().unwrap();
+    assert_eq!(steps.len(), 2, "{run:#}");
     assert!(run["end_nanos"].as_i64().unwrap() > 16_000_000_000, "{run:#}");
 }
 
@@ -155,11 +155,14 @@ fn names_that_do_not_exist_are_said() {
 }
 
 #[test]
-fn what_the_budget_does_not_suffice_for_is_open() {
-    let (out, open) = proved("--requirement R2 --budget-states 2");
+fn what_the_budget_does_not_suffice_for_is_inconclusive() {
+    let (out, rows) = proved("--requirement R2 --budget-states 2");
     expect_code(&out, 4);
-    let r2 = row(&open, "requirements", "R2");
-    assert_eq!((&r2["verdict"], &r2["remark"]), (&"open".into(), &"the budget of states was used up".into()));
+    let r2 = row(&rows, "requirements", "R2");
+    assert_eq!(
+        (&r2["verdict"], &r2["remark"]),
+        (&"inconclusive".into(), &"the budget of states was used up".into())
+    );
     let (out, late) = proved("--timeout 0s --query served");
     expect_code(&out, 4);
     assert_eq!(row(&late, "queries", "served")["remark"], "the time was over");
@@ -214,7 +217,7 @@ fn a_fault_of_the_model_is_told_with_the_way_to_it() {
     let r2 = row(&all, "requirements", "R2");
     assert_eq!(r2["verdict"], "fault_of_the_model");
     assert!(r2["remark"].as_str().unwrap().contains("`opens` becomes 4"), "{r2:#}");
-    assert!(r2["run"]["scenes"].as_array().unwrap().len() > 5, "{r2:#}");
+    assert!(r2["run"]["steps"].as_array().unwrap().len() > 5, "{r2:#}");
 }
 
 #[test]
@@ -230,8 +233,8 @@ fn a_search_reaches_what_it_is_asked_for_and_keeps_few_tests() {
     };
     for reached in [
         "location Door.stuck",
-        "pair Person: outside -> waiting (edge 1), waiting -> outside (edge 2)",
-        "use of opens: set by Door: moving -> open (edge 3), read by Door: moving -> open (edge 4)",
+        "edge pair Person: outside -> waiting (edge 1), waiting -> outside (edge 2)",
+        "def-use pair of opens: set by Door: moving -> open (edge 3), read by Door: moving -> open (edge 4)",
         "violation of R1",
         "trigger of R1",
         "query waits",
@@ -243,12 +246,12 @@ fn a_search_reaches_what_it_is_asked_for_and_keeps_few_tests() {
     for unreachable in [
         "violation of R2",
         "trigger of R3",
-        "use of opens: its first value, read by Door: moving -> open (edge 4)",
+        "def-use pair of opens: its first value, read by Door: moving -> open (edge 4)",
     ] {
         assert_eq!(goal(unreachable)["status"], "unreachable", "{unreachable}");
         assert!(goal(unreachable).get("test").is_none());
     }
-    assert!(goals.iter().all(|g| g["status"] != "open"));
+    assert!(goals.iter().all(|g| g["status"] != "inconclusive"));
     let reached = goals.iter().filter(|g| g["status"] == "reached").count() as u64;
     assert!(suite["abstract_tests"].as_u64().unwrap() < reached / 3, "{suite:#}");
     for args in ["--witness fastest", "--delays latest --order depth", "--threads 2"] {

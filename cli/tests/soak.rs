@@ -265,7 +265,7 @@ impl Case<'_> {
 
     fn look_at_test(&mut self, test: &Value) {
         let ended = test["ended"].as_str().unwrap_or("none").to_owned();
-        self.check(["quiet", "limit", "error"].contains(&&*ended), || {
+        self.check(["quiescent", "limit", "error"].contains(&&*ended), || {
             format!("a test without an end: {test}")
         });
         let error = test["error"].as_str();

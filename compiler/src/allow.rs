@@ -119,7 +119,7 @@ fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) ->
     if on_error {
         let message = format!("`{}` is an error here, which cannot be allowed", code.text);
         let error = Diagnostic::warning(Code::USELESS_ALLOW, code.span, message);
-        return Some(error.help("mend the error, and take the line away"));
+        return Some(error.help("fix the error, and take the line away"));
     }
     // With errors in the text some warnings were not looked for.
     (!used && !broken).then(|| {

@@ -1,4 +1,4 @@
-//! What is certain mends: each certain fix of each fixture, taken by itself, takes its finding away and brings no error.
+//! Certain fixes hold: each one of each fixture, taken by itself, takes its finding away and brings no error.
 
 #![allow(clippy::disallowed_methods, reason = "the test reads its fixtures")]
 
@@ -11,8 +11,8 @@ use std::{
 use hrdsl_compiler::{Compilation, Input, compile};
 use hrdsl_source::Fix;
 
-#[path = "mending/mod.rs"]
-mod mending;
+#[path = "fixing/mod.rs"]
+mod fixing;
 
 fn fixtures(folder: &Path, all: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -33,7 +33,7 @@ fn in_every_fixture() {
     let (mut faults, mut tried) = (Vec::new(), 0);
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
-        let (wrong, fixes) = mending::faults(&text, &one);
+        let (wrong, fixes) = fixing::faults(&text, &one);
         faults.extend(wrong.into_iter().map(|f| format!("{}: {f}", path.display())));
         tried += fixes;
     }
@@ -45,7 +45,7 @@ fn in_every_fixture() {
 fn unused(text: &str) -> BTreeMap<String, Option<bool>> {
     let c = one(text);
     assert!(!c.has_errors(), "{:?}", c.diagnostics);
-    let (wrong, _) = mending::faults(text, &one);
+    let (wrong, _) = fixing::faults(text, &one);
     assert!(wrong.is_empty(), "{wrong:?}");
     let found = c.diagnostics.iter().filter(|d| d.code.to_string() == "HR0107");
     found.map(|d| (c.files.text(d.span()).to_owned(), d.fixes.first().map(|f: &Fix| f.certain))).collect()

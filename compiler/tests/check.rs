@@ -157,7 +157,7 @@ fn changed(text: &str, fix: &Fix) -> String {
     text
 }
 
-/// A change that may be made unasked leaves no trace of what it mends, and breaks nothing.
+/// A change that may be made unasked leaves no trace of what it fixes, and breaks nothing.
 #[test]
 fn certain_fixes_mend() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lint");
@@ -174,7 +174,7 @@ fn certain_fixes_mend() {
                 let said = |c: &Compilation| c.diagnostics.iter().filter(|e| e.message == d.message).count();
                 let place = before.files.place(d.span());
                 assert!(errors(&after) <= errors(&before), "{place}: `{}` breaks the text", fix.title);
-                assert!(said(&after) < said(&before), "{place}: `{}` does not mend it", fix.title);
+                assert!(said(&after) < said(&before), "{place}: `{}` does not fix it", fix.title);
                 tried += 1;
             }
         }

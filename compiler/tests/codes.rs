@@ -1,5 +1,5 @@
 //! The pages of the diagnostic codes: each code of the registry has one, whose first example gives just this code, and
-//! whose second is mended.
+//! whose second is fixed.
 
 #![allow(clippy::disallowed_methods, reason = "the test reads the pages")]
 
@@ -68,7 +68,7 @@ fn every_code_has_a_page_with_an_example_that_fails_and_one_that_does_not() {
             "{code}: no page, or another title"
         );
         let examples = examples(&page);
-        let [failing, mended] = examples.as_slice() else {
+        let [failing, fixed] = examples.as_slice() else {
             panic!("{code}: two blocks are needed, and there are {}", examples.len())
         };
         let wrong = &failing.info;
@@ -80,13 +80,13 @@ fn every_code_has_a_page_with_an_example_that_fails_and_one_that_does_not() {
             Some(("hri", rule)) if rule == format!("warns={code}") => assert!(compiles, "{code} fails"),
             _ => panic!("{code}: the fence `{wrong}` means nothing"),
         }
-        assert_eq!(mended.info, "hri");
+        assert_eq!(fixed.info, "hri");
         if codes != BTreeSet::from([code.clone()]) {
             faults.push(format!("{code}: the failing example gives {codes:?}"));
         }
-        let (codes, compiles) = said(mended);
+        let (codes, compiles) = said(fixed);
         if !codes.is_empty() || !compiles {
-            faults.push(format!("{code}: the mended example gives {codes:?}"));
+            faults.push(format!("{code}: the fixed example gives {codes:?}"));
         }
     }
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));

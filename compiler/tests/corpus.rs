@@ -149,7 +149,7 @@ fn dictionary() -> String {
     ];
     let words = KEYWORDS.iter().map(|k| k.word).chain(marks);
     let mut text =
-        "# The words of the language; made by `HRDSL_RENEW=1 cargo test -p hrdsl-compiler --test corpus`.\n"
+        "# The words of the language; made by `HRDSL_UPDATE=1 cargo test -p hrdsl-compiler --test corpus`.\n"
             .to_owned();
     let mut seen = BTreeSet::new();
     for word in words.filter(|w| seen.insert(*w)) {
@@ -167,9 +167,9 @@ fn the_dictionary_is_that_of_the_language() {
     let path = folder().join("hri.dict");
     let now = dictionary();
     assert!(now.contains(&targets::SEPARATOR.trim().replace('\n', "\\x0a")));
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(&path, &now).unwrap();
     }
     let kept = fs::read_to_string(&path).unwrap_or_default();
-    assert_eq!(kept, now, "old: HRDSL_RENEW=1 cargo test -p hrdsl-compiler --test corpus");
+    assert_eq!(kept, now, "old: HRDSL_UPDATE=1 cargo test -p hrdsl-compiler --test corpus");
 }

@@ -1,4 +1,4 @@
-//! Fixes are exact: each replaces just the text that its title names, and what is certain mends.
+//! Fixes are exact: each replaces just the text that its title names, and certain ones remove what they are for.
 
 #![allow(clippy::disallowed_methods, reason = "the test reads the fixtures")]
 
@@ -53,7 +53,7 @@ fn a_replacement_stands_for_what_it_names() {
 const START: &str =
     "scenario a\nactor p : environment\nactor r : system\nevent e from p to r\nstimulus s by p { emit e }\n";
 
-/// A plan's condition and body, and whether all that is said of it can be mended for certain.
+/// A plan's condition and body, and whether all that is said of it can be fixed for certain.
 #[test]
 fn certain_fixes_are_those_that_mend() {
     let cases = [

@@ -1,4 +1,4 @@
-//! Each fix that a lint of the fixtures in `lint/` offers mends what it is offered for.
+//! Each fix that a lint of the fixtures in `lint/` offers removes what it is offered for.
 
 #![allow(clippy::disallowed_methods, reason = "the test reads its fixtures")]
 
@@ -25,7 +25,7 @@ fn said(c: &Compilation, of: &Diagnostic, text: &str) -> usize {
     c.diagnostics.iter().filter(same).count()
 }
 
-fn mended(text: &str, fix: &Fix) -> String {
+fn fixed(text: &str, fix: &Fix) -> String {
     let mut text = text.to_owned();
     for edit in fix.edits.iter().rev() {
         text.replace_range(edit.span.range(), &edit.text);
@@ -44,7 +44,7 @@ fn every_fix_mends_what_it_is_offered_for() {
         let before = compile(Input { name: "fixture.hri", text: &text }, &[]);
         for d in &before.diagnostics {
             for fix in &d.fixes {
-                let after = compile(Input { name: "fixture.hri", text: &mended(&text, fix) }, &[]);
+                let after = compile(Input { name: "fixture.hri", text: &fixed(&text, fix) }, &[]);
                 let what = format!("{}: {}: {}", path.display(), d.code, fix.title);
                 assert!(after.has_errors() <= before.has_errors(), "{what}: {:?}", after.diagnostics);
                 let of = before.files.text(d.span());

@@ -11,11 +11,11 @@ fn folder() -> &'static Path {
 
 #[test]
 fn the_committed_files_are_what_is_generated() {
-    let renew = std::env::var_os("HRDSL_RENEW").is_some();
+    let update = std::env::var_os("HRDSL_UPDATE").is_some();
     let mut stale = Vec::new();
     for file in generated().unwrap() {
         let path = folder().join(file.path);
-        if renew {
+        if update {
             fs::write(&path, &file.text).unwrap();
         } else if fs::read_to_string(&path).unwrap_or_default() != file.text {
             stale.push(file.path);
@@ -23,7 +23,7 @@ fn the_committed_files_are_what_is_generated() {
     }
     assert!(
         stale.is_empty(),
-        "{stale:?} are old: HRDSL_RENEW=1 cargo test -p hrdsl-editors --test generated"
+        "{stale:?} are old: HRDSL_UPDATE=1 cargo test -p hrdsl-editors --test generated"
     );
 }
 

@@ -11,10 +11,10 @@ mod conformance;
 mod draws;
 #[path = "spec/ebnf.rs"]
 mod ebnf;
+#[path = "../../compiler/tests/fixing/mod.rs"]
+mod fixing;
 #[path = "spec/hri.rs"]
 mod hri;
-#[path = "../../compiler/tests/mending/mod.rs"]
-mod mending;
 #[path = "spec/monitors.rs"]
 mod monitors;
 #[path = "spec/network.rs"]
@@ -98,7 +98,7 @@ fn the_book_has_every_page_once() {
             let name = format!("{before}{}", page.file_name().unwrap().to_string_lossy());
             if name != "SUMMARY.md" {
                 let n = times.remove(&name).unwrap_or(0);
-                assert_eq!(n, 1, "spec/SUMMARY.md names {name} {n} times (HRDSL_RENEW=1 adds it)");
+                assert_eq!(n, 1, "spec/SUMMARY.md names {name} {n} times (HRDSL_UPDATE=1 adds it)");
             }
         }
     }

@@ -78,7 +78,7 @@ fn denied(text: &str) -> Result<Deny, String> {
 pub fn run(args: &Args) -> Result<Exit, Fault> {
     let mut project = Project::open(&args.paths)?;
     if args.fix {
-        mend(&mut project)?;
+        apply_fixes(&mut project)?;
     }
     let checked = check(&project, &args.deny);
     match args.format {
@@ -124,13 +124,13 @@ fn promote(diagnostic: &mut Diagnostic, deny: Deny) {
     }
 }
 
-/// Mends the files, and says how on stderr.
-fn mend(project: &mut Project) -> Result<(), Fault> {
+/// Fixes the files, and says how on stderr.
+fn apply_fixes(project: &mut Project) -> Result<(), Fault> {
     if project.sources.iter().any(|s| s.path.is_none()) {
         return Err("`--fix` cannot change standard input; `--diff` shows the changes".to_owned());
     }
     let before = project.clone();
-    let applied = fix::mend(project);
+    let applied = fix::apply(project);
     let mut files = 0;
     for (old, new) in before.sources.iter().zip(&project.sources).filter(|(a, b)| a.text != b.text) {
         if let Some(path) = &old.path {
@@ -155,9 +155,9 @@ fn mend(project: &mut Project) -> Result<(), Fault> {
 }
 
 fn difference(project: &Project) -> String {
-    let mut mended = project.clone();
-    fix::mend(&mut mended);
-    let pairs = project.sources.iter().zip(&mended.sources);
+    let mut fixed = project.clone();
+    fix::apply(&mut fixed);
+    let pairs = project.sources.iter().zip(&fixed.sources);
     pairs.map(|(old, new)| render::unified(&old.name, &old.text, &new.text, color::stdout_has())).collect()
 }
 

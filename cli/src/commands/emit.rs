@@ -1,4 +1,4 @@
-//! `hrdsl emit`: the data at every stop of the way, as JSON.
+//! `hrdsl emit`: the data at every stage, as JSON.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::{exit::Exit, fault::Fault, input, terminal};
 
-/// Print what the compiler makes of a scenario, at any stop of the way, as JSON.
+/// Print what the compiler makes of a scenario, at any stage, as JSON.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  hrdsl emit ast scenario.hri\n  hrdsl emit ta scenario.hri | jq '.automata[0].locations'"
@@ -32,7 +32,7 @@ enum Product {
     Ta,
     /// The monitor automata of the requirements, and the assumptions.
     Monitors,
-    /// Coverage points and crosses.
+    /// Coverpoints and crosses.
     Coverage,
     /// Bodies, joints, devices, rules and signals.
     World,

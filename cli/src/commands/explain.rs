@@ -11,7 +11,7 @@ use crate::{
     files, render, terminal,
 };
 
-/// Explain a diagnostic code, with an example that fails and the same mended; without a code, list them all.
+/// Explain a diagnostic code, with an example that fails and the same fixed; without a code, list them all.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

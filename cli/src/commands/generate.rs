@@ -20,11 +20,11 @@ use hrdsl_runtime::{
 use hrdsl_source::printable;
 use serde::Serialize;
 
-use super::how::{Way, When, Witness};
 use super::inspect::{
     Chosen, json_lines,
     reasoning::{End, Picked, ending, reasoning},
 };
+use super::search_options::{Way, When, Witness};
 use crate::{exit::Exit, fault::Fault, files, input, results_folder::ResultsFolder, terminal};
 
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         terminal::print(&printable(&text))?;
     }
     if args.json {
-        let document = Document { format: "hrdsl-gen", version: 1, suites };
+        let document = Document { format: "hrdsl-gen", version: 2, suites };
         terminal::print_data(&files::json(&document)?)?;
     }
     Ok(Exit::Ok)
@@ -275,14 +275,14 @@ pub fn describe(generated: &GeneratedSuite) -> String {
     let count = |status| generated.goals.iter().filter(|g| g.status == status).count();
     if !generated.goals.is_empty() {
         out += &format!(
-            "  goals: {} reached, {} unreachable, {} open\n",
+            "  goals: {} reached, {} unreachable, {} inconclusive\n",
             count(GoalStatus::Reached),
             count(GoalStatus::Unreachable),
-            count(GoalStatus::Open)
+            count(GoalStatus::Inconclusive)
         );
     }
     for goal in generated.goals.iter().filter(|g| g.status != GoalStatus::Reached) {
-        let status = if goal.status == GoalStatus::Open { "open" } else { "unreachable" };
+        let status = if goal.status == GoalStatus::Inconclusive { "inconclusive" } else { "unreachable" };
         out += &format!("  {status}: {}: {}\n", goal.goal, goal.reason);
     }
     out

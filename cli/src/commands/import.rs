@@ -76,7 +76,7 @@ struct Uppaal {
     to: To,
 }
 
-/// From TChecker's text format: each process becomes an automaton, each synchronisation a joint channel, each label a query.
+/// From TChecker's text format: each process becomes an automaton, each synchronisation a multi-way channel, each label a query.
 ///
 /// What a scenario cannot say (a clock that is set under a condition) ends the import with its place.
 #[derive(clap::Args)]

@@ -138,7 +138,7 @@ fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, F
             RunEnd::Error => {
                 Some(recorded.ending.error.unwrap_or_else(|| "no reason is recorded".to_owned()))
             }
-            RunEnd::Quiet | RunEnd::Limit => None,
+            RunEnd::Quiescent | RunEnd::Limit => None,
         },
         duration,
         judgement,
@@ -161,7 +161,7 @@ fn json(results: &Results) -> Result<String, Fault> {
     }
     let document = JudgementDocument {
         format: "hrdsl-judgement",
-        version: 1,
+        version: 2,
         scenario: &results.scenario,
         requirements: &results.requirements,
         bins: &results.bins,

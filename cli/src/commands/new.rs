@@ -79,12 +79,12 @@ fn check(name: &str) -> Result<(), Fault> {
     if starts && name.chars().all(fits) && name != "_" {
         return Ok(());
     }
-    let mended: String = name.chars().map(|c| if fits(c) { c } else { '_' }).collect();
-    let mended = mended.trim_matches('_');
+    let fixed: String = name.chars().map(|c| if fits(c) { c } else { '_' }).collect();
+    let fixed = fixed.trim_matches('_');
     let reason =
         "a name is made of the letters a to z and A to Z, digits and `_`, and does not begin with a digit";
-    Err(match mended.chars().next() {
-        Some(first) if !first.is_ascii_digit() => format!("`{name}` is no name: {reason}; `{mended}` is one"),
+    Err(match fixed.chars().next() {
+        Some(first) if !first.is_ascii_digit() => format!("`{name}` is no name: {reason}; `{fixed}` is one"),
         Some(_) | None => format!("`{name}` is no name: {reason}"),
     })
 }

@@ -1,6 +1,6 @@
 //! Jason programs to scenarios: each program of `tests/agentspeak` against its expected text and report.
 //!
-//! `HRDSL_RENEW=1 cargo test -p hrdsl-interop` writes the expected files anew; the difference is read.
+//! `HRDSL_UPDATE=1 cargo test -p hrdsl-interop` writes the expected files anew; the difference is read.
 #![allow(clippy::disallowed_methods, reason = "tests read files")]
 
 use std::{
@@ -60,7 +60,7 @@ fn is_readable(text: &str, name: &str) {
 
 fn compare(file: &str, text: &str) {
     let path = root().join("expected").join(file);
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, text).unwrap();
     }

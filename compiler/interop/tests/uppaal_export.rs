@@ -106,7 +106,7 @@ fn what_cannot_be_said_is_listed() {
     let faults = export(&program(&text), 0).expect_err("there are three faults");
     let said: Vec<&str> = faults.iter().map(|f| f.message.as_str()).collect();
     assert_eq!(said.len(), 3, "{said:?}");
-    for part in ["joint channel `both`", "lower bound", "set to another clock"] {
+    for part in ["multi-way channel `both`", "lower bound", "set to another clock"] {
         assert!(said.iter().any(|s| s.contains(part)), "{part}: {said:?}");
     }
 }

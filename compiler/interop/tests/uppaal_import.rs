@@ -1,6 +1,6 @@
 //! UPPAAL's models to scenarios: what they become, what is refused, and that no file breaks the import.
 //!
-//! `HRDSL_RENEW=1 cargo test -p hrdsl-interop --test uppaal_import` writes the expected text anew; the difference is read.
+//! `HRDSL_UPDATE=1 cargo test -p hrdsl-interop --test uppaal_import` writes the expected text anew; the difference is read.
 #![allow(clippy::disallowed_methods, reason = "tests read files")]
 
 use std::{
@@ -85,7 +85,7 @@ fn handover_becomes_the_expected_scenario() {
     let imported = handover();
     is_readable(&imported.text);
     let path = root().join("handover.hri");
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(&path, &imported.text).unwrap();
     }
     assert_eq!(imported.text, fs::read_to_string(path).unwrap_or_default());

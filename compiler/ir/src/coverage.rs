@@ -1,4 +1,4 @@
-//! Coverage points over a trace, and their cross products.
+//! Coverpoints over a trace, and their cross products.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
 //! The functions of automata, executed: the one meaning that every interpreter of a [`Program`] shares.
 //!
-//! A [`View`] evaluates expressions and assigns places over a [`Memory`] (the variables that an automaton knows) and binders
+//! A [`View`] evaluates expressions and assigns lvalues over a [`Memory`] (the variables that an automaton knows) and binders
 //! (selects and received arguments). Everything is evaluated from left to right: arguments in their order, the indices of a
-//! place before the value that is assigned to it, the bounds of a loop before its first round.
+//! lvalue before the value that is assigned to it, the bounds of a loop before its first round.
 //!
 //! A call from outside has a budget of [`STEPS`] statements: each statement that is executed counts one, and so does each round
 //! of a loop. Calls within calls draw on the same budget and may be [`DEPTH`] deep, the outer one counted.
@@ -121,10 +121,10 @@ impl<'a> View<'a> {
         e.eval_in(self)
     }
 
-    /// Assigns a variable. The indices of the place come before the value.
+    /// Assigns a variable. The indices of the lvalue come before the value.
     ///
     /// # Errors
-    /// See [`EvalError`]; `Type` if the view is not open, or the place is a binder.
+    /// See [`EvalError`]; `Type` if the view is not open, or the lvalue is a binder.
     pub fn assign(&self, place: &Place, value: &Expr) -> Result<(), EvalError> {
         let slot = place.resolve(self)?;
         let value = value.eval_in(self)?;

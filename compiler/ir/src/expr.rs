@@ -51,7 +51,7 @@ impl<E, V> Place<E, V> {
     }
 }
 
-/// One index of a place: less than `count` and not negative, or there is no such element, which is an error.
+/// One index of an lvalue: less than `count` and not negative, or there is no such element, which is an error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Index<E = Expr> {
     pub at: E,

@@ -49,7 +49,7 @@ pub struct StateId(pub u16);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     pub name: String,
-    /// An obligation is pending here: a trace that ends in this state is open, not passed.
+    /// An obligation is pending here: a trace that ends in this state is inconclusive, not passed.
     pub pending: bool,
     /// The state is left by a [`On::Deadline`] edge once the clock reaches this.
     pub deadline: Option<Nanos>,

@@ -184,9 +184,9 @@ pub enum SearchGoal {
     Locations,
     /// `reach each edge`
     Edges,
-    /// `reach each pair`: two edges of one automaton, one after the other
+    /// `reach each pair`, an edge pair: two edges of one automaton, one after the other
     Pairs,
-    /// `reach each use`: an edge that assigns a variable, and one that reads it with no assignment between
+    /// `reach each use`, a def-use pair: an edge that assigns a variable, and one that reads it with no assignment between
     Uses,
     /// `reach violation of R`
     Violation(RequirementId),

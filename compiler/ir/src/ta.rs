@@ -238,17 +238,17 @@ pub enum Sync<E = Expr> {
         event: EventId,
         args: Vec<ReceiveArg>,
     },
-    /// `c!` of a hand-shake or broadcast channel.
+    /// `c!` of a binary or broadcast channel.
     Offer {
         channel: ChannelId,
         args: Vec<E>,
     },
-    /// `c?` of a hand-shake or broadcast channel.
+    /// `c?` of a binary or broadcast channel.
     Accept {
         channel: ChannelId,
         args: Vec<ReceiveArg>,
     },
-    /// Its automaton's part in a joint channel.
+    /// Its automaton's part in a multi-way channel.
     Join {
         channel: ChannelId,
     },

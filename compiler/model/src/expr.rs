@@ -40,7 +40,7 @@ pub enum ExprKind {
 pub type Place = hrdsl_ir::expr::Place<Expr, Leaf>;
 pub type Index = hrdsl_ir::expr::Index<Expr>;
 
-/// All variables that a place may stand for.
+/// All variables that an lvalue may stand for.
 #[must_use]
 pub fn leaves(place: &Place) -> Vec<Leaf> {
     let mut leaves = vec![place.slot];

@@ -119,7 +119,7 @@ codes! {
     TIME_STOPS = 506 "an invariant that stops time",
     NO_TIME_PASSES_HERE = 507 "a cycle in which no time passes",
     URGENT_GUARD = 511 "a clock guard on an edge of an urgent channel",
-    BAD_JOINT = 512 "a joint channel that is used as another kind",
+    BAD_JOINT = 512 "a multi-way channel that is used as another kind",
     NO_ACTOR = 513 "an event in an automaton without an actor",
     ONE_SIDED_CHANNEL = 514 "a channel with a side missing",
     BAD_QUERY = 520 "a query that cannot be asked",

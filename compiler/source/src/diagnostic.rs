@@ -20,11 +20,11 @@ pub struct Diagnostic {
     /// The first is the place of the fault; others show what it clashes with.
     pub labels: Vec<Label>,
     pub help: Option<String>,
-    /// Changes of the text that would mend it, the likeliest first.
+    /// Changes of the text that would fix it, the likeliest first.
     pub fixes: Vec<Fix>,
 }
 
-/// A change of the text that mends a fault.
+/// A change of the text that fixes a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fix {
     /// What it does, as a command: "replace `wats` by `wants`".
@@ -85,7 +85,7 @@ impl Diagnostic {
         self
     }
 
-    /// A change of one piece of text that would mend it.
+    /// A change of one piece of text that would fix it.
     #[must_use]
     pub fn fix(
         mut self,

@@ -597,7 +597,7 @@ pub enum ChannelKind {
     Joint(Vec<Party>),
 }
 
-/// An automaton that has a part in a joint channel.
+/// An automaton that has a part in a multi-way channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Party {
     pub automaton: Name,

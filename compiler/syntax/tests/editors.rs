@@ -1,6 +1,6 @@
 //! What the editors' grammars take from this crate: the keywords, and texts that must be read without fault.
 //!
-//! `HRDSL_RENEW=1 cargo test -p hrdsl-syntax --test editors` writes the keywords anew.
+//! `HRDSL_UPDATE=1 cargo test -p hrdsl-syntax --test editors` writes the keywords anew.
 
 #![allow(clippy::disallowed_methods, reason = "the test reads and writes files")]
 
@@ -23,11 +23,11 @@ fn grammar() -> PathBuf {
 
 /// Compares a generated file with the one that is committed.
 fn same(path: &Path, expected: &str) {
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(path, expected).expect("the file can be written");
     }
     let found = fs::read_to_string(path).unwrap_or_default();
-    assert!(found == expected, "{} is not that of the registry; HRDSL_RENEW=1 writes it", path.display());
+    assert!(found == expected, "{} is not that of the registry; HRDSL_UPDATE=1 writes it", path.display());
 }
 
 fn keywords_json() -> String {

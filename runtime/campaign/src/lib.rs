@@ -212,7 +212,7 @@ impl Campaign<'_> {
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
             RunTermination::Fault(HarnessError::Model(_) | HarnessError::World(_))
-            | RunTermination::Quiet
+            | RunTermination::Quiescent
             | RunTermination::Limit => None,
         };
         let output = finished.as_ref().map(|f| f.output.clone()).unwrap_or_default();
@@ -303,7 +303,7 @@ fn ending(run: &HarnessRun, finished: Option<&Finished>) -> RecordingEnd {
     let broke_off = |error| RecordingEnd { kind: RunEnd::Error, error: Some(error) };
     let kind = match &run.ended {
         RunTermination::Fault(fault) => return broke_off(fault.to_string()),
-        RunTermination::Quiet => RunEnd::Quiet,
+        RunTermination::Quiescent => RunEnd::Quiescent,
         RunTermination::Limit => RunEnd::Limit,
     };
     match finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first()) {

@@ -31,7 +31,7 @@ impl TestCoverage {
     }
 }
 
-/// Counts a trace's events for all coverage points of a program.
+/// Counts a trace's events for all coverpoints of a program.
 #[derive(Clone, Debug)]
 pub struct CoverageCollector {
     declared: ir::Coverage,

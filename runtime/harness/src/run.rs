@@ -19,7 +19,7 @@ const EVENTS_AT_AN_INSTANT: usize = 10_000;
 #[derive(Clone, Debug)]
 pub enum RunTermination {
     /// Every player is finished, or nobody waits for anything that could still come.
-    Quiet,
+    Quiescent,
     /// The time limit was reached.
     Limit,
     Fault(HarnessError),
@@ -100,12 +100,12 @@ impl<'p> Harness<'p> {
         self.deliver()?;
         loop {
             if self.players.iter().all(|p| p.is_finished()) {
-                return Ok(RunTermination::Quiet);
+                return Ok(RunTermination::Quiescent);
             }
             let next = self.players.iter().filter_map(|p| p.next_wake());
             let due = next.chain(self.stage.as_ref().and_then(WorldStage::next_wake)).min();
             let Some(time) = self.clock.advance(self.now, due, self.limit) else {
-                return Ok(RunTermination::Quiet);
+                return Ok(RunTermination::Quiescent);
             };
             self.pass_time(time.clamp(self.now, self.limit.max(self.now)));
             if self.now >= self.limit && due.is_none_or(|due| due > self.limit) {

@@ -192,7 +192,7 @@ fn run(
 
 fn end(run: &HarnessRun) -> (RunEnd, Nanos) {
     let how = match run.ended {
-        RunTermination::Quiet => RunEnd::Quiet,
+        RunTermination::Quiescent => RunEnd::Quiescent,
         RunTermination::Limit => RunEnd::Limit,
         RunTermination::Fault(_) => RunEnd::Error,
     };
@@ -222,7 +222,7 @@ fn a_system_in_lock_step_hears_and_answers() {
     ]);
     let (lines, run) = run(vec![wait(1), ask(4), await_done(10)], system, None, None);
     assert_eq!(lines, ["1 guest ask(n: 4)", "1 guest asked(n: 4)", "3 robot done"]);
-    assert_eq!(end(&run), (RunEnd::Quiet, 6));
+    assert_eq!(end(&run), (RunEnd::Quiescent, 6));
     assert_eq!(told(&answers), [(1, 0, asked(4, 1)), (3, 1, Ok), (3, 2, Ok), (6, 3, TimedOut)]);
 }
 
@@ -244,7 +244,7 @@ fn a_system_may_ask_on_before_it_is_answered() {
     let world = ToldWorld::new(Vec::new(), vec![("arm", "go", takes)]);
     let seen = world.seen.clone();
     let (_, run) = run(vec![wait(2), ask(1), ask(2)], system, Some(world), None);
-    assert_eq!(end(&run), (RunEnd::Quiet, 5));
+    assert_eq!(end(&run), (RunEnd::Quiescent, 5));
     let told = told(&answers);
     assert!(matches!(told[0], (0, 3, SystemAnswer::Refused { .. })), "its own events it does not hear");
     let slipped = Ended(Err("it slipped".into()));
@@ -262,7 +262,7 @@ fn of_several_that_wait_the_first_takes_the_event() {
         Then(SystemRequest::Done),
     ]);
     let (_, run) = run(vec![ask(1), wait(1), ask(2), wait(1), ask(3)], system, None, None);
-    assert_eq!(end(&run), (RunEnd::Quiet, 2));
+    assert_eq!(end(&run), (RunEnd::Quiescent, 2));
     assert_eq!(told(&answers), [(0, 0, asked(1, 0)), (1, 1, asked(2, 1)), (2, 2, asked(3, 2))]);
 }
 
@@ -289,7 +289,7 @@ fn the_world_is_sampled_read_and_answers_to_commands() {
     let (lines, run) = run(vec![wait(7)], system, Some(world), None);
     let expected = ["0 signal near = false", "4 signal near = true", "6 guest gripped"];
     assert_eq!(lines, expected, "the first close met nothing");
-    assert_eq!(end(&run), (RunEnd::Quiet, 7));
+    assert_eq!(end(&run), (RunEnd::Quiescent, 7));
     let refused = SystemAnswer::Refused {
         error: "`grip` is a gripper, and cannot `sing`".into(),
         help: Some("a gripper can close".into()),
@@ -346,7 +346,7 @@ fn commands_to_several_devices_run_at_once() {
     let (system, answers) =
         system(vec![Ask(go()), Ask(close()), Ask(sleep(3)), Then(close()), Then(SystemRequest::Done)]);
     let (_, run) = run(vec![], system, Some(world), None);
-    assert_eq!(end(&run), (RunEnd::Quiet, 7));
+    assert_eq!(end(&run), (RunEnd::Quiescent, 7));
     let ended = || Ended(Ok(()));
     assert_eq!(told(&answers), [(2, 1, ended()), (3, 2, Fine), (5, 0, ended()), (7, 3, ended())]);
 }
@@ -427,7 +427,7 @@ fn an_outside_clock_is_followed() {
     assert_eq!(told(&answers)[2], (4, 2, asked(0, 2)));
     let (system, _) = system(vec![Then(wait_for("asked", None))]);
     let own = run(vec![], system, None, None).1;
-    assert_eq!(end(&own), (RunEnd::Quiet, 0), "the harness's own clock has nothing to wait for");
+    assert_eq!(end(&own), (RunEnd::Quiescent, 0), "the harness's own clock has nothing to wait for");
 }
 
 #[test]

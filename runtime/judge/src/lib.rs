@@ -4,7 +4,7 @@
 //! verdicts of its run.
 //!
 //! # Steps
-//! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverage points;
+//! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverpoints;
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`Judgement`].
 //!
@@ -72,8 +72,8 @@ fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult 
         outcome: match verdict.outcome {
             MonitorOutcome::Pass => VerdictOutcome::Pass,
             MonitorOutcome::Fail => VerdictOutcome::Fail,
-            MonitorOutcome::NotChecked => VerdictOutcome::NotChecked,
-            MonitorOutcome::Open => VerdictOutcome::Open,
+            MonitorOutcome::Vacuous => VerdictOutcome::Vacuous,
+            MonitorOutcome::Inconclusive => VerdictOutcome::Inconclusive,
         },
         triggered: verdict.triggered,
         failures: verdict.failures,
@@ -88,12 +88,12 @@ fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> 
         let (who, what) = print::who_did_what(program, &seen.step.what);
         WitnessStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
     };
-    let mut witness: Vec<WitnessStep> = violation.witness.iter().map(step).collect();
-    witness.sort_by_key(|w| w.step);
+    let mut counterexample: Vec<WitnessStep> = violation.counterexample.iter().map(step).collect();
+    counterexample.sort_by_key(|w| w.step);
     Some(FirstFailure {
         time: seconds(violation.time),
         triggered_at: seconds(violation.trigger_time),
         deadline: violation.step.is_none(),
-        witness,
+        counterexample,
     })
 }

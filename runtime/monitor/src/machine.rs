@@ -166,7 +166,7 @@ impl MonitorMachine {
                 Effect::ResetClock => self.zero = at.time,
                 Effect::Trigger => {
                     self.triggered = self.triggered.saturating_add(1);
-                    // A further trigger of an obligation whose time goes on joins it: the first stays the witness.
+                    // A further trigger of an obligation whose time goes on joins it: the first stays in the counterexample.
                     let joins = !moves && !resets && !fails && self.obligation.is_some();
                     if !joins {
                         self.obligation = Some(obligation(cause, at, signals));
@@ -205,15 +205,20 @@ impl MonitorMachine {
         let here = obligation(cause, at, signals);
         let trigger = self.obligation.clone().unwrap_or_else(|| here.clone());
         let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r)));
-        let mut witness: Vec<SeenStep> = Vec::new();
+        let mut counterexample: Vec<SeenStep> = Vec::new();
         for step in trigger.step.into_iter().chain(here.step).chain(read.clone().map(|(s, r)| r.seen(s))) {
-            if witness.iter().all(|known| known.index != step.index) {
-                witness.push(step);
+            if counterexample.iter().all(|known| known.index != step.index) {
+                counterexample.push(step);
             }
         }
         let values = read.map(|(signal, r)| (signal, r.value)).collect();
-        self.first_failure =
-            Some(Violation { time: at.time, step: at.step, trigger_time: trigger.time, witness, values });
+        self.first_failure = Some(Violation {
+            time: at.time,
+            step: at.step,
+            trigger_time: trigger.time,
+            counterexample,
+            values,
+        });
     }
 
     fn measure(&mut self, time: Nanos, signals: &LatestSamples) {
@@ -240,9 +245,9 @@ impl MonitorMachine {
         let outcome = if self.failures > 0 {
             MonitorOutcome::Fail
         } else if pending {
-            MonitorOutcome::Open
+            MonitorOutcome::Inconclusive
         } else if self.triggered == 0 {
-            MonitorOutcome::NotChecked
+            MonitorOutcome::Vacuous
         } else {
             MonitorOutcome::Pass
         };
@@ -255,7 +260,7 @@ impl MonitorMachine {
             failures: self.failures,
             first_failure: self.first_failure,
             worst_margin: self.worst_margin,
-            open_since: pending.then_some(since),
+            pending_since: pending.then_some(since),
         }
     }
 }

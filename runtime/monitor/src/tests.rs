@@ -36,8 +36,8 @@ fn program(monitors: Vec<Monitor>) -> Program {
     }
 }
 
-fn indices(witness: &[SeenStep]) -> Vec<usize> {
-    witness.iter().map(|seen| seen.index).collect()
+fn indices(counterexample: &[SeenStep]) -> Vec<usize> {
+    counterexample.iter().map(|seen| seen.index).collect()
 }
 
 fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<Edge>) -> Monitor {
@@ -106,16 +106,16 @@ fn a_missed_deadline_is_a_violation_at_its_own_time() {
     let verdict = check(response(), vec![happens(5, 0), happens(7, 0), happens(90, 2)], 100);
     let violation = verdict.first_failure.unwrap();
     assert_eq!((violation.time, violation.step, violation.trigger_time), (15, None, 5));
-    assert_eq!(indices(&violation.witness), [0]);
-    assert_eq!((verdict.triggered, verdict.failures, verdict.open_since), (2, 1, None));
+    assert_eq!(indices(&violation.counterexample), [0]);
+    assert_eq!((verdict.triggered, verdict.failures, verdict.pending_since), (2, 1, None));
 }
 
 #[test]
 fn the_end_of_the_run_decides_between_open_and_failed() {
     let open = check(response(), vec![happens(5, 0)], 14);
-    assert_eq!((open.outcome, open.open_since), (MonitorOutcome::Open, Some(5)));
+    assert_eq!((open.outcome, open.pending_since), (MonitorOutcome::Inconclusive, Some(5)));
     let over = check(response(), vec![happens(5, 0)], 15);
-    assert_eq!((over.outcome, over.open_since), (MonitorOutcome::Fail, None));
+    assert_eq!((over.outcome, over.pending_since), (MonitorOutcome::Fail, None));
     let answered_last = check(response(), vec![happens(5, 0), happens(15, 1)], 15);
     assert_eq!(answered_last.outcome, MonitorOutcome::Pass);
 }
@@ -123,13 +123,13 @@ fn the_end_of_the_run_decides_between_open_and_failed() {
 #[test]
 fn a_trace_that_never_triggers_says_nothing() {
     let verdict = check(response(), vec![happens(5, 1), happens(6, 2)], 100);
-    assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::NotChecked, 0));
+    assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::Vacuous, 0));
 }
 
 #[test]
 fn a_failed_requirement_may_have_an_open_obligation_too() {
     let verdict = check(response(), vec![happens(0, 0), happens(50, 0)], 55);
-    assert_eq!((verdict.outcome, verdict.open_since), (MonitorOutcome::Fail, Some(50)));
+    assert_eq!((verdict.outcome, verdict.pending_since), (MonitorOutcome::Fail, Some(50)));
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn a_run_may_begin_with_an_obligation() {
     let first = monitor(&[(true, Some(10)), (false, None)], vec![edge(0, 1, On::Deadline, &[Effect::Fail])]);
     let violation = check(first.clone(), vec![happens(10, 2)], 20).first_failure.unwrap();
     assert_eq!((violation.time, violation.trigger_time), (10, 10));
-    assert_eq!(check(first, Vec::new(), 9).open_since, Some(0));
+    assert_eq!(check(first, Vec::new(), 9).pending_since, Some(0));
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_violation_shows_the_samples_it_rests_on() {
     let verdict = check(never_close(), steps, 10);
     let violation = verdict.first_failure.unwrap();
     assert_eq!((violation.time, violation.step, violation.trigger_time), (4, Some(4), 4));
-    assert_eq!(indices(&violation.witness), [4, 3]);
+    assert_eq!(indices(&violation.counterexample), [4, 3]);
     assert_eq!(violation.values, [(SignalId(0), Value::Float(0.01))]);
     assert_eq!(verdict.worst_margin, Some((0.01 - 0.05, 4)));
     assert_eq!(verdict.triggered, 3);
@@ -217,7 +217,7 @@ fn a_guard_without_samples_does_not_hold() {
         fails.guard = Some(guard);
         let verdict =
             check(monitor(&[(false, None)], vec![fails]), vec![reads(0, 1, 1.0), reads(1, 0, 0.0)], 10);
-        assert_eq!(verdict.outcome, MonitorOutcome::NotChecked);
+        assert_eq!(verdict.outcome, MonitorOutcome::Vacuous);
     }
 }
 
@@ -227,7 +227,7 @@ fn a_monitor_that_only_watches_is_triggered_by_its_first_complete_sample() {
     fails.guard = Some(below(0.05));
     let watch = monitor(&[(false, None)], vec![fails]);
     let verdict = check(watch.clone(), vec![reads(0, 0, 1.0)], 10);
-    assert_eq!(verdict.outcome, MonitorOutcome::NotChecked);
+    assert_eq!(verdict.outcome, MonitorOutcome::Vacuous);
     let verdict = check(watch, vec![reads(0, 0, 1.0), reads(1, 1, 1.0), reads(2, 0, 2.0)], 10);
     assert_eq!((verdict.outcome, verdict.triggered), (MonitorOutcome::Pass, 1));
 }
@@ -244,7 +244,10 @@ fn the_first_enabled_edge_is_taken_and_only_that() {
     ];
     let states = [(false, None), (false, None), (true, None)];
     let verdict = check(monitor(&states, edges), vec![happens(3, 0)], 10);
-    assert_eq!((verdict.outcome, verdict.triggered, verdict.open_since), (MonitorOutcome::Open, 1, Some(3)));
+    assert_eq!(
+        (verdict.outcome, verdict.triggered, verdict.pending_since),
+        (MonitorOutcome::Inconclusive, 1, Some(3))
+    );
 }
 
 #[test]
@@ -255,12 +258,12 @@ fn an_obligation_ends_when_it_is_met_or_lost() {
         vec![edge(0, 0, on(0), &[Trigger]), edge(0, 0, on(1), &[Discharge]), edge(0, 0, on(2), &[Fail])];
     let steps = [(1, 0), (2, 0), (3, 1), (4, 0), (5, 0), (6, 2)].map(|(t, e)| happens(t, e)).to_vec();
     let violation = check(monitor(&[(false, None)], edges), steps, 10).first_failure.unwrap();
-    assert_eq!((violation.trigger_time, indices(&violation.witness)), (4, vec![3, 5]));
+    assert_eq!((violation.trigger_time, indices(&violation.counterexample)), (4, vec![3, 5]));
     // What is pending after a violation is not what was violated.
     let edges = vec![edge(0, 1, on(0), &[Trigger]), edge(1, 2, on(2), &[Fail])];
     let states = [(false, None), (true, None), (true, None)];
     let verdict = check(monitor(&states, edges), vec![happens(1, 0), happens(5, 2)], 10);
-    assert_eq!((verdict.outcome, verdict.open_since), (MonitorOutcome::Fail, Some(5)));
+    assert_eq!((verdict.outcome, verdict.pending_since), (MonitorOutcome::Fail, Some(5)));
 }
 
 #[test]

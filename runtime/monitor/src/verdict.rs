@@ -13,9 +13,9 @@ pub enum MonitorOutcome {
     /// It was violated at least once.
     Fail,
     /// It was never triggered: the trace says nothing about it.
-    NotChecked,
+    Vacuous,
     /// It was not violated, but the trace ended while an obligation was pending.
-    Open,
+    Inconclusive,
 }
 
 impl fmt::Display for MonitorOutcome {
@@ -23,8 +23,8 @@ impl fmt::Display for MonitorOutcome {
         f.write_str(match self {
             MonitorOutcome::Pass => "pass",
             MonitorOutcome::Fail => "fail",
-            MonitorOutcome::NotChecked => "not checked",
-            MonitorOutcome::Open => "open",
+            MonitorOutcome::Vacuous => "vacuous",
+            MonitorOutcome::Inconclusive => "inconclusive",
         })
     }
 }
@@ -43,7 +43,7 @@ pub struct MonitorVerdict {
     /// The least margin, in the unit of the monitor's margin, and when it was first seen.
     pub worst_margin: Option<(f64, Nanos)>,
     /// The obligation that was pending at the end was made at this time. A failed requirement can have one, too.
-    pub open_since: Option<Nanos>,
+    pub pending_since: Option<Nanos>,
 }
 
 /// The first violation of a requirement.
@@ -55,7 +55,7 @@ pub struct Violation {
     /// When the violated obligation was made; `time` if there was none.
     pub trigger_time: Nanos,
     /// The trigger, the violating step, then the latest sample of each signal of the monitor; each step once.
-    pub witness: Vec<SeenStep>,
+    pub counterexample: Vec<SeenStep>,
     /// The values of the monitor's signals at that time, so far as they had any.
     pub values: Vec<(SignalId, Value)>,
 }

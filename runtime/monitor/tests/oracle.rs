@@ -191,7 +191,7 @@ struct Expected {
     discharged: usize,
     /// Times of all failures, and the step of each.
     failures: Vec<(Nanos, Option<usize>)>,
-    open_since: Option<Nanos>,
+    pending_since: Option<Nanos>,
 }
 
 fn agree(verdict: &MonitorVerdict, expected: &Expected) -> Result<(), TestCaseError> {
@@ -200,11 +200,11 @@ fn agree(verdict: &MonitorVerdict, expected: &Expected) -> Result<(), TestCaseEr
     prop_assert_eq!(verdict.failures as usize, expected.failures.len());
     let first = verdict.first_failure.as_ref().map(|v| (v.time, v.step));
     prop_assert_eq!(first, expected.failures.first().copied());
-    prop_assert_eq!(verdict.open_since, expected.open_since);
+    prop_assert_eq!(verdict.pending_since, expected.pending_since);
     let outcome = match expected {
         e if !e.failures.is_empty() => MonitorOutcome::Fail,
-        e if e.open_since.is_some() => MonitorOutcome::Open,
-        e if e.triggered == 0 => MonitorOutcome::NotChecked,
+        e if e.pending_since.is_some() => MonitorOutcome::Inconclusive,
+        e if e.triggered == 0 => MonitorOutcome::Vacuous,
         _ => MonitorOutcome::Pass,
     };
     prop_assert_eq!(verdict.outcome, outcome);
@@ -229,7 +229,7 @@ fn expect_response(trace: &Trace, within: Nanos) -> Expected {
             expected.failures.push((deadline, None));
             rest = &rest[in_time..];
         } else {
-            expected.open_since = Some(begun);
+            expected.pending_since = Some(begun);
             break;
         }
     }
@@ -250,11 +250,11 @@ proptest! {
     }
 
     #[test]
-    fn the_first_trigger_is_the_witness(trace in traces(), within in 0i64..15) {
+    fn the_first_trigger_begins_the_counterexample(trace in traces(), within in 0i64..15) {
         if let Some(violation) = judge_one(causes(Some(within)), &trace).first_failure {
             prop_assert_eq!(violation.trigger_time + within, violation.time);
-            let trigger = &trace.steps[violation.witness[0].index];
-            for seen in &violation.witness {
+            let trigger = &trace.steps[violation.counterexample[0].index];
+            for seen in &violation.counterexample {
                 prop_assert_eq!(&seen.step, &trace.steps[seen.index], "what is shown is what was there");
             }
             prop_assert_eq!(trigger.time, violation.trigger_time);

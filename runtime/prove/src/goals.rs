@@ -51,7 +51,7 @@ pub fn of_formula(formula: &Formula) -> ReachabilityGoal {
     ReachabilityGoal { what: GoalKind::Formula(formula.clone()), settled: false }
 }
 
-/// Decides goals about a network: each is reached by a run that keeps the assumptions, or by none, or open.
+/// Decides goals about a network: each is reached by a run that keeps the assumptions, or by none, or the search is inconclusive.
 ///
 /// # Errors
 /// If a run that keeps the assumptions meets a fault of the model, or the engine contradicts itself.

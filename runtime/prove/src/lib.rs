@@ -56,7 +56,7 @@ pub enum ProofStatus {
         triggered: Option<bool>,
     },
     /// Not decided: why.
-    Open(String),
+    Inconclusive(String),
     /// It cannot be judged on a model: why.
     NotOnTheModel(String),
     /// The model is at fault, and where.
@@ -110,8 +110,8 @@ pub fn prove(
             ProofStatus::Violated(run)
         }
         Some(GoalFate::Unreachable) => ProofStatus::Holds { triggered },
-        Some(GoalFate::Inconclusive(why)) => ProofStatus::Open(why),
-        None => ProofStatus::Open("it was not searched".to_owned()),
+        Some(GoalFate::Inconclusive(why)) => ProofStatus::Inconclusive(why),
+        None => ProofStatus::Inconclusive("it was not searched".to_owned()),
     };
     let note = match status {
         ProofStatus::Holds { triggered: Some(false) } => {
@@ -119,7 +119,7 @@ pub fn prove(
         }
         ProofStatus::Holds { .. }
         | ProofStatus::Violated(_)
-        | ProofStatus::Open(_)
+        | ProofStatus::Inconclusive(_)
         | ProofStatus::NotOnTheModel(_)
         | ProofStatus::Fault { .. } => None,
     };

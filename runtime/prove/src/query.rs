@@ -38,7 +38,7 @@ pub enum QueryFinding {
     /// Of a `sup` or `inf`, for each measure.
     Bounds(Vec<String>),
     /// Not decided: why.
-    Open(String),
+    Inconclusive(String),
     /// The model is at fault, and where.
     Fault(String),
 }
@@ -167,7 +167,7 @@ fn by_search(
                 sought.reached.clone(),
                 Some(Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
             ),
-            GoalOutcome::Inconclusive(what) => (QueryFinding::Open(exhausted(what)), None),
+            GoalOutcome::Inconclusive(what) => (QueryFinding::Inconclusive(exhausted(what)), None),
             GoalOutcome::Unreachable => (sought.not.clone(), None),
         };
         QueryResult { query: *query, found, run, notes: notes.clone(), states }
@@ -227,14 +227,14 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &Ask, answer: QueryAnswer) -
     let bounds = matches!(ask, Ask::Sup { .. } | Ask::Inf { .. });
     let run = answer.run.or_else(|| answer.extrema.iter().find_map(|e| e.run.clone()));
     let found = match answer.verdict {
-        QueryVerdict::Open => QueryFinding::Open(answer.why.clone()),
+        QueryVerdict::Inconclusive => QueryFinding::Inconclusive(answer.why.clone()),
         QueryVerdict::Holds | QueryVerdict::Fails if bounds => {
             QueryFinding::Bounds(answer.extrema.iter().map(bound).collect())
         }
         QueryVerdict::Holds => QueryFinding::Satisfied,
         QueryVerdict::Fails => QueryFinding::NotSatisfied,
     };
-    let said = matches!(found, QueryFinding::Open(_) | QueryFinding::Bounds(_));
+    let said = matches!(found, QueryFinding::Inconclusive(_) | QueryFinding::Bounds(_));
     QueryResult {
         query,
         found,
@@ -255,8 +255,10 @@ fn bound(extremum: &Extremum) -> String {
         ExtremumLimit::At { value, attained: false } => format!("{}, which is not attained", text(value)),
         ExtremumLimit::Unbounded => "without bound".to_owned(),
         ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
-        ExtremumLimit::Open { seen: Some(seen) } => format!("open; at least {} is attained", text(seen)),
-        ExtremumLimit::Open { seen: None } => "open".to_owned(),
+        ExtremumLimit::Inconclusive { seen: Some(seen) } => {
+            format!("inconclusive; at least {} is attained", text(seen))
+        }
+        ExtremumLimit::Inconclusive { seen: None } => "inconclusive".to_owned(),
     }
 }
 

@@ -39,7 +39,7 @@ pub struct ProofOptions {
 /// For watching a search from another thread.
 #[derive(Debug, Default)]
 pub struct SearchWatch {
-    /// Set: the search ends soon, and what is not decided is open.
+    /// Set: the search ends soon, and what is not decided is inconclusive.
     pub stop: AtomicBool,
     /// How many states are stored so far.
     pub stored: AtomicUsize,

@@ -179,7 +179,7 @@ fn is_reached(program: &Program, observed: &ObservedNetwork, formula: &Formula) 
     match &decided.fates[0] {
         GoalFate::Reached(_) => true,
         GoalFate::Unreachable => false,
-        GoalFate::Inconclusive(why) => panic!("open: {why}"),
+        GoalFate::Inconclusive(why) => panic!("inconclusive: {why}"),
     }
 }
 

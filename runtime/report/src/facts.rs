@@ -15,6 +15,8 @@ pub trait ShownOutcome {
     fn short(self) -> &'static str;
     fn letter(self) -> char;
     fn word(self) -> &'static str;
+    /// What the legend adds to the word; empty if the word says it.
+    fn meaning(self) -> &'static str;
 }
 
 impl ShownOutcome for Outcome {
@@ -23,8 +25,8 @@ impl ShownOutcome for Outcome {
         match self {
             Outcome::Pass => "✓",
             Outcome::Fail => "✗",
-            Outcome::NotChecked => "○",
-            Outcome::Open => "…",
+            Outcome::Vacuous => "○",
+            Outcome::Inconclusive => "…",
             Outcome::Error => "!",
         }
     }
@@ -34,9 +36,9 @@ impl ShownOutcome for Outcome {
         match self {
             Outcome::Pass => "P",
             Outcome::Fail => "F",
-            Outcome::NotChecked => "NC",
-            Outcome::Open => "open",
-            Outcome::Error => "err",
+            Outcome::Vacuous => "V",
+            Outcome::Inconclusive => "I",
+            Outcome::Error => "E",
         }
     }
 
@@ -45,8 +47,8 @@ impl ShownOutcome for Outcome {
         match self {
             Outcome::Pass => 'p',
             Outcome::Fail => 'f',
-            Outcome::NotChecked => 'n',
-            Outcome::Open => 'o',
+            Outcome::Vacuous => 'n',
+            Outcome::Inconclusive => 'o',
             Outcome::Error => 'e',
         }
     }
@@ -55,10 +57,17 @@ impl ShownOutcome for Outcome {
     fn word(self) -> &'static str {
         match self {
             Outcome::Pass => "passed",
-            Outcome::Fail => "violated",
-            Outcome::NotChecked => "not checked",
-            Outcome::Open => "open",
+            Outcome::Fail => "failed",
+            Outcome::Vacuous => "vacuous",
+            Outcome::Inconclusive => "inconclusive",
             Outcome::Error => "error",
+        }
+    }
+
+    fn meaning(self) -> &'static str {
+        match self {
+            Outcome::Pass | Outcome::Fail | Outcome::Inconclusive | Outcome::Error => "",
+            Outcome::Vacuous => "never triggered",
         }
     }
 }
@@ -76,8 +85,8 @@ pub fn total(requirement: &RequirementResult) -> VerdictTally {
     requirement.tally.iter().fold(VerdictTally::default(), |sum, t| VerdictTally {
         pass: sum.pass + t.pass,
         fail: sum.fail + t.fail,
-        not_checked: sum.not_checked + t.not_checked,
-        open: sum.open + t.open,
+        vacuous: sum.vacuous + t.vacuous,
+        inconclusive: sum.inconclusive + t.inconclusive,
         error: sum.error + t.error,
     })
 }
@@ -89,12 +98,12 @@ pub fn standing(requirement: &RequirementResult) -> Outcome {
         Outcome::Fail
     } else if tally.pass > 0 {
         Outcome::Pass
-    } else if tally.open > 0 {
-        Outcome::Open
+    } else if tally.inconclusive > 0 {
+        Outcome::Inconclusive
     } else if tally.error > 0 {
         Outcome::Error
     } else {
-        Outcome::NotChecked
+        Outcome::Vacuous
     }
 }
 
@@ -184,9 +193,9 @@ pub fn how(failure: &FirstFailure) -> String {
 
 /// A violation in a few words: the step that violates, with the margin if it has one, or what was not done.
 pub fn in_short(verdict: &VerdictResult, failure: &FirstFailure) -> String {
-    let step = failure.witness.last().map(|s| text::line(&s.text)).unwrap_or_default();
+    let step = failure.counterexample.last().map(|s| text::line(&s.text)).unwrap_or_default();
     let passed = text::moment(failure.time - failure.triggered_at);
-    match (failure.deadline, failure.witness.as_slice()) {
+    match (failure.deadline, failure.counterexample.as_slice()) {
         (true, []) => format!("nothing within {passed}"),
         (true, _) => format!("nothing within {passed} of {step}"),
         (false, [first, .., _]) if failure.triggered_at < failure.time => {
@@ -209,18 +218,18 @@ pub fn places(results: &Results) -> BTreeMap<&TestName, usize> {
     results.tests.iter().enumerate().rev().map(|(i, t)| (&t.name, i)).collect()
 }
 
-/// What the campaign leaves unsaid, in sentences: unchecked requirements, missed bins, open goals, missed code, errors.
+/// What the campaign leaves unsaid, in sentences: undecided requirements, missed bins, inconclusive goals, missed code, errors.
 pub fn gaps(results: &Results) -> Vec<String> {
     let mut gaps = Vec::new();
     errors(results, &mut gaps);
-    unchecked(results, &mut gaps);
+    undecided(results, &mut gaps);
     missed_bins(results, &mut gaps);
     for suite in &results.suites {
-        let open = suite.goals.iter().filter(|g| g.status == GoalStatus::Open).count();
-        if open > 0 {
+        let inconclusive = suite.goals.iter().filter(|g| g.status == GoalStatus::Inconclusive).count();
+        if inconclusive > 0 {
             gaps.push(format!(
-                "{} of {} stayed open: the search ended before it had an answer.",
-                text::count(open, "goal"),
+                "{} of {} stayed inconclusive: the search ended before it had an answer.",
+                text::count(inconclusive, "goal"),
                 suite.name
             ));
         }
@@ -259,7 +268,7 @@ fn errors(results: &Results, gaps: &mut Vec<String>) {
     }
 }
 
-fn unchecked(results: &Results, gaps: &mut Vec<String>) {
+fn undecided(results: &Results, gaps: &mut Vec<String>) {
     let checked = |t: &VerdictTally| t.pass + t.fail > 0;
     let never: Vec<String> = results
         .requirements
@@ -268,7 +277,7 @@ fn unchecked(results: &Results, gaps: &mut Vec<String>) {
         .map(|r| r.name.to_string())
         .collect();
     if !never.is_empty() {
-        gaps.push(format!("{} got no verdict from any test.", text::enumeration(&never)));
+        gaps.push(format!("{} neither passed nor failed in any test.", text::enumeration(&never)));
     }
     for (i, suite) in results.suites.iter().enumerate() {
         let here = |r: &&RequirementResult| {
@@ -277,7 +286,7 @@ fn unchecked(results: &Results, gaps: &mut Vec<String>) {
         let names: Vec<String> =
             results.requirements.iter().filter(here).map(|r| r.name.to_string()).collect();
         if !names.is_empty() {
-            gaps.push(format!("{} got no verdict from {}.", text::enumeration(&names), suite.name));
+            gaps.push(format!("{} neither passed nor failed in {}.", text::enumeration(&names), suite.name));
         }
     }
 }

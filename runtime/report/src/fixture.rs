@@ -192,7 +192,7 @@ fn test(s: usize, i: usize) -> Made {
         suite: suite.into(),
         method,
         seed: number as u64,
-        ended: if error.is_some() { RunEnd::Error } else { [RunEnd::Quiet, RunEnd::Limit][i % 2] },
+        ended: if error.is_some() { RunEnd::Error } else { [RunEnd::Quiescent, RunEnd::Limit][i % 2] },
         duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
         judgement: Judgement {
             verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
@@ -267,10 +267,10 @@ fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
         1 if dice < 9 && s != 2 => Outcome::Fail,
         2 if s == 0 && i % 12 == 3 => Outcome::Fail,
         4 if dice < 8 * (1 + s as u64) => Outcome::Fail,
-        1 if s == 2 => Outcome::NotChecked,
-        3 if dice > 92 => Outcome::Open,
+        1 if s == 2 => Outcome::Vacuous,
+        3 if dice > 92 => Outcome::Inconclusive,
         _ if is_broken => Outcome::Error,
-        _ if dice > 60 => Outcome::NotChecked,
+        _ if dice > 60 => Outcome::Vacuous,
         _ => Outcome::Pass,
     };
     let failure =
@@ -284,7 +284,7 @@ fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
     VerdictResult {
         requirement: REQUIREMENTS[r].0.into(),
         outcome,
-        triggered: if outcome == Outcome::NotChecked { 0 } else { 1 + (dice % 4) as u32 },
+        triggered: if outcome == Outcome::Vacuous { 0 } else { 1 + (dice % 4) as u32 },
         failures: u32::from(outcome == Outcome::Fail),
         failure,
         worst_margin,
@@ -298,19 +298,26 @@ fn failure(r: usize, time: f64) -> FirstFailure {
             time,
             triggered_at: time,
             deadline: false,
-            witness: vec![step(188, time, "gripper_closing, distance(person.hand, robot.palm) = 0.018 m")],
+            counterexample: vec![step(
+                188,
+                time,
+                "gripper_closing, distance(person.hand, robot.palm) = 0.018 m",
+            )],
         },
         2 => FirstFailure {
             time,
             triggered_at: time - 3.5,
             deadline: false,
-            witness: vec![step(301, time - 3.5, "sensed(true, false, true)"), step(316, time, "released")],
+            counterexample: vec![
+                step(301, time - 3.5, "sensed(true, false, true)"),
+                step(316, time, "released"),
+            ],
         },
         _ => FirstFailure {
             time,
             triggered_at: time - 10.0,
             deadline: true,
-            witness: vec![step(
+            counterexample: vec![step(
                 204,
                 time - 10.0,
                 if r == 0 { "decided(true)" } else { "sensed(true, true, true)" },
@@ -411,7 +418,7 @@ fn suite(s: usize, tests: &[&Made]) -> SuiteInfo {
         }));
         goals.push(goal(
             "edge Robot: sensing -> timeout3".into(),
-            GoalStatus::Open,
+            GoalStatus::Inconclusive,
             "the budget of states was used up",
         ));
         goals.push(goal("location Person.gone".into(), GoalStatus::Reached, "in 5 steps"));

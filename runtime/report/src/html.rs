@@ -186,7 +186,7 @@ struct Goals {
     suite: String,
     reached: Vec<Goal>,
     unreachable: Vec<Goal>,
-    open: Vec<Goal>,
+    inconclusive: Vec<Goal>,
     total: usize,
 }
 
@@ -254,12 +254,12 @@ fn conclusion(results: &Results) -> Vec<Part> {
     if !held.is_empty() {
         say("p", format!("{} held in every test that checked it.", text::enumeration(&held)));
     }
-    for outcome in [Outcome::Open, Outcome::Error, Outcome::NotChecked] {
+    for outcome in [Outcome::Inconclusive, Outcome::Error, Outcome::Vacuous] {
         let names = named(outcome);
         let what = match outcome {
-            Outcome::Open => "stayed open in every test that triggered it",
-            Outcome::Error => "got no verdict, since tests broke off",
-            Outcome::NotChecked => "was not checked by any test",
+            Outcome::Inconclusive => "was inconclusive in every test that triggered it",
+            Outcome::Error => "was not decided, since tests broke off",
+            Outcome::Vacuous => "was vacuous (never triggered) in every test",
             Outcome::Pass | Outcome::Fail => continue,
         };
         if !names.is_empty() {
@@ -359,9 +359,13 @@ fn in_words(standing: Outcome, total: &VerdictTally) -> String {
             format!("violated in {} of {} tests that checked it", total.fail, total.pass + total.fail)
         }
         Outcome::Pass => format!("held in all {} tests that checked it", total.pass),
-        Outcome::NotChecked | Outcome::Open | Outcome::Error => return standing.word().to_owned(),
+        Outcome::Vacuous | Outcome::Inconclusive | Outcome::Error => return standing.word().to_owned(),
     };
-    if total.open > 0 { format!("{checked}, open in {}", total.open) } else { checked }
+    if total.inconclusive > 0 {
+        format!("{checked}, inconclusive in {}", total.inconclusive)
+    } else {
+        checked
+    }
 }
 
 /// The bins by the cross product that they belong to, in order.
@@ -415,7 +419,7 @@ fn goals(suite: &SuiteInfo) -> Goals {
         suite: suite.name.to_string(),
         reached: with(GoalStatus::Reached),
         unreachable: with(GoalStatus::Unreachable),
-        open: with(GoalStatus::Open),
+        inconclusive: with(GoalStatus::Inconclusive),
         total: suite.goals.len(),
     }
 }

@@ -13,8 +13,8 @@ use crate::{
     model, text,
 };
 
-/// Steps of a witness that are printed; the last ones, since they violate.
-const WITNESS: usize = 20;
+/// Steps of a counterexample that are printed; the last ones, since they violate.
+const COUNTEREXAMPLE: usize = 20;
 
 /// The results as JUnit XML.
 #[must_use]
@@ -139,7 +139,7 @@ fn status(results: &Results, test: &TestResult) -> TestCaseStatus {
     status
 }
 
-/// Every violated requirement with its time and witness.
+/// Every violated requirement with its time and counterexample.
 fn violations(results: &Results, test: &TestResult) -> String {
     let mut out = String::new();
     for requirement in &results.requirements {
@@ -155,11 +155,11 @@ fn violations(results: &Results, test: &TestResult) -> String {
         if let Some((value, unit)) = &verdict.worst_margin {
             let _ = writeln!(out, "  worst margin {}", text::margin(*value, unit));
         }
-        let left_out = failure.witness.len().saturating_sub(WITNESS);
+        let left_out = failure.counterexample.len().saturating_sub(COUNTEREXAMPLE);
         if left_out > 0 {
             let _ = writeln!(out, "  … {} before", text::count(left_out, "step"));
         }
-        for step in &failure.witness[left_out..] {
+        for step in &failure.counterexample[left_out..] {
             let _ = writeln!(out, "  {:>10}  {}", text::moment(step.time), text::line(&step.text));
         }
         if failure.deadline {

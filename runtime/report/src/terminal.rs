@@ -76,8 +76,8 @@ impl Style {
         match outcome {
             Outcome::Pass => Style::Good,
             Outcome::Fail => Style::Bad,
-            Outcome::NotChecked => Style::Dim,
-            Outcome::Open | Outcome::Error => Style::Warn,
+            Outcome::Vacuous => Style::Dim,
+            Outcome::Inconclusive | Outcome::Error => Style::Warn,
         }
     }
 }
@@ -173,7 +173,7 @@ fn columns(results: &Results) -> Vec<(Outcome, usize)> {
     Outcome::ALL
         .into_iter()
         .map(|o| (o, most(o)))
-        .filter(|(o, most)| matches!(o, Outcome::Pass | Outcome::Fail | Outcome::NotChecked) || *most > 0)
+        .filter(|(o, most)| matches!(o, Outcome::Pass | Outcome::Fail | Outcome::Vacuous) || *most > 0)
         .map(|(o, most)| (o, most.to_string().len().max(o.short().len()) + 1))
         .collect()
 }
@@ -206,6 +206,27 @@ fn requirements(page: &mut Page, results: &Results) {
             requirement_line(page, requirement, suites, (&columns, gap), label);
         }
     }
+    legend(page, &columns);
+}
+
+/// What the heads of the columns stand for, on as few lines as fit.
+fn legend(page: &mut Page, columns: &[(Outcome, usize)]) {
+    let mut line = String::new();
+    for (outcome, _) in columns {
+        let mut part = format!("{} {}", outcome.short(), outcome.word());
+        if !outcome.meaning().is_empty() {
+            part += &format!(" ({})", outcome.meaning());
+        }
+        if line.is_empty() {
+            line = format!("  {part}");
+        } else if line.chars().count() + 3 + part.chars().count() > page.width {
+            page.line(&[Cell(line, Style::Dim)]);
+            line = format!("  {part}");
+        } else {
+            line += &format!(" · {part}");
+        }
+    }
+    page.line(&[Cell(line, Style::Dim)]);
 }
 
 fn requirement_line(
@@ -225,7 +246,7 @@ fn requirement_line(
         cells.push(Cell(" ".repeat(gap), Style::Plain));
         for (outcome, width) in columns {
             let number = tally.of(*outcome);
-            let marked = matches!(outcome, Outcome::Fail | Outcome::Open | Outcome::Error);
+            let marked = matches!(outcome, Outcome::Fail | Outcome::Inconclusive | Outcome::Error);
             let style = match number {
                 0 => Style::Dim,
                 _ if marked => Style::of(*outcome),

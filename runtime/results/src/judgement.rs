@@ -25,9 +25,9 @@ pub enum VerdictOutcome {
     /// It was violated at least once.
     Fail,
     /// It was never triggered.
-    NotChecked,
+    Vacuous,
     /// It was not violated, but the run ended while an obligation was pending.
-    Open,
+    Inconclusive,
     /// The run broke off before a violation.
     Error,
 }
@@ -36,8 +36,8 @@ impl VerdictOutcome {
     pub const ALL: [VerdictOutcome; 5] = [
         VerdictOutcome::Pass,
         VerdictOutcome::Fail,
-        VerdictOutcome::NotChecked,
-        VerdictOutcome::Open,
+        VerdictOutcome::Vacuous,
+        VerdictOutcome::Inconclusive,
         VerdictOutcome::Error,
     ];
 }
@@ -64,10 +64,10 @@ pub struct FirstFailure {
     pub time: f64,
     /// When the violated obligation was made, in seconds.
     pub triggered_at: f64,
-    /// `true`: a deadline passed; `false`: the last witness violates.
+    /// `true`: a deadline passed; `false`: the last step of the counterexample violates.
     pub deadline: bool,
-    /// In order.
-    pub witness: Vec<WitnessStep>,
+    /// The steps that show it, in order.
+    pub counterexample: Vec<WitnessStep>,
 }
 
 /// A step of the trace that bears out a verdict.

@@ -38,14 +38,14 @@ pub use test::{OutputSummary, RunMark, TestResult};
 pub const FORMAT: &str = "hrdsl-results";
 /// The version of the format that this crate writes and reads. A field that is added leaves it as it is; one that goes, or
 /// means something else, does not.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// A whole campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Results {
     /// `hrdsl-results`
     pub format: String,
-    /// The version of the format, 1.
+    /// The version of the format, 2.
     pub version: u32,
     /// The version of hrdsl that made it.
     pub hrdsl: String,
@@ -176,7 +176,7 @@ mod tests {
         assert!(refusal("{}").contains("`format`"));
         assert!(refusal(r#"{"format":"hrdsl-run","version":1}"#).contains("`format`"));
         let later = refusal(r#"{"format":"hrdsl-results","version":7,"tests":0}"#);
-        assert_eq!(later, "these results have version 7 of the format; this hrdsl reads version 1");
+        assert_eq!(later, "these results have version 7 of the format; this hrdsl reads version 2");
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub struct SuiteInfo {
 pub struct GoalReport {
     pub goal: GoalName,
     pub status: GoalStatus,
-    /// For an unreachable goal, why; for an open one, which budget ran out.
+    /// For an unreachable goal, why; for an inconclusive one, which budget ran out.
     pub reason: String,
     /// For one that is reached: the first test whose witness reaches it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -53,7 +53,7 @@ pub struct GoalReport {
 pub enum GoalStatus {
     Reached,
     Unreachable,
-    Open,
+    Inconclusive,
 }
 
 /// What the runs of a suite's agents reached of their programs.

@@ -31,8 +31,8 @@ pub struct RequirementResult {
 pub struct VerdictTally {
     pub pass: u32,
     pub fail: u32,
-    pub not_checked: u32,
-    pub open: u32,
+    pub vacuous: u32,
+    pub inconclusive: u32,
     pub error: u32,
 }
 
@@ -42,8 +42,8 @@ impl VerdictTally {
         *match outcome {
             VerdictOutcome::Pass => &mut self.pass,
             VerdictOutcome::Fail => &mut self.fail,
-            VerdictOutcome::NotChecked => &mut self.not_checked,
-            VerdictOutcome::Open => &mut self.open,
+            VerdictOutcome::Vacuous => &mut self.vacuous,
+            VerdictOutcome::Inconclusive => &mut self.inconclusive,
             VerdictOutcome::Error => &mut self.error,
         } += 1;
     }
@@ -54,8 +54,8 @@ impl VerdictTally {
         match outcome {
             VerdictOutcome::Pass => self.pass,
             VerdictOutcome::Fail => self.fail,
-            VerdictOutcome::NotChecked => self.not_checked,
-            VerdictOutcome::Open => self.open,
+            VerdictOutcome::Vacuous => self.vacuous,
+            VerdictOutcome::Inconclusive => self.inconclusive,
             VerdictOutcome::Error => self.error,
         }
     }

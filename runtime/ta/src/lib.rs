@@ -25,8 +25,8 @@
 //! - `decide`: the answers, by these searches and by walks of the plain zone graph.
 //!
 //! # Semantics
-//! UPPAAL's, and joint channels after TChecker's synchronisation vectors. Guards are evaluated before any update. Who sends
-//! or offers updates first, then the others in the network's order; the parties of a joint channel in its order. A sender of
+//! UPPAAL's, and multi-way channels after TChecker's synchronisation vectors. Guards are evaluated before any update. Who sends
+//! or offers updates first, then the others in the network's order; the participants of a multi-way channel in its order. A sender of
 //! an event or broadcast never waits: each other automaton with an enabled receiving edge takes part, by any one of them.
 //! Invariants must hold after the updates, or the transition is not possible. No time passes while an automaton is in an
 //! urgent or committed location, or a transition over an urgent channel is possible; from a committed one, the next

@@ -287,7 +287,7 @@ fn member(kinds: [u8; 3]) -> impl Strategy<Value = Member> {
 }
 
 fn members() -> impl Strategy<Value = Vec<Member>> {
-    // Offers and accepts of a hand-shake, a broadcast, an event; a joint channel.
+    // Offers and accepts of a binary synchronisation, a broadcast, an event; a multi-way channel.
     let pairs = [[0, 2, 0], [1, 3, 2], [5, 6, 4], [7, 8, 5], [4, 4, 7], [9, 9, 9]];
     let kinds = prop_oneof![
         3 => (0..pairs.len()).prop_map(move |i| pairs[i]),

@@ -396,7 +396,7 @@ sequenceDiagram
             && dot.contains("s0_0 -> s0_1 [label = \"go\", style = dashed];")
     );
     let json = serde_json::to_value(&trace).unwrap();
-    assert_eq!(json["scenes"][0]["parts"][1]["to"], "d");
+    assert_eq!(json["steps"][0]["parts"][1]["to"], "d");
     assert_eq!(json["ending"], "reached");
 }
 
@@ -435,7 +435,7 @@ fn channels() -> (Program, [LocationId; 2]) {
 #[test]
 fn channels_urge_and_are_told() {
     let (p, [a, b]) = channels();
-    // Time never passes in a: the hand-shake is possible.
+    // Time never passes in a: the binary synchronisation is possible.
     let in_a = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 3)]);
     let fresh = Formula::And(vec![at(0, b), x(0, ClockOp::Gt, 2)]);
     assert_eq!(
@@ -456,7 +456,7 @@ fn channels_urge_and_are_told() {
 ";
     assert_eq!(trace.text(), told);
     assert!(trace.mermaid().contains("  a0->>a1: go(1)\n"));
-    // Waiting in b for ever is possible: nothing forces the joint channel.
+    // Waiting in b for ever is possible: nothing forces the multi-way channel.
     let no = ask(&p, Ask::LeadsTo(at(0, b), at(0, a)));
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert!(no.why.starts_with("after the first, time can pass for ever in `A.b` and `B.b`"), "{}", no.why);

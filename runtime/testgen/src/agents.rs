@@ -158,7 +158,7 @@ struct AgentRunInput<'a> {
 struct AgentRunOutcome {
     test: AbstractTest,
     measured: Vec<(AgentId, AgentCounts)>,
-    /// Of the coverage points.
+    /// Of the coverpoints.
     numbers: Vec<i64>,
     warnings: Vec<String>,
     keeps_assumptions: bool,

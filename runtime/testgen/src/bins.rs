@@ -1,4 +1,4 @@
-//! Why a bin of a cross was not hit, from the numbers that runs had for the coverage points.
+//! Why a bin of a cross was not hit, from the numbers that runs had for the coverpoints.
 
 use std::collections::BTreeSet;
 

@@ -28,7 +28,7 @@ pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<
     all
 }
 
-/// One counter for each coverage point, up to where its bins no longer tell numbers apart.
+/// One counter for each coverpoint, up to where its bins no longer tell numbers apart.
 pub fn counters(program: &Program) -> Vec<EventCounter> {
     let cap = |point: &hrdsl_ir::coverage::Point| {
         point.bins.iter().map(|b| b.hi.map_or(b.lo, |hi| hi + 1).max(b.lo)).max().unwrap_or(0)

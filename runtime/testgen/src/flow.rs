@@ -32,7 +32,7 @@ pub fn pairs(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
             };
             named.push(NamedGoal {
                 name: format!(
-                    "pair {}: {}, {}",
+                    "edge pair {}: {}, {}",
                     automaton.name,
                     edge_name(automaton, *i, *first),
                     edge_name(automaton, *j, *second)
@@ -92,7 +92,7 @@ pub fn uses(program: &Program, network: &Network) -> Vec<NamedGoal> {
                     definition: setter.map(|t| (t.automaton, t.edge)),
                     user: (user.automaton, user.edge),
                 };
-                let name = format!("use of {name}: {from}, read by {}", user.name);
+                let name = format!("def-use pair of {name}: {from}, read by {}", user.name);
                 named.push(NamedGoal::one(name, what, false, WitnessedGoal::Nothing));
             }
         }

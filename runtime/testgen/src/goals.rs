@@ -79,7 +79,7 @@ impl AgentGoals {
         self.all.iter().enumerate().filter(|(_, g)| is_reached(g)).map(|(i, _)| i).collect()
     }
 
-    /// Why no run reached a goal. `seen` are the numbers that runs had for the coverage points.
+    /// Why no run reached a goal. `seen` are the numbers that runs had for the coverpoints.
     #[must_use]
     pub fn why(&self, goal: usize, team: &AgentTeam<'_>, seen: &BTreeSet<Vec<i64>>) -> String {
         match self.all.get(goal) {

@@ -1,6 +1,6 @@
 //! Tests by search: one exploration of the network decides every goal; what its witnesses show needs no test of its own.
 //!
-//! The coverage points are counted by the search itself, so that a bin of a cross product is a condition on states, and
+//! The coverpoints are counted by the search itself, so that a bin of a cross product is a condition on states, and
 //! no property is written by hand. The goals of a requirement are decided on the network with the requirement's observer.
 
 use hrdsl_ir::{
@@ -134,7 +134,7 @@ fn said(fate: &GoalFate, states: usize) -> (GoalStatus, String) {
             GoalStatus::Unreachable,
             format!("proved: none of the {states} symbolic states that the model can reach meets it"),
         ),
-        GoalFate::Inconclusive(why) => (GoalStatus::Open, why.clone()),
+        GoalFate::Inconclusive(why) => (GoalStatus::Inconclusive, why.clone()),
     }
 }
 

@@ -45,7 +45,7 @@ pub enum TraceStepKind {
 pub enum RunEnd {
     /// Nothing more could happen.
     #[default]
-    Quiet,
+    Quiescent,
     /// At the time limit.
     Limit,
     /// It broke off: what it did not do, it might have done.
@@ -53,21 +53,22 @@ pub enum RunEnd {
 }
 
 impl RunEnd {
-    pub const ALL: [RunEnd; 3] = [RunEnd::Quiet, RunEnd::Limit, RunEnd::Error];
+    pub const ALL: [RunEnd; 3] = [RunEnd::Quiescent, RunEnd::Limit, RunEnd::Error];
 
     /// The word for it, in recordings and results.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            RunEnd::Quiet => "quiet",
+            RunEnd::Quiescent => "quiescent",
             RunEnd::Limit => "limit",
             RunEnd::Error => "error",
         }
     }
 
-    /// The end that a word stands for.
+    /// The end that a word stands for; `quiet` is what older recordings say for `quiescent`.
     #[must_use]
     pub fn of_word(word: &str) -> Option<Self> {
+        let word = if word == "quiet" { "quiescent" } else { word };
         Self::ALL.into_iter().find(|end| end.word() == word)
     }
 }

@@ -193,13 +193,18 @@ fn the_last_line_says_how_the_run_ended() {
     let ending = |last: &str| parse(&program(), &[HEADER, last].join("\n")).unwrap().0.ending;
     assert_eq!(ending(r#"{"end":1}"#), RecordingEnd::default());
     assert_eq!(ending(r#"{"end":1,"ended":"limit"}"#).kind, RunEnd::Limit);
+    assert_eq!(ending(r#"{"end":1,"ended":"quiescent"}"#).kind, RunEnd::Quiescent);
+    assert_eq!(ending(r#"{"end":1,"ended":"quiet"}"#).kind, RunEnd::Quiescent, "as it was said before");
     let error = ending(r#"{"end":1,"ended":"error","error":"gone"}"#);
     assert_eq!(error, RecordingEnd { kind: RunEnd::Error, error: Some("gone".into()) });
     let faults = [
-        (r#"{"end":1,"ended":"over"}"#, "`over` is not how a run ends; that is `quiet`, `limit` or `error`"),
+        (
+            r#"{"end":1,"ended":"over"}"#,
+            "`over` is not how a run ends; that is `quiescent`, `limit` or `error`",
+        ),
         (r#"{"end":1,"error":"gone"}"#, "a run has an `error` only if it `ended` in error"),
         (r#"{"end":1,"t":1}"#, "the last line has `end`, `ended` and `error` only"),
-        (r#"{"t":1,"ended":"quiet"}"#, "only the last line says how the run ended"),
+        (r#"{"t":1,"ended":"quiescent"}"#, "only the last line says how the run ended"),
     ];
     for (line, says) in faults {
         assert_eq!(fault(&[HEADER, line]), (2, says.to_owned()));

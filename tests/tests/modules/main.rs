@@ -49,7 +49,7 @@ fn files_import_in_one_direction() {
             let _ = writeln!(
                 faults,
                 "{name}: {files} files and {rooms} rooms are tied, and {may_files} and {may_rooms} are excepted; \
-                 mend it, or correct the exception: (\"{name}\", {files}, {rooms})\n{told}"
+                 fix it, or correct the exception: (\"{name}\", {files}, {rooms})\n{told}"
             );
         }
     }
@@ -75,14 +75,14 @@ fn every_file_says_what_it_is_for() {
 fn the_page_is_true() {
     let now = page::page(&PACKAGES);
     let path = root().join("ARCHITECTURE-modules.md");
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(path, now).unwrap();
         return;
     }
     let kept = fs::read_to_string(path).unwrap_or_default();
     assert!(
         kept == now,
-        "ARCHITECTURE-modules.md is old: HRDSL_RENEW=1 cargo test -p hrdsl-tests --test modules"
+        "ARCHITECTURE-modules.md is old: HRDSL_UPDATE=1 cargo test -p hrdsl-tests --test modules"
     );
 }
 

@@ -17,7 +17,7 @@ Every crate, every folder, every file: what it is for in one sentence, and what 
 `src`, or a file that lies there. What is higher uses what is lower, never the other way round; `lib.rs` and `main.rs` are façades, which see all
 rooms. [ARCHITECTURE.md](ARCHITECTURE.md) says why the house is built so.
 
-This page is made from the sources by `HRDSL_RENEW=1 cargo test -p hrdsl-tests --test modules`; the test compares it and finds files
+This page is made from the sources by `HRDSL_UPDATE=1 cargo test -p hrdsl-tests --test modules`; the test compares it and finds files
 that import each other in circles.
 
 ";

@@ -73,7 +73,7 @@ fn place(line: &LogLine, text: &str) -> String {
 
 fn ended(ended: &RunTermination) -> String {
     match ended {
-        RunTermination::Quiet => "quiescent".to_owned(),
+        RunTermination::Quiescent => "quiescent".to_owned(),
         RunTermination::Limit => "horizon".to_owned(),
         RunTermination::Fault(HarnessError::Model(text)) => {
             let agent = text.split('`').nth(1).unwrap_or("?");

@@ -2,7 +2,7 @@
 //! the reference in Python must both print that log.
 //!
 //! A block `hri,run` is a scenario; all its agents play, in their order, without chosen beliefs. The block `log` after it is
-//! what is printed; of a long log the middle is left out, but it is compared. With `HRDSL_RENEW=1` the logs are written anew;
+//! what is printed; of a long log the middle is left out, but it is compared. With `HRDSL_UPDATE=1` the logs are written anew;
 //! read them before they are believed.
 
 use std::{collections::BTreeSet, fs, path::Path};
@@ -30,13 +30,13 @@ struct Checked {
 #[test]
 fn every_program_has_its_log() {
     let folder = root().join("spec/agentspeak");
-    let renew = std::env::var_os("HRDSL_RENEW").is_some();
+    let update = std::env::var_os("HRDSL_UPDATE").is_some();
     let (mut faults, mut programs) = (Vec::new(), 0);
     for path in pages(&folder) {
-        let checked = page(&path, renew);
+        let checked = page(&path, update);
         programs += checked.programs;
         faults.extend(checked.faults);
-        if renew {
+        if update {
             fs::write(&path, checked.page).unwrap();
         }
     }
@@ -44,7 +44,7 @@ fn every_program_has_its_log() {
     assert!(programs >= ENOUGH, "only {programs} programs of {ENOUGH}");
 }
 
-fn page(path: &Path, renew: bool) -> Checked {
+fn page(path: &Path, update: bool) -> Checked {
     let text = fs::read_to_string(path).unwrap();
     let blocks = split(&text).0;
     let mut checked = Checked { faults: Vec::new(), programs: 0, page: text.clone() };
@@ -60,7 +60,7 @@ fn page(path: &Path, renew: bool) -> Checked {
             continue;
         };
         match run(block) {
-            Ok(ours) if renew => {
+            Ok(ours) if update => {
                 let (from, to) = (
                     format!("{}```log\n{}```", head(block), log.text),
                     format!("{}```log\n{ours}```", head(block)),

@@ -14,7 +14,7 @@
 
 use hrdsl_compiler::{Compilation, Input, Loader, Source, compile_with};
 
-use crate::mending;
+use crate::fixing;
 use crate::page::{Block, read, split};
 
 /// What a fence says.
@@ -115,7 +115,7 @@ pub fn faults(page: &str, blocks: &[Block]) -> (Vec<String>, usize) {
         compiled += 1;
         faults.extend(fault(&compilation, rule.expect.as_ref(), &text).map(|f| format!("{name}: {f}")));
         let again = |text: &str| compile_with(Input { name: &name, text }, &[], &modules);
-        faults.extend(mending::faults(&text, &again).0);
+        faults.extend(fixing::faults(&text, &again).0);
     }
     if !grown.is_empty() {
         let whole = compile_with(Input { name: page, text: &grown }, &[], &Modules(files));

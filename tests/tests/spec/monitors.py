@@ -60,9 +60,9 @@ class Monitor:
     def violation(self, t, i):
         o, read = self.o or (t, i), [s for s in self.it["signals"] if s in self.sigma]
         steps = [o[1], i, *(self.sigma[s][1] for s in read)]
-        witness = list(dict.fromkeys(step for step in steps if step is not None))
+        counterexample = list(dict.fromkeys(step for step in steps if step is not None))
         values = [[s, self.sigma[s][0]] for s in read]
-        return {"time": t, "step": i, "trigger_time": o[0], "witness": witness, "values": values}
+        return {"time": t, "step": i, "trigger_time": o[0], "counterexample": counterexample, "values": values}
 
     def pass_time(self, t):
         while self.d < t:
@@ -108,11 +108,11 @@ class Monitor:
         self.sampled()
         self.pass_time(end + 1)
         pending = self.it["states"][self.q]["pending"]
-        outcome = "fail" if self.g else "open" if pending else "pass" if self.n else "not_checked"
+        outcome = "fail" if self.g else "inconclusive" if pending else "pass" if self.n else "vacuous"
         return {
             "monitor": self.number, "outcome": outcome, "triggered": self.n, "discharged": self.k, "failures": self.g,
             "first_failure": self.V, "worst_margin": self.margin and list(self.margin),
-            "open_since": (self.o[0] if self.o else self.f) if pending else None,
+            "pending_since": (self.o[0] if self.o else self.f) if pending else None,
         }
 
 

@@ -66,9 +66,9 @@ fn as_json(trace: &Trace) -> Json {
 /// A verdict as the reference says it.
 fn in_words(verdict: &MonitorVerdict) -> Json {
     let violation = |v: &Violation| {
-        let witness: Vec<usize> = v.witness.iter().map(|seen| seen.index).collect();
+        let counterexample: Vec<usize> = v.counterexample.iter().map(|seen| seen.index).collect();
         json!({
-            "time": v.time, "step": v.step, "trigger_time": v.trigger_time, "witness": witness, "values": v.values
+            "time": v.time, "step": v.step, "trigger_time": v.trigger_time, "counterexample": counterexample, "values": v.values
         })
     };
     json!({
@@ -76,15 +76,15 @@ fn in_words(verdict: &MonitorVerdict) -> Json {
         "outcome": match verdict.outcome {
             MonitorOutcome::Pass => "pass",
             MonitorOutcome::Fail => "fail",
-            MonitorOutcome::NotChecked => "not_checked",
-            MonitorOutcome::Open => "open",
+            MonitorOutcome::Vacuous => "vacuous",
+            MonitorOutcome::Inconclusive => "inconclusive",
         },
         "triggered": verdict.triggered,
         "discharged": verdict.discharged,
         "failures": verdict.failures,
         "first_failure": verdict.first_failure.as_ref().map(violation),
         "worst_margin": verdict.worst_margin,
-        "open_since": verdict.open_since,
+        "pending_since": verdict.pending_since,
     })
 }
 

@@ -1,5 +1,5 @@
 //! What the pages repeat from registries is generated: between `<!-- NAME -->` and `<!-- end -->` stands what the code says.
-//! `HRDSL_RENEW=1` writes it.
+//! `HRDSL_UPDATE=1` writes it.
 
 use std::{env, fmt::Write, fs};
 
@@ -27,12 +27,12 @@ fn same(page: &str, old: &str, new: &str) {
     if old == new {
         return;
     }
-    if env::var_os("HRDSL_RENEW").is_some() {
+    if env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(root().join(page), new).unwrap();
         return;
     }
     let line = old.lines().zip(new.lines()).find(|(o, n)| o != n);
-    panic!("{page} differs from the code, first in {line:?} (old, new): renew it with HRDSL_RENEW=1");
+    panic!("{page} differs from the code, first in {line:?} (old, new): update it with HRDSL_UPDATE=1");
 }
 
 /// The name of a dimension's type.
@@ -135,7 +135,7 @@ fn the_codes() {
     generated("spec/diagnostics.md", "codes", &text);
 }
 
-/// The contents of the book have a line for each code, below that of the diagnostics; renewed, also for each page that is
+/// The contents of the book have a line for each code, below that of the diagnostics; updated, also for each page that is
 /// not yet there, before it.
 #[test]
 fn the_contents_of_the_book() {

@@ -77,11 +77,11 @@ fn every_declaration_is_documented_with_an_example_of_its_own() {
 fn the_page_is_made_from_the_comments() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/stdlib.md");
     let page = page::page(&modules());
-    if std::env::var_os("HRDSL_RENEW").is_some() {
+    if std::env::var_os("HRDSL_UPDATE").is_some() {
         fs::write(&path, &page).unwrap();
     }
     let there = fs::read_to_string(&path).unwrap_or_default();
-    assert!(there == page, "spec/stdlib.md is old: HRDSL_RENEW=1 cargo test -p hrdsl-tests --test stdlib");
+    assert!(there == page, "spec/stdlib.md is old: HRDSL_UPDATE=1 cargo test -p hrdsl-tests --test stdlib");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use MonitorOutcome::{Fail, NotChecked, Open, Pass};
+use MonitorOutcome::{Fail, Inconclusive, Pass, Vacuous};
 use hrdsl_ir::{EventId, Program, Value, world::SignalId};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
@@ -25,51 +25,51 @@ const SHORT: &[(&str, &str)] = &[
 
 /// The requirement, a trace of 100 s (a time in s, then an event or `signal=value`), and what it must say of it.
 const CASES: &[(&str, &str, MonitorOutcome)] = &[
-    ("never_opened", "1 closing", NotChecked),
+    ("never_opened", "1 closing", Vacuous),
     ("never_opened", "1 opening", Fail),
-    ("no_blind_closing", "0 sees=false; 1 opening", NotChecked),
+    ("no_blind_closing", "0 sees=false; 1 opening", Vacuous),
     ("no_blind_closing", "0 sees=true; 1 closing; 2 sees=false", Pass),
     ("no_blind_closing", "0 sees=true; 1 sees=false; 2 closing", Fail),
-    ("hands_off", "1 closing; 2 reset_pressed; 3 opening", NotChecked),
+    ("hands_off", "1 closing; 2 reset_pressed; 3 opening", Vacuous),
     ("hands_off", "1 stop_pressed; 2 reset_pressed; 3 opening", Pass),
     ("hands_off", "1 stop_pressed; 2 opening; 3 reset_pressed", Fail),
     ("hands_off", "1 stop_pressed; 2 closing", Fail),
-    ("arm_in_front", "", NotChecked),
+    ("arm_in_front", "", Vacuous),
     ("arm_in_front", "0 x=0.3; 1 x=0.1", Pass),
     ("arm_in_front", "0 x=0.3; 1 x=-0.1", Fail),
-    ("opened_once", "1 asked", NotChecked),
+    ("opened_once", "1 asked", Vacuous),
     ("opened_once", "1 opening; 2 asked; 3 opening", Pass),
     ("opened_once", "1 opening; 2 opening", Fail),
-    ("one_question_at_a_time", "1 told", NotChecked),
+    ("one_question_at_a_time", "1 told", Vacuous),
     ("one_question_at_a_time", "1 asked; 2 told; 3 told; 4 asked", Pass),
     ("one_question_at_a_time", "1 asked; 2 asked", Fail),
-    ("one_answer_a_question", "1 asked; 2 asked", NotChecked),
+    ("one_answer_a_question", "1 asked; 2 asked", Vacuous),
     ("one_answer_a_question", "1 told; 2 asked; 3 told", Pass),
     ("one_answer_a_question", "1 asked; 2 told; 3 told", Fail),
-    ("asked_first", "1 told", NotChecked),
+    ("asked_first", "1 told", Vacuous),
     ("asked_first", "1 reset_pressed; 2 asked; 3 told; 4 told", Pass),
     ("asked_first", "1 reset_pressed; 2 told; 3 asked", Fail),
-    ("nothing_unasked", "1 pulled", NotChecked),
+    ("nothing_unasked", "1 pulled", Vacuous),
     ("nothing_unasked", "1 reset_pressed; 2 pulled; 3 opening; 4 pulled; 5 opening", Pass),
     ("nothing_unasked", "1 reset_pressed; 2 opening", Fail),
     ("nothing_unasked", "1 reset_pressed; 2 pulled; 3 opening; 4 opening", Fail),
-    ("answered", "1 told", NotChecked),
+    ("answered", "1 told", Vacuous),
     ("answered", "1 asked; 2 asked; 99 halted", Pass),
-    ("answered", "1 asked; 2 told; 3 asked", Open),
-    ("answered_soon", "1 told", NotChecked),
+    ("answered", "1 asked; 2 told; 3 asked", Inconclusive),
+    ("answered_soon", "1 told", Vacuous),
     ("answered_soon", "1 asked; 11 told", Pass),
     ("answered_soon", "1 asked; 2 asked; 11.1 told", Fail),
-    ("answered_soon", "95 asked", Open),
-    ("stop_in_time", "1 halted", NotChecked),
+    ("answered_soon", "95 asked", Inconclusive),
+    ("stop_in_time", "1 halted", Vacuous),
     ("stop_in_time", "1 stop_pressed; 1.5 halted", Pass),
     ("stop_in_time", "1 stop_pressed; 1.6 halted", Fail),
-    ("halted_is_true", "0 v=0.5", NotChecked),
+    ("halted_is_true", "0 v=0.5", Vacuous),
     ("halted_is_true", "0 v=0.5; 1 v=0.005; 2 halted; 3 v=0.5", Pass),
     ("halted_is_true", "0 v=0.5; 2 halted", Fail),
-    ("no_restart", "1 started", NotChecked),
+    ("no_restart", "1 started", Vacuous),
     ("no_restart", "1 started; 2 stop_pressed; 3 reset_pressed; 4 started", Pass),
     ("no_restart", "1 stop_pressed; 2 started", Fail),
-    ("palm_slow", "", NotChecked),
+    ("palm_slow", "", Vacuous),
     ("palm_slow", "0 v=0; 1 v=0.4", Pass),
     ("palm_slow", "0 v=0; 1 v=0.41; 2 v=0", Fail),
     ("palm_taught", "0 v=0.25", Pass),
@@ -94,7 +94,7 @@ const CASES: &[(&str, &str, MonitorOutcome)] = &[
     ("stop_near_cup", "0 hand=0.05; 0 v=0.02", Fail),
     ("arm_stops", "0 chest=0.5; 0 joints=0.2; 1 chest=0.3; 1 joints=0", Pass),
     ("arm_stops", "0 chest=0.3; 0 joints=0.2", Fail),
-    ("starts_alone", "0 hand=0.1", NotChecked),
+    ("starts_alone", "0 hand=0.1", Vacuous),
     ("starts_alone", "0 hand=0.2; 1 started; 2 hand=0.1", Pass),
     ("starts_alone", "0 hand=0.1; 1 started", Fail),
     ("palm_at_work", "0 x=1; 0 y=-1; 0 z=0", Pass),
@@ -104,10 +104,10 @@ const CASES: &[(&str, &str, MonitorOutcome)] = &[
     ("shelf_untouched", "0 shelf=0.01; 1 shelf=0", Fail),
     ("guided", "0 holds=false; 0 joints=0; 1 holds=true; 1 joints=0.2", Pass),
     ("guided", "0 holds=true; 0 joints=0.2; 1 holds=false", Fail),
-    ("no_pinching", "0 hand=0.01", NotChecked),
+    ("no_pinching", "0 hand=0.01", Vacuous),
     ("no_pinching", "0 hand=0.05; 1 closing", Pass),
     ("no_pinching", "0 hand=0.04; 1 closing", Fail),
-    ("nothing_dropped", "0 has_cup=false", NotChecked),
+    ("nothing_dropped", "0 has_cup=false", Vacuous),
     ("nothing_dropped", "0 has_cup=true; 1 opening", Pass),
     ("nothing_dropped", "0 has_cup=false; 1 opening", Fail),
 ];
@@ -153,8 +153,8 @@ fn requirements_judge_as_they_say() {
     }
     for monitor in &program.monitors {
         let outcomes = seen.remove(monitor.name.as_str()).unwrap_or_default();
-        let broken = outcomes.contains(&Fail) || outcomes.contains(&Open);
-        let kept = outcomes.contains(&Pass) || outcomes.contains(&NotChecked);
+        let broken = outcomes.contains(&Fail) || outcomes.contains(&Inconclusive);
+        let kept = outcomes.contains(&Pass) || outcomes.contains(&Vacuous);
         assert!(broken && kept, "{} needs a trace that keeps it and one that breaks it", monitor.name);
     }
 }

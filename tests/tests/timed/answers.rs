@@ -45,7 +45,7 @@ pub fn by_search(p: &Program, query: &Query) -> String {
         Ok(found) => match found.verdict {
             QueryVerdict::Holds => "holds".to_owned(),
             QueryVerdict::Fails => "fails".to_owned(),
-            QueryVerdict::Open => "open".to_owned(),
+            QueryVerdict::Inconclusive => "inconclusive".to_owned(),
         },
         Err(SearchError::Model { .. }) => "fault".to_owned(),
         Err(SearchError::Internal(why)) => why,

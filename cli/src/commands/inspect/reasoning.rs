@@ -74,7 +74,7 @@ impl End {
     #[must_use]
     pub fn of(inspection: &ModelInspection, picked: &Picked<'_>) -> Self {
         let (how, why) = match (&inspection.run.ended, inspection.status) {
-            (RunTermination::Quiet, _) => {
+            (RunTermination::Quiescent, _) => {
                 ("quiescent", "nobody waits for anything that can still come".to_owned())
             }
             (RunTermination::Limit, _) => {

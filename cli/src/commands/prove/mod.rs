@@ -22,7 +22,7 @@ use hrdsl_runtime::prove::{
 use hrdsl_source::{printable, printable_line};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::how::{Way, When, Witness};
+use super::search_options::{Way, When, Witness};
 use crate::{exit::Exit, fault::Fault, files, input, terminal};
 use asked::Asked;
 use table::Row;
@@ -54,8 +54,8 @@ pub struct Args {
     #[arg(long, value_name = "QUERY")]
     ask: Vec<String>,
     #[command(flatten)]
-    how: How,
-    /// Stop after this time, like `60s` or `500ms`: what is not decided then is open.
+    options: How,
+    /// Stop after this time, like `60s` or `500ms`: what is not decided then is inconclusive.
     #[arg(long, value_name = "T", value_parser = crate::quantity::time)]
     timeout: Option<Duration>,
     /// Tell each run that shows something, step by step.
@@ -139,7 +139,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
                 .to_owned(),
         );
     }
-    let settings = args.how.settings();
+    let settings = args.options.settings();
     let clock = Clock::start(args.timeout);
     let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
@@ -187,7 +187,7 @@ impl Job {
                 };
                 let late = || RequirementProof {
                     monitor,
-                    status: ProofStatus::Open(LATE.to_owned()),
+                    status: ProofStatus::Inconclusive(LATE.to_owned()),
                     states: 0,
                     note: None,
                 };
@@ -199,7 +199,7 @@ impl Job {
                 let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch);
                 let late = |query: &usize| QueryResult {
                     query: *query,
-                    found: QueryFinding::Open(LATE.to_owned()),
+                    found: QueryFinding::Inconclusive(LATE.to_owned()),
                     run: None,
                     notes: Vec::new(),
                     states: None,
@@ -301,10 +301,10 @@ const STACK: usize = 64 << 20;
 
 /// The first run that shows something, as a diagram.
 fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
-    let story = rows.iter().find_map(|r| r.story.as_ref());
+    let trace = rows.iter().find_map(|r| r.trace.as_ref());
     for (path, text) in [
-        (&args.mermaid, story.map(hrdsl_runtime::prove::WitnessTrace::mermaid)),
-        (&args.dot, story.map(hrdsl_runtime::prove::WitnessTrace::dot)),
+        (&args.mermaid, trace.map(hrdsl_runtime::prove::WitnessTrace::mermaid)),
+        (&args.dot, trace.map(hrdsl_runtime::prove::WitnessTrace::dot)),
     ] {
         match (path, text) {
             (Some(path), Some(text)) => files::write(path, &text)?,
@@ -323,5 +323,5 @@ fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
 /// The worst of all.
 fn verdict(rows: &[Row]) -> Exit {
     let worst = |exit: Exit| rows.iter().any(|r| r.exit() == exit).then_some(exit);
-    worst(Exit::Errors).or(worst(Exit::Findings)).or(worst(Exit::Open)).unwrap_or(Exit::Ok)
+    worst(Exit::Errors).or(worst(Exit::Findings)).or(worst(Exit::Inconclusive)).unwrap_or(Exit::Ok)
 }

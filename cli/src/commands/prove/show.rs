@@ -32,8 +32,8 @@ pub fn human(rows: &[Row], trace: bool) -> String {
             Some(remark) => out += &format!("{margin}{remark}  ({took})\n"),
             None => out += &format!("{margin}({took})\n"),
         }
-        if let Some(story) = row.story.as_ref().filter(|_| trace) {
-            for line in story.text().lines() {
+        if let Some(told) = row.trace.as_ref().filter(|_| trace) {
+            for line in told.text().lines() {
                 out += &format!("    {line}\n");
             }
         }
@@ -49,7 +49,7 @@ fn seconds(t: f64) -> String {
     if t < 10.0 { format!("{t:.2} s") } else { format!("{t:.0} s") }
 }
 
-/// `3 hold, 1 violated, 1 open`
+/// `3 hold, 1 violated, 1 inconclusive`
 fn summary(rows: &[Row]) -> String {
     let count = |v: Verdict| rows.iter().filter(|r| r.verdict == v).count();
     let kinds = [
@@ -60,7 +60,7 @@ fn summary(rows: &[Row]) -> String {
         (Verdict::Answered, "answered"),
         (Verdict::NotOnTheModel, "not on the model"),
         (Verdict::Fault, "with a fault of the model"),
-        (Verdict::Open, "open"),
+        (Verdict::Inconclusive, "inconclusive"),
     ];
     let parts = kinds.iter().map(|(v, words)| (count(*v), words)).filter(|(n, _)| *n > 0);
     parts.map(|(n, words)| format!("{n} {words}")).collect::<Vec<_>>().join(", ")
@@ -113,7 +113,7 @@ pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
             Kind::Query => last.queries.push(of(row)),
         }
     }
-    let document = Document { format: "hrdsl-prove", version: 1, scenario: &program.name, networks };
+    let document = Document { format: "hrdsl-prove", version: 2, scenario: &program.name, networks };
     crate::files::json(&document)
 }
 
@@ -126,6 +126,6 @@ fn of(row: &Row) -> RowJson<'_> {
         remark: row.remark.as_deref(),
         bounds: &row.bounds,
         states: row.states,
-        run: row.story.as_ref(),
+        run: row.trace.as_ref(),
     }
 }

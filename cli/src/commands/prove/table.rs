@@ -22,7 +22,7 @@ pub struct Row {
     pub remark: Option<String>,
     /// For a `sup` or `inf`: of each measure.
     pub bounds: Vec<String>,
-    pub story: Option<WitnessTrace>,
+    pub trace: Option<WitnessTrace>,
     /// Symbolic states stored, if that is known.
     pub states: Option<usize>,
     pub time: Duration,
@@ -42,7 +42,7 @@ pub enum Verdict {
     NotSatisfied,
     /// `sup` and `inf`.
     Answered,
-    Open,
+    Inconclusive,
     NotOnTheModel,
     Fault,
 }
@@ -55,7 +55,7 @@ impl Verdict {
             Verdict::Satisfied => "satisfied",
             Verdict::NotSatisfied => "not satisfied",
             Verdict::Answered => "answered",
-            Verdict::Open => "open",
+            Verdict::Inconclusive => "inconclusive",
             Verdict::NotOnTheModel => "not on the model",
             Verdict::Fault => "fault of the model",
         }
@@ -73,7 +73,7 @@ impl Row {
         match self.verdict {
             Verdict::Holds | Verdict::Satisfied | Verdict::Answered | Verdict::NotOnTheModel => Exit::Ok,
             Verdict::Violated | Verdict::NotSatisfied => Exit::Findings,
-            Verdict::Open => Exit::Open,
+            Verdict::Inconclusive => Exit::Inconclusive,
             Verdict::Fault => Exit::Errors,
         }
     }
@@ -85,11 +85,11 @@ impl Row {
             ProofStatus::Holds { triggered } => {
                 (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None)
             }
-            ProofStatus::Open(why) => (Verdict::Open, Some(why.clone()), None),
+            ProofStatus::Inconclusive(why) => (Verdict::Inconclusive, Some(why.clone()), None),
             ProofStatus::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
             ProofStatus::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
         };
-        let story = run.map(ObservedRun::named_trace);
+        let trace = run.map(ObservedRun::named_trace);
         Self {
             network: String::new(),
             kind: Kind::Requirement,
@@ -97,9 +97,9 @@ impl Row {
             title: monitor.title.clone(),
             text: monitor.text.clone(),
             verdict,
-            remark: remark.or_else(|| story.as_ref().map(shape)),
+            remark: remark.or_else(|| trace.as_ref().map(shape)),
             bounds: Vec::new(),
-            story,
+            trace,
             states: Some(proof.states),
             time: Duration::ZERO,
         }
@@ -111,19 +111,19 @@ impl Row {
             QueryFinding::Satisfied => (Verdict::Satisfied, None),
             QueryFinding::NotSatisfied => (Verdict::NotSatisfied, None),
             QueryFinding::Bounds(_) => (Verdict::Answered, None),
-            QueryFinding::Open(why) => (Verdict::Open, Some(why.clone())),
+            QueryFinding::Inconclusive(why) => (Verdict::Inconclusive, Some(why.clone())),
             QueryFinding::Fault(what) => (Verdict::Fault, Some(what.clone())),
         };
         let bounds = match &answer.found {
             QueryFinding::Bounds(bounds) => bounds.clone(),
             QueryFinding::Satisfied
             | QueryFinding::NotSatisfied
-            | QueryFinding::Open(_)
+            | QueryFinding::Inconclusive(_)
             | QueryFinding::Fault(_) => Vec::new(),
         };
-        let story = answer.run.as_deref().map(ObservedRun::named_trace);
+        let trace = answer.run.as_deref().map(ObservedRun::named_trace);
         let remarks: Vec<String> =
-            remark.into_iter().chain(answer.notes.iter().cloned()).chain(story.as_ref().map(shape)).collect();
+            remark.into_iter().chain(answer.notes.iter().cloned()).chain(trace.as_ref().map(shape)).collect();
         Self {
             network: String::new(),
             kind: Kind::Query,
@@ -133,7 +133,7 @@ impl Row {
             verdict,
             remark: (!remarks.is_empty()).then(|| remarks.join("; ")),
             bounds,
-            story,
+            trace,
             states: answer.states,
             time: Duration::ZERO,
         }
@@ -144,15 +144,15 @@ fn untriggered(triggered: Option<bool>, why: Option<&str>) -> Option<String> {
     match triggered {
         Some(true) => None,
         Some(false) => Some(match why {
-            Some(why) => format!("it is never triggered; {why}"),
-            None => "it is never triggered".to_owned(),
+            Some(why) => format!("vacuously: it is never triggered; {why}"),
+            None => "vacuously: it is never triggered".to_owned(),
         }),
-        None => Some("whether it is ever triggered is open".to_owned()),
+        None => Some("whether it is ever triggered is not decided".to_owned()),
     }
 }
 
 /// `in 7 steps, at 12.5 s`
-fn shape(story: &WitnessTrace) -> String {
-    let steps = story.scenes.len();
-    format!("in {steps} {}, at {} s", if steps == 1 { "step" } else { "steps" }, story.end)
+fn shape(trace: &WitnessTrace) -> String {
+    let steps = trace.steps.len();
+    format!("in {steps} {}, at {} s", if steps == 1 { "step" } else { "steps" }, trace.end)
 }

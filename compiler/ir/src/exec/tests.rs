@@ -268,7 +268,7 @@ fn a_shut_view_assigns_nothing() {
     let applied = Expr::Apply(FunctionId(0), vec![]);
     assert_eq!(View::new(&functions, &ram, 1, &[]).eval(&applied), Err(EvalError::Type));
     assert_eq!(ram.values, [0]);
-    // The place's index comes first: it is still 0 when the function makes it 1.
+    // The lvalue's index comes first: it is still 0 when the function makes it 1.
     let array = [int("x", 0, 9), int("y", 0, 9)];
     let mut two = Ram::new(&array);
     View::open(&functions, &mut two, 2, &[]).assign(&at(0, V(0), 2), &applied).unwrap();

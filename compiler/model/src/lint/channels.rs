@@ -75,7 +75,7 @@ fn unused(channel: &Channel, at: Span) -> Diagnostic {
     issue.fix(format!("delete `{name}`"), channel.origin, "", true)
 }
 
-/// A hand-shake or broadcast that only some edges offer, only some accept, or only one automaton does both.
+/// A binary synchronisation or broadcast that only some edges offer, only some accept, or only one automaton does both.
 fn one_side(scenario: &Scenario, (channel, at): (&Channel, Span), sides: &Sides) -> Option<Diagnostic> {
     let name = &channel.name;
     let (message, help) = match (sides.offer.as_slice(), sides.accept.as_slice()) {
@@ -96,9 +96,9 @@ fn one_side(scenario: &Scenario, (channel, at): (&Channel, Span), sides: &Sides)
 fn no_part(scenario: &Scenario, channel: &Channel, party: &Party, at: Span) -> Diagnostic {
     let (name, of) = (&channel.name, usize::from(party.automaton.0));
     let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
-    let message = format!("`{automaton}` has no edge for the joint channel `{name}`");
+    let message = format!("`{automaton}` has no edge for the multi-way channel `{name}`");
     let why = if party.optional { "it never takes part" } else { "nobody can take part without it" };
     Diagnostic::warning(Code::ONE_SIDED_CHANNEL, at, message)
         .here(why)
-        .help(format!("give it an edge with `on {name}`, or take it out of the parties"))
+        .help(format!("give it an edge with `on {name}`, or take it out of the participants"))
 }

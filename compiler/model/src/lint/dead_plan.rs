@@ -20,7 +20,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
                 if let Some((span, text)) = found.with {
                     issue = issue.label(span, text);
                 }
-                issues.push(issue.help("mend the context, or remove the plan"));
+                issues.push(issue.help("fix the context, or remove the plan"));
             }
         }
     }
@@ -44,7 +44,7 @@ fn dead_trigger(facts: &AgentFacts<'_>, plan: &Plan) -> Diagnostic {
             facts.near_belief(issue, b, Some(plan.trigger.name), otherwise)
         }
         TriggerOn::BeliefAdded(b) => warning(&format!("nothing adds such a `{}`", of(b)))
-            .help("the arguments match none that is added: mend them, or remove the plan"),
+            .help("the arguments match none that is added: fix them, or remove the plan"),
         TriggerOn::BeliefRemoved(b) => warning(&format!("nothing removes or replaces such a `{}`", of(b)))
             .help(format!("remove the belief somewhere (`-{}`), or remove the plan", of(b))),
         TriggerOn::TestAdded(b) | TriggerOn::TestFailed(b) => {

@@ -43,7 +43,7 @@ pub(crate) fn not_taken<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues
             let message = format!("nobody takes the event `{}`", event.name);
             issues.push(
                 Diagnostic::warning(Code::EVENT_NOT_TAKEN, span, message)
-                    .help("let a plan, an edge, a requirement or a coverage point read it, or delete it"),
+                    .help("let a plan, an edge, a requirement or a coverpoint read it, or delete it"),
             );
         }
     }

@@ -201,11 +201,11 @@ impl<'a> Unhandled<'a> {
             };
             issue = issue.label(root.trigger.origin, text);
         }
-        Some(self.mend(facts, step, issue))
+        Some(self.with_fix(facts, step, issue))
     }
 
     /// Adds what to type.
-    fn mend(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
+    fn with_fix(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
         let mut all = [self.plan].into_iter().chain(self.roots.plans.iter().copied());
         let handler = all.find_map(|p| match p.trigger.on {
             TriggerOn::GoalAdded(goal) => Some((shown(facts, goal), p)),

@@ -156,7 +156,7 @@ impl<'a> Search<'a, '_> {
             issue = issue.label(*through, "and goes on here");
         }
         issue.help(
-            "let something happen on the way: a stimulus, an `await`, a `wait`, or a change of a belief",
+            "let something happen on the path: a stimulus, an `await`, a `wait`, or a change of a belief",
         )
     }
 }

@@ -24,7 +24,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
             let warning = |message: String| Diagnostic::warning(Code::TIME_STOPS, span, message);
             if barred[i] {
                 issues.push(
-                    warning(format!("the invariant of `{name}` is violated on every way in"))
+                    warning(format!("the invariant of `{name}` is violated on every path in"))
                         .here("the clock is past its bound before it comes here")
                         .help("reset the clock on the edges that lead here"),
                 );

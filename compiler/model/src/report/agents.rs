@@ -68,7 +68,7 @@ pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
 
 /// HR0201: a variable that is of one kind on one way, and of another on the other.
 pub(crate) fn two_kinds(name: &str, one: Kind, other: Kind, span: Span) -> Diagnostic {
-    let message = format!("`{name}` is {one} on one way, and {other} on the other");
+    let message = format!("`{name}` is {one} on one path, and {other} on the other");
     Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("use two names")
 }
 

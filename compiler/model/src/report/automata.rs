@@ -134,22 +134,22 @@ pub(crate) fn urgent_guard(channel: &str, span: Span, declared: Span) -> Diagnos
 
 /// HR0512: an edge of an automaton that has no part in the channel.
 pub(crate) fn not_a_party(automaton: &str, channel: &str, span: Span, declared: Span) -> Diagnostic {
-    let message = format!("`{automaton}` has no part in the joint channel `{channel}`");
+    let message = format!("`{automaton}` has no part in the multi-way channel `{channel}`");
     Diagnostic::error(Code::BAD_JOINT, span, message)
-        .label(declared, "its parties are named here")
+        .label(declared, "its participants are named here")
         .help(format!("add `| {automaton}` to them, or use another channel"))
 }
 
 /// HR0512
 pub(crate) fn joint_offered(channel: &str, span: Span) -> Diagnostic {
-    let message = format!("nobody offers the joint channel `{channel}`: all its parties are alike");
+    let message = format!("nobody offers the multi-way channel `{channel}`: all its participants are alike");
     Diagnostic::error(Code::BAD_JOINT, span, message)
         .help(format!("write `on {channel}` on the edge of each"))
 }
 
 /// HR0512
 pub(crate) fn joint_params(channel: &str, span: Span) -> Diagnostic {
-    let message = format!("the joint channel `{channel}` carries nothing: nobody sends");
+    let message = format!("the multi-way channel `{channel}` carries nothing: nobody sends");
     Diagnostic::error(Code::BAD_JOINT, span, message)
         .help("hand values over in shared variables, or declare a channel for each value")
 }

@@ -20,7 +20,7 @@ pub(crate) fn recursion(cycle: &[&str], span: Span) -> Diagnostic {
 /// HR0522
 pub(crate) fn ends_without_value(name: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::BAD_RETURN, span, format!("`{name}` can end without the value that it promises"))
-        .help("let every way through it end with `return …`")
+        .help("let every path through it end with `return …`")
 }
 
 /// HR0522

@@ -28,7 +28,7 @@ pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
         | Kind::At_
         | Kind::Tilde
         | Kind::MinusPlus => return false,
-        // A party that may stay away, and not a question.
+        // A participant that may stay away, and not a question.
         Kind::Question if n.kind != Kind::Pipe => return false,
         Kind::Bang | Kind::BangBang => return matches!(n.kind, Kind::Bang | Kind::BangBang),
         Kind::Plus | Kind::Minus if p.mark.prefix => return false,

@@ -114,7 +114,7 @@ fn hostile_text_stays_text() {
         test.because = vec![bad.to_owned(), bad.to_owned()];
         test.judgement.bins = vec![BinName::new(bad, bad)];
         for verdict in &mut test.judgement.verdicts {
-            for step in verdict.failure.iter_mut().flat_map(|f| &mut f.witness) {
+            for step in verdict.failure.iter_mut().flat_map(|f| &mut f.counterexample) {
                 step.text = bad.to_owned();
             }
         }

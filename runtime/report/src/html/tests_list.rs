@@ -3,7 +3,7 @@
 use hrdsl_results::{BinName, Results, RunEnd, TestResult, VerdictOutcome as Outcome, VerdictResult};
 use serde::Serialize;
 
-use super::violations::{Witness, witness};
+use super::violations::{Witness, counterexample};
 use crate::{
     facts::{self, ShownOutcome},
     text,
@@ -66,7 +66,7 @@ struct Mark {
 struct FailedVerdict {
     requirement: String,
     title: String,
-    witness: Option<Witness>,
+    counterexample: Option<Witness>,
 }
 
 /// The requirements with one outcome.
@@ -102,7 +102,7 @@ fn outcome(test: &TestResult, requirement: &str) -> Outcome {
         .verdicts
         .iter()
         .find(|v| v.requirement == *requirement)
-        .map_or(Outcome::NotChecked, |v| v.outcome)
+        .map_or(Outcome::Vacuous, |v| v.outcome)
 }
 
 fn test(results: &Results, index: usize, test: &TestResult) -> Test {
@@ -121,7 +121,7 @@ fn test(results: &Results, index: usize, test: &TestResult) -> Test {
         method: test.method.word(),
         seed: test.seed,
         ended: match test.ended {
-            RunEnd::Quiet => "when nothing more could happen",
+            RunEnd::Quiescent => "when nothing more could happen",
             RunEnd::Limit => "at the time limit",
             RunEnd::Error => "in error",
         },
@@ -164,8 +164,8 @@ fn overall(test: &TestResult, outcomes: &[Outcome]) -> Outcome {
     if test.error.is_some() {
         Outcome::Error
     } else {
-        let worst = [Outcome::Fail, Outcome::Error, Outcome::Pass, Outcome::Open];
-        worst.into_iter().find(|o| outcomes.contains(o)).unwrap_or(Outcome::NotChecked)
+        let worst = [Outcome::Fail, Outcome::Error, Outcome::Pass, Outcome::Inconclusive];
+        worst.into_iter().find(|o| outcomes.contains(o)).unwrap_or(Outcome::Vacuous)
     }
 }
 
@@ -178,7 +178,7 @@ fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
     if test.error.is_some() {
         says.push("broke off".to_owned());
     }
-    for outcome in [Outcome::Fail, Outcome::Pass, Outcome::Open] {
+    for outcome in [Outcome::Fail, Outcome::Pass, Outcome::Inconclusive] {
         let names = named(outcome);
         if !names.is_empty() {
             says.push(format!("{}: {}", outcome.word(), names.join(" ")));
@@ -192,7 +192,7 @@ fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
     FailedVerdict {
         requirement: verdict.requirement.to_string(),
         title: requirement.map(|r| r.title.clone()).unwrap_or_default(),
-        witness: verdict.failure.as_ref().map(|failure| witness(verdict, failure)),
+        counterexample: verdict.failure.as_ref().map(|failure| counterexample(verdict, failure)),
     }
 }
 
@@ -204,7 +204,7 @@ fn groups(test: &TestResult) -> Vec<Group> {
             Group { class: outcome.letter(), symbol: outcome.symbol(), word: outcome.word(), verdicts };
         (!group.verdicts.is_empty()).then_some(group)
     };
-    [Outcome::Pass, Outcome::Open, Outcome::NotChecked, Outcome::Error]
+    [Outcome::Pass, Outcome::Inconclusive, Outcome::Vacuous, Outcome::Error]
         .into_iter()
         .filter_map(group)
         .collect()
@@ -213,7 +213,7 @@ fn groups(test: &TestResult) -> Vec<Group> {
 /// `R6 3×, margin +0.0312 rad/s`
 fn in_words(verdict: &VerdictResult, outcome: Outcome) -> String {
     let mut text = verdict.requirement.to_string();
-    if outcome == Outcome::Pass || outcome == Outcome::Open {
+    if outcome == Outcome::Pass || outcome == Outcome::Inconclusive {
         text += &format!(" {}×", verdict.triggered);
     }
     match &verdict.worst_margin {
@@ -237,5 +237,5 @@ fn bins(test: &TestResult) -> Vec<TestBin> {
         (false, false) => bin(name, Outcome::Pass, "hit"),
     });
     let missed = test.predicted.iter().filter(|name| !test.judgement.bins.contains(name));
-    hit.chain(missed.map(|name| bin(name, Outcome::NotChecked, "predicted, not hit"))).collect()
+    hit.chain(missed.map(|name| bin(name, Outcome::Vacuous, "predicted, not hit"))).collect()
 }

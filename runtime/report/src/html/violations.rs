@@ -1,4 +1,4 @@
-//! Violated requirements, each with a few tests that show it and their witnesses.
+//! Violated requirements, each with a few tests that show it and their counterexamples.
 
 use hrdsl_results::{
     FirstFailure, RequirementResult, Results, SuiteName, TestName, TestResult, VerdictResult,
@@ -8,9 +8,9 @@ use serde::Serialize;
 use super::pieces::Link;
 use crate::{facts, text};
 
-/// Tests that are shown with their witness for each requirement.
+/// Tests that are shown with their counterexample for each requirement.
 const SHOWN: usize = 3;
-/// Steps of a witness at its start and at its end; the middle is left out.
+/// Steps of a counterexample at its start and at its end; the middle is left out.
 const START: usize = 3;
 const END: usize = 9;
 
@@ -31,7 +31,7 @@ pub struct Violated {
 #[derive(Serialize)]
 pub struct Shown {
     test: Link,
-    witness: Option<Witness>,
+    counterexample: Option<Witness>,
     /// The command that runs the test again.
     again: String,
 }
@@ -47,7 +47,7 @@ pub struct Witness {
     points: Vec<Point>,
 }
 
-/// A point of a witness's line of time.
+/// A point of a counterexample's line of time.
 #[derive(Serialize)]
 pub struct Point {
     /// `gap`: steps left out; `end`: the violation.
@@ -76,7 +76,8 @@ fn violated(
     let chosen = choose(failing);
     let shown = |(_, test): &(usize, &TestResult)| Shown {
         test: link(&test.name),
-        witness: facts::failure(test, &requirement.name).map(|(verdict, failure)| witness(verdict, failure)),
+        counterexample: facts::failure(test, &requirement.name)
+            .map(|(verdict, failure)| counterexample(verdict, failure)),
         again: results.rerun_of(test).unwrap_or_default(),
     };
     let number = |suite: &SuiteName| failing.iter().filter(|(_, t)| t.suite == *suite).count();
@@ -108,9 +109,9 @@ fn choose<'a>(failing: &[(usize, &'a TestResult)]) -> Vec<(usize, &'a TestResult
     chosen.into_iter().map(|at| failing[at]).collect()
 }
 
-/// The witness of a failure as a line of time that ends with the violation.
-pub fn witness(verdict: &VerdictResult, failure: &FirstFailure) -> Witness {
-    let steps = &failure.witness;
+/// The counterexample of a failure as a line of time that ends with the violation.
+pub fn counterexample(verdict: &VerdictResult, failure: &FirstFailure) -> Witness {
+    let steps = &failure.counterexample;
     let point = |i: usize| Point {
         class: if i + 1 == steps.len() && !failure.deadline { "end" } else { "" },
         time: text::moment(steps[i].time),

@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told_and_mended() {
+    fn damage_is_told_and_repaired() {
         let dir = tempfile::tempdir().unwrap();
         let told = RefCell::new(Vec::new());
         let listen = |step: Preparation<'_>| {

@@ -68,7 +68,7 @@ pub enum QueryVerdict {
     /// Refuted.
     Fails,
     /// The budget was used up first.
-    Open,
+    Inconclusive,
 }
 
 /// What is known of a query.
@@ -258,7 +258,7 @@ impl QueryEvaluator<'_> {
                     plain(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
                 }
             }
-            GoalOutcome::Inconclusive(what) => plain(QueryVerdict::Open, used_up(what)),
+            GoalOutcome::Inconclusive(what) => plain(QueryVerdict::Inconclusive, used_up(what)),
         })
     }
 
@@ -312,7 +312,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
         })
     }
 
@@ -326,7 +326,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
         })
     }
 
@@ -341,7 +341,7 @@ impl QueryEvaluator<'_> {
                 QueryVerdict::Holds,
                 "from each state of the first, every maximal run reaches the second".to_owned(),
             ),
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Open, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
         })
     }
 
@@ -413,8 +413,8 @@ impl QueryEvaluator<'_> {
         use crate::decide::extremum::ExtremumLimit;
         let timing = self.options.timing();
         let all = extrema(self.model, side, of, &when.into(), self.options.budget, timing)?;
-        let open = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Open { .. }));
-        let verdict = if open { QueryVerdict::Open } else { QueryVerdict::Holds };
+        let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
+        let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
         Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all })
     }
@@ -449,8 +449,8 @@ fn limit_text(e: &Extremum, side: ExtremumSide) -> String {
         }
         ExtremumLimit::Unbounded => "unbounded".to_owned(),
         ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
-        ExtremumLimit::Open { seen: Some(q) } => format!("not decided; {} was seen", text(q)),
-        ExtremumLimit::Open { seen: None } => "not decided".to_owned(),
+        ExtremumLimit::Inconclusive { seen: Some(q) } => format!("not decided; {} was seen", text(q)),
+        ExtremumLimit::Inconclusive { seen: None } => "not decided".to_owned(),
     }
 }
 

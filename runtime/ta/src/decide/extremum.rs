@@ -2,7 +2,7 @@
 //!
 //! All zones are looked at. What extrapolation keeps of a clock is exact up to the clock's bound, so if a value comes out beyond
 //! it, the bound is doubled and the search begins again. It ends when the value is within the bound; when some state of the
-//! formula lets time pass for ever, so that the clock is unbounded; or, still open, after [`RAISES`] doublings or when the
+//! formula lets time pass for ever, so that the clock is unbounded; or, inconclusive, after [`RAISES`] doublings or when the
 //! budget is used up. The last can only happen for a clock that grows in a loop of states each of which bounds time.
 
 use std::ops::ControlFlow;
@@ -55,7 +55,7 @@ pub enum ExtremumLimit {
     /// The formula holds nowhere.
     Nowhere,
     /// The search ended too early; this value is not beyond the bound.
-    Open { seen: Option<ExtremumValue> },
+    Inconclusive { seen: Option<ExtremumValue> },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -251,11 +251,15 @@ impl MeasureTracker {
             return Ok(Extremum { limit: ExtremumLimit::Unbounded, run: Some(Box::new(run)) });
         }
         let Some(b) = best else {
-            let limit = if open { ExtremumLimit::Open { seen: None } } else { ExtremumLimit::Nowhere };
+            let limit =
+                if open { ExtremumLimit::Inconclusive { seen: None } } else { ExtremumLimit::Nowhere };
             return Ok(Extremum { limit, run: None });
         };
         if open {
-            return Ok(Extremum { limit: ExtremumLimit::Open { seen: Some(quantity(b.value)) }, run: None });
+            return Ok(Extremum {
+                limit: ExtremumLimit::Inconclusive { seen: Some(quantity(b.value)) },
+                run: None,
+            });
         }
         let near = clock.map(|x| near(x, b, side)).into_iter().collect::<Vec<_>>();
         let stops: Vec<PathSegment> = plain.path(b.node);

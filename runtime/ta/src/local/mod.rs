@@ -24,8 +24,8 @@
 //! - *Finite.* There are finitely many sets aLU(Z) of standard zones Z (Herbreteau, Srivathsan, Walukiewicz, LICS 2012).
 //!
 //! # When it serves a network
-//! - *Binary synchronisations and joint channels without optional parties* involve those that move. Nothing else matters to them.
-//! - *Events, broadcast channels, joint channels with optional parties* also involve everybody who has an edge for them
+//! - *Binary synchronisations and multi-way channels without optional participants* involve those that move. Nothing else matters to them.
+//! - *Events, broadcast channels, multi-way channels with optional participants* also involve everybody who has an edge for them
 //!   anywhere, with the media of these edges: that somebody stays away is a step of its own, from its location to itself,
 //!   under the guard that it cannot take part. So they are synchronisations of many, sound but with little to commute.
 //! - *Shared variables and clocks.* A variable is an automaton with one location that takes part in each transition that

@@ -265,7 +265,7 @@ impl<'e> CodeEvalContext<'e> {
         value: &CompiledExpr,
         routine: Option<u32>,
     ) -> Result<(), CodeEvalError> {
-        // The place is chosen before the value is worked out: a function in the value may change its indices.
+        // The lvalue is chosen before the value is worked out: a function in the value may change its indices.
         let at = place.resolve(self)?;
         let n = value.eval(self)?;
         match at {

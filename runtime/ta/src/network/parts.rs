@@ -97,7 +97,7 @@ pub(crate) struct CompiledLocation {
     pub active: Vec<u16>,
     /// Receiving and accepting edges, in source order.
     pub receiving: Vec<u16>,
-    /// Edges of joint channels, in source order.
+    /// Edges of multi-way channels, in source order.
     pub joining: Vec<u16>,
     /// Edges that offer on an urgent channel.
     pub urgent: Vec<u16>,
@@ -195,7 +195,7 @@ pub(crate) enum EdgeUpdate {
     Call(u32, Box<[CompiledExpr]>),
 }
 
-/// A joint channel.
+/// A multi-way channel.
 pub(crate) struct MultiwayChannel {
     pub channel: ChannelId,
     pub urgent: bool,

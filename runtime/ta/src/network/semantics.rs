@@ -1,12 +1,12 @@
 //! The discrete half of the transition relation: what may happen in a discrete state, and under which clock guards.
 //!
 //! Transitions are enumerated in a fixed order: by automaton in the order of the network, its edges in source order, their
-//! selects (the first slowest), then the partners and their edges and selects (the last partner fastest); joint channels
+//! selects (the first slowest), then the partners and their edges and selects (the last partner fastest); multi-way channels
 //! come last, in the order of the program. Who enumerates may give a test for clock constraints: what fails it is left out.
 //!
 //! A broadcast never waits for receivers: each other automaton with an enabled receiving edge takes part by one of them.
 //! Where the receiver's edges have clock guards, it takes part where one of them holds and stays away where none does,
-//! which is a union of zones: one transition for each part of it. The same holds for optional parties of joint channels.
+//! which is a union of zones: one transition for each part of it. The same holds for optional participants of multi-way channels.
 
 use std::ops::ControlFlow;
 

@@ -223,7 +223,7 @@ impl WellFormedScope<'_> {
     }
 }
 
-/// Whether each element of a place is one of so many variables.
+/// Whether each element of an lvalue is one of so many variables.
 fn place_is_within(place: &Place, count: usize) -> bool {
     let last = place.indices.iter().map(|i| usize::from(i.count.saturating_sub(1)) * usize::from(i.stride));
     place.indices.iter().all(|i| i.count > 0) && usize::from(place.slot) + last.sum::<usize>() < count

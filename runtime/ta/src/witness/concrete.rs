@@ -556,8 +556,8 @@ impl<'p> ConcreteInterpreter<'p> {
         Ok(())
     }
 
-    /// What each party of a joint channel may do; nothing if a party that must take part cannot, or if the given move is
-    /// not the first party's, which starts it.
+    /// What each participant of a multi-way channel may do; nothing if a participant that must take part cannot, or if the given move is
+    /// not the first participant's, which starts it.
     pub(crate) fn multiway(
         &self,
         id: ChannelId,

@@ -4,7 +4,7 @@
 //! the model shows its fastest behaviour. A strict lower bound is met one nanosecond after it.
 //!
 //! The player has its own copy of the program's shared variables and clocks: what other automata do to theirs it does not
-//! see. Since it is alone, it never takes edges over binary synchronisations and joint channels; an offer over a broadcast channel it
+//! see. Since it is alone, it never takes edges over binary synchronisations and multi-way channels; an offer over a broadcast channel it
 //! takes as an internal edge, for nobody hears it.
 
 use hrdsl_ir::{

@@ -308,7 +308,7 @@ fn meets(
     match &channel.kind {
         ChannelKind::Broadcast => hears(machine, first.automaton, rest, medium, args),
         ChannelKind::HandShake => {
-            let [partner] = rest else { return Err("a hand-shake is not of two".into()) };
+            let [partner] = rest else { return Err("a binary synchronisation is not of two".into()) };
             if partner.automaton == first.automaton {
                 return Err("an automaton shakes hands with itself".into());
             }
@@ -326,7 +326,7 @@ fn meets(
                 }
                 left = takes_part(machine, member, &can, left)?;
             }
-            if left.is_empty() { Ok(()) } else { Err("the parties are out of order".into()) }
+            if left.is_empty() { Ok(()) } else { Err("the participants are out of order".into()) }
         }
     }
 }

@@ -47,8 +47,8 @@ pub struct WitnessRunStep {
     pub event: Option<(EventId, Vec<Value>)>,
     /// The channel that it went over, with the arguments of the offer.
     pub channel: Option<(ChannelId, Vec<Value>)>,
-    /// The edges taken: the sender's first, then those of who takes part, in the network's order; of a joint channel in the
-    /// order of its parties.
+    /// The edges taken: the sender's first, then those of who takes part, in the network's order; of a multi-way channel in the
+    /// order of its participants.
     pub moves: Vec<AutomatonMove>,
     /// Which automata changed their location: index in the network, from, to.
     pub locations: Vec<(usize, LocationId, LocationId)>,

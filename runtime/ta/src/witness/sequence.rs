@@ -19,7 +19,7 @@ impl WitnessTrace {
         let all = self.span();
         let mut last = "0";
         let mut looping = false;
-        for (i, step) in self.scenes.iter().enumerate() {
+        for (i, step) in self.steps.iter().enumerate() {
             if self.ending == RunEnding::Again(i) {
                 out.push_str("  loop for ever\n");
                 looping = true;
@@ -52,7 +52,7 @@ impl WitnessTrace {
             at.push(format!("a{i}"));
         }
         let _ = writeln!(out, "  {{ rank = same; {} }}", at.join("; "));
-        for (n, step) in self.scenes.iter().enumerate() {
+        for (n, step) in self.steps.iter().enumerate() {
             let now = |m: usize| format!("s{n}_{m}");
             for p in &step.parts {
                 let label = format!("{} s\n{}", step.time, p.to);
@@ -71,7 +71,7 @@ impl WitnessTrace {
             let Some((first, others)) = step.parts.split_first() else { continue };
             for p in others {
                 let label = step.over.as_deref().unwrap_or("");
-                let style = if step.medium == TransitionMedium::HandShake { "solid" } else { "dashed" };
+                let style = if step.medium == TransitionMedium::Binary { "solid" } else { "dashed" };
                 let ends = format!("{} -> {}", now(first.member), now(p.member));
                 let _ = writeln!(out, "  {ends} [label = {}, style = {style}];", quoted(label));
             }
@@ -106,7 +106,7 @@ fn mermaid_step(step: &WitnessTransition, out: &mut String) {
     if let Some(over) = &step.over {
         // A binary synchronisation is one arrow that both wait for; what is broadcast does not wait.
         let arrow = match step.medium {
-            TransitionMedium::HandShake | TransitionMedium::Joint | TransitionMedium::Internal => "->>",
+            TransitionMedium::Binary | TransitionMedium::MultiWay | TransitionMedium::Internal => "->>",
             TransitionMedium::Event | TransitionMedium::Broadcast => "-)",
         };
         for p in others {

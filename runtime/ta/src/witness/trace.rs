@@ -22,7 +22,7 @@ pub struct WitnessTrace {
     pub network: String,
     /// The automata, in the network's order.
     pub automata: Vec<String>,
-    pub scenes: Vec<WitnessTransition>,
+    pub steps: Vec<WitnessTransition>,
     /// When what it shows is so, in seconds.
     pub end: String,
     /// The nanoseconds of it, rounded down.
@@ -55,9 +55,11 @@ pub struct WitnessTransition {
 pub enum TransitionMedium {
     Internal,
     Event,
-    HandShake,
+    /// Over a channel, between two.
+    Binary,
     Broadcast,
-    Joint,
+    /// Over a `joint` channel, between several.
+    MultiWay,
 }
 
 /// One automaton's part.
@@ -79,7 +81,7 @@ impl WitnessTrace {
         WitnessTrace {
             network: witness.network.clone(),
             automata,
-            scenes: witness.steps.iter().map(|s| builder.transition(witness, s)).collect(),
+            steps: witness.steps.iter().map(|s| builder.transition(witness, s)).collect(),
             end: seconds(witness.end, witness.ticks),
             end_nanos: witness.end.div_euclid(witness.ticks.max(1)),
             ending: witness.ending,
@@ -89,12 +91,12 @@ impl WitnessTrace {
     /// A table: a line for each transition with its time, what it goes over and who goes where, then what it changes.
     #[must_use]
     pub fn text(&self) -> String {
-        let wide = |f: &dyn Fn(&WitnessTransition) -> usize| self.scenes.iter().map(f).max().unwrap_or(0);
+        let wide = |f: &dyn Fn(&WitnessTransition) -> usize| self.steps.iter().map(f).max().unwrap_or(0);
         let time = wide(&|s| s.time.len()).max(self.end.len());
         let who = wide(&|s| s.parts.first().map_or(0, |p| p.automaton.chars().count()));
         let over = wide(&|s| s.over.as_ref().map_or(0, |o| o.chars().count()));
         let mut out = String::new();
-        for (i, step) in self.scenes.iter().enumerate() {
+        for (i, step) in self.steps.iter().enumerate() {
             if self.ending == RunEnding::Again(i) {
                 let _ = writeln!(out, "{:time$}    from here on again and again:", "");
             }
@@ -109,7 +111,7 @@ impl WitnessTrace {
             }
             out.push('\n');
         }
-        let last = self.scenes.last().map_or("0", |s| s.time.as_str());
+        let last = self.steps.last().map_or("0", |s| s.time.as_str());
         let wait = (self.end != last).then_some(self.end.as_str());
         match (self.ending, wait) {
             (RunEnding::Reached, None) | (RunEnding::Again(_), _) => {}
@@ -191,12 +193,12 @@ impl<'a> WitnessTraceBuilder<'a> {
 
     fn channel(&self, id: ChannelId) -> (&'a str, TransitionMedium) {
         match self.program.channels.get(usize::from(id.0)) {
-            None => ("?", TransitionMedium::HandShake),
+            None => ("?", TransitionMedium::Binary),
             Some(c) => {
                 let medium = match c.kind {
-                    ChannelKind::HandShake => TransitionMedium::HandShake,
+                    ChannelKind::HandShake => TransitionMedium::Binary,
                     ChannelKind::Broadcast => TransitionMedium::Broadcast,
-                    ChannelKind::Joint(_) => TransitionMedium::Joint,
+                    ChannelKind::Joint(_) => TransitionMedium::MultiWay,
                 };
                 (&c.name, medium)
             }

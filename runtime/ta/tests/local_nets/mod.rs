@@ -36,7 +36,7 @@ pub struct Member {
     pub edges: Vec<Draft>,
 }
 
-/// A network of random automata: hand-shakes 0 and 1, a broadcast channel, an event, a joint channel of the first three.
+/// A network of random automata: binary synchronisations 0 and 1, a broadcast channel, an event, a multi-way channel of the first three.
 pub fn random(members: &[Member], optional: [bool; 3]) -> Program {
     let mut p = program();
     let shake = channel(&mut p, "shake", ChannelKind::HandShake, &[(0, 1)]);

@@ -307,14 +307,14 @@ fn synced(d: &mut Dice, p: &Program, it: E, selected: bool) -> E {
             let channel = over(1 + d.below(2) as u16);
             it = taken(d, it, selected, 1, |args| Sync::Accept { channel, args });
         }
-        // Only parties join.
+        // Only participants join.
         _ if is_party(p) => it.0.sync = Sync::Join { channel: over(3) },
         _ => {}
     }
     it
 }
 
-/// Whether the automaton that comes next is a party of the joint channel.
+/// Whether the automaton that comes next is a participant of the multi-way channel.
 fn is_party(p: &Program) -> bool {
     let next = AutomatonId(p.automata.len() as u16);
     p.channels.iter().any(|c| match &c.kind {

@@ -18,7 +18,7 @@ pub enum LineProblem {
     NoHeader,
     #[error("this is format version {0}; versions 1 to {VERSION} can be read")]
     Version(u64),
-    #[error("`{0}` is not how a run ends; that is `quiet`, `limit` or `error`")]
+    #[error("`{0}` is not how a run ends; that is `quiescent`, `limit` or `error`")]
     End(String),
     #[error("the line is longer than {} MiB", LONGEST_LINE >> 20)]
     TooLong,

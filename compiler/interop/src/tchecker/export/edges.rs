@@ -31,7 +31,7 @@ pub enum Part {
     Accepts(String),
     Announces(String),
     Hears(String),
-    /// A joint channel, by its index.
+    /// A multi-way channel, by its index.
     Joins(usize),
 }
 

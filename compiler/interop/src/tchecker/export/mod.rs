@@ -3,7 +3,7 @@
 //! # Steps
 //! 1. `names`: all of TChecker's names are global; processes, clocks and integers get theirs
 //! 2. `edges`: each edge, select and argument of a channel becomes edges with constant arguments
-//! 3. `vectors`: hand-shakes, broadcasts and joint channels become `sync` vectors
+//! 3. `vectors`: binary synchronisations, broadcasts and multi-way channels become `sync` vectors
 //! 4. `expr`: expressions and statements, without `||` and functions, which TChecker has not
 //!
 //! [`export`] does them all. A unit of time in the file is the greatest in which all constants are whole; a comment at its

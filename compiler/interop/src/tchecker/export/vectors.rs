@@ -1,4 +1,4 @@
-//! Synchronisation: hand-shakes, broadcasts and joint channels as `sync` vectors.
+//! Synchronisation: binary synchronisations, broadcasts and multi-way channels as `sync` vectors.
 //!
 //! A broadcast's receivers are weak, so that it never waits for them. TChecker allows no guards on weak edges: a process
 //! with guarded ones is strong, and gets a loop wherever it would not take part. The loop changes nothing, unless the

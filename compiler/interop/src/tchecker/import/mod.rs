@@ -1,4 +1,4 @@
-//! TChecker's text format to a scenario: processes become automata, sync vectors joint channels, labels queries.
+//! TChecker's text format to a scenario: processes become automata, sync vectors multi-way channels, labels queries.
 //!
 //! # Steps
 //! 1. `parse`, `term`: the declarations, and the expressions and statements in their attributes

@@ -7,7 +7,7 @@
 //! 4. `automaton`: one template for each automaton, laid out in columns
 //! 5. `query`: the queries of the network
 //!
-//! Events, stimuli and broadcast channels are `broadcast chan`, hand-shakes are `chan`, each with an array for its
+//! Events, stimuli and broadcast channels are `broadcast chan`, binary synchronisations are `chan`, each with an array for its
 //! arguments. [`export`] does it all.
 
 mod automaton;
@@ -51,7 +51,7 @@ struct Channel {
     urgent: bool,
 }
 
-/// How an automaton's part in a joint channel is said.
+/// How an automaton's part in a multi-way channel is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Offer,
@@ -294,7 +294,7 @@ impl<'p> Exporter<'p> {
                 Some(broadcast) => broadcast,
                 None => {
                     let message = format!(
-                        "the joint channel `{}`: UPPAAL has hand-shakes of two that must take part, \
+                        "the multi-way channel `{}`: UPPAAL has binary synchronisations of two that must take part, \
                          and broadcasts of one that must, before others that may",
                         channel.name
                     );
@@ -312,7 +312,7 @@ impl<'p> Exporter<'p> {
         parties.iter().filter(|p| self.network.automata.contains(&p.automaton)).copied().collect()
     }
 
-    /// Whether a joint channel is a broadcast; `None`: it is neither that nor a hand-shake.
+    /// Whether a multi-way channel is a broadcast; `None`: it is neither that nor a binary synchronisation.
     fn joint(&self, parties: &[Party]) -> Option<bool> {
         let present = self.present(parties);
         match present.as_slice() {

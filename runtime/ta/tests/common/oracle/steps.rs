@@ -257,7 +257,7 @@ impl<'p> Net<'p> {
         Ok((over, values))
     }
 
-    /// The groups of a hand-shake with one offer.
+    /// The groups of a binary synchronisation with one offer.
     fn pairs(&self, s: &State, channel: ChannelId, offer: &Part) -> Result<Vec<Vec<Part>>, Stop> {
         if offer.fault.is_some() {
             return Ok(vec![vec![offer.clone()]]);
@@ -295,7 +295,7 @@ impl<'p> Net<'p> {
         Ok(groups)
     }
 
-    /// The groups of a joint channel.
+    /// The groups of a multi-way channel.
     fn joints(&self, s: &State, over: ChannelId) -> Result<Vec<Vec<Part>>, Stop> {
         let ChannelKind::Joint(parties) = &self.layout.p.channels[usize::from(over.0)].kind else {
             return Ok(Vec::new());

@@ -53,7 +53,7 @@ pub enum Way {
     Breadth,
     /// First what follows the latest state.
     Depth,
-    /// As `depth`, with the ways in a random order.
+    /// As `depth`, with the paths in a random order.
     Random,
     /// First what comes first in the order of the locations.
     Topological,

@@ -4,7 +4,7 @@ use hrdsl_compiler::Compilation;
 use hrdsl_source::{Diagnostic, FileId, Fix};
 
 /// The text with a fix of it, if the fix is of this file alone.
-fn mended(text: &str, fix: &Fix) -> Option<String> {
+fn fixed(text: &str, fix: &Fix) -> Option<String> {
     let mut text = text.to_owned();
     for edit in fix.edits.iter().rev() {
         (edit.span.file == FileId(0)).then(|| text.replace_range(edit.span.range(), &edit.text))?;
@@ -43,9 +43,9 @@ pub fn faults(text: &str, compile: &dyn Fn(&str) -> Compilation) -> (Vec<String>
     let (mut faults, mut tried) = (Vec::new(), 0);
     for d in &before.diagnostics {
         for fix in d.fixes.iter().filter(|f| f.certain) {
-            let Some(mended) = mended(text, fix) else { continue };
+            let Some(fixed) = fixed(text, fix) else { continue };
             tried += 1;
-            let after = compile(&mended);
+            let after = compile(&fixed);
             let what = format!("{}: {}: {}", before.files.place(d.span()), d.code, fix.title);
             // An error in the syntax may have kept others from being found.
             let hid_others = d.is_error() && d.code.to_string().starts_with("HR00");
