@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{Code, Diagnostic, REGISTRY, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, REGISTRY, Span};
 use hrdsl_syntax::ast::{
     AgentMemberKind, Allow, AutomatonMemberKind, CrossMemberKind, File, Item, ItemKind, WorldMember,
     WorldMemberKind,
@@ -99,7 +99,7 @@ fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) ->
     let code = &allow.code;
     if !REGISTRY.iter().any(|info| info.code.to_string() == code.text) {
         let message = format!("no diagnostic has the code `{}`", code.text);
-        let error = Diagnostic::error(Code::UNKNOWN_NAME, code.span, message);
+        let error = Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, code.span, message);
         let codes: Vec<String> = REGISTRY.iter().map(|info| info.code.to_string()).collect();
         let near = hrdsl_model::nearest(&code.text, codes.iter().map(String::as_str));
         return Some(match near {
@@ -113,18 +113,19 @@ fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) ->
         });
     }
     if allow.reason.text.trim().is_empty() {
-        let error = Diagnostic::warning(Code::USELESS_ALLOW, allow.reason.span, "the reason is empty");
+        let error =
+            Diagnostic::warning(DiagnosticCode::USELESS_ALLOW, allow.reason.span, "the reason is empty");
         return Some(error.help("say why this does not matter here"));
     }
     if on_error {
         let message = format!("`{}` is an error here, which cannot be allowed", code.text);
-        let error = Diagnostic::warning(Code::USELESS_ALLOW, code.span, message);
+        let error = Diagnostic::warning(DiagnosticCode::USELESS_ALLOW, code.span, message);
         return Some(error.help("fix the error, and take the line away"));
     }
     // With errors in the text some warnings were not looked for.
     (!used && !broken).then(|| {
         let message = format!("nothing that follows has a warning `{}`", code.text);
-        Diagnostic::warning(Code::USELESS_ALLOW, code.span, message).help("take the line away").fix(
+        Diagnostic::warning(DiagnosticCode::USELESS_ALLOW, code.span, message).help("take the line away").fix(
             "remove the allowance",
             allowance.span,
             "",

@@ -1,6 +1,6 @@
 //! HR0803: files that a scenario names, and that are not there.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 use hrdsl_syntax::ast::{File, ItemKind, SystemMemberKind as Member};
 
 use crate::Loader;
@@ -26,7 +26,7 @@ pub(crate) fn missing(file: &File, loader: &dyn Loader) -> Vec<Diagnostic> {
     missing
         .map(|f| {
             let message = format!("there is no file `{}`, so no coverage is measured of it", f.text);
-            Diagnostic::warning(Code::NO_SUCH_FILE, f.span, message)
+            Diagnostic::warning(DiagnosticCode::NO_SUCH_FILE, f.span, message)
                 .help("name a file of the program, from the scenario's folder")
         })
         .collect()

@@ -20,7 +20,7 @@ mod spoken;
 
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
-use hrdsl_source::{Diagnostic, FileId, Files};
+use hrdsl_source::{Diagnostic, FileId, SourceFiles};
 pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
 
 pub use modules::{Loader, NoFiles, Source};
@@ -38,7 +38,7 @@ pub struct Input<'a> {
 pub struct Compilation {
     /// The scenario or module (always [`FileId`] 0), the files of tests, then the modules that are used, and the library's
     /// devices.
-    pub files: Files,
+    pub files: SourceFiles,
     /// By [`FileId`].
     pub ast: Vec<ast::File>,
     /// Which of them are modules, in the order in which their declarations come.
@@ -81,7 +81,7 @@ pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
 /// Compiles a scenario, or a module by itself; `loader` reads the files that it uses.
 #[must_use]
 pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loader) -> Compilation {
-    let mut files = Files::default();
+    let mut files = SourceFiles::default();
     let mut diagnostics = Vec::new();
     let mut ast = Vec::new();
     for input in std::iter::once(&scenario).chain(tests) {
@@ -104,7 +104,7 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));
     }
-    let missing = diagnostics.iter().any(|d| d.code == hrdsl_source::Code::UNKNOWN_MODULE);
+    let missing = diagnostics.iter().any(|d| d.code == hrdsl_source::DiagnosticCode::UNKNOWN_MODULE);
     let (resolved, issues) = hrdsl_model::resolve_part(&ast[0], &used, &tests, missing);
     diagnostics.extend(issues);
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
@@ -124,7 +124,7 @@ fn unnamed(file: &ast::File, so_far: &[Diagnostic]) -> Option<Diagnostic> {
     let unread = so_far.iter().any(|d| d.span().file == FileId(0) && d.is_error());
     (file.scenario.is_none() && !unread).then(|| {
         let span = hrdsl_source::Span::new(FileId(0), 0, 0);
-        Diagnostic::error(hrdsl_source::Code::MISSING_DECLARATION, span, "the scenario has no name")
+        Diagnostic::error(hrdsl_source::DiagnosticCode::MISSING_DECLARATION, span, "the scenario has no name")
             .help("begin with `scenario NAME`")
     })
 }

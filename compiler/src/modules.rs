@@ -1,6 +1,6 @@
 //! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
-use hrdsl_source::{Code, Diagnostic, Files, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, SourceFiles, Span};
 use hrdsl_syntax::ast::{self, ItemKind, Module};
 
 /// The most modules that one scenario uses, its modules' modules included.
@@ -39,7 +39,7 @@ impl Loader for NoFiles {
 
 /// Adds the modules used by the files so far, and by modules.
 pub fn load(
-    files: &mut Files,
+    files: &mut SourceFiles,
     ast: &mut Vec<ast::File>,
     diagnostics: &mut Vec<Diagnostic>,
     loader: &dyn Loader,
@@ -64,7 +64,7 @@ pub fn load(
             }
             if ast.len() - first >= MAX_MODULES {
                 let message = format!("more than {MAX_MODULES} modules are used");
-                diagnostics.push(Diagnostic::error(Code::TOO_DEEP, span_of(&used), message));
+                diagnostics.push(Diagnostic::error(DiagnosticCode::TOO_DEEP, span_of(&used), message));
                 return;
             }
             let id = files.add(source.name.clone(), source.text.as_str());
@@ -79,7 +79,7 @@ pub fn load(
 }
 
 /// Adds the library's devices, which every scenario has, unless they are there; gives the module's place.
-pub fn load_devices(files: &mut Files, ast: &mut Vec<ast::File>) -> Option<usize> {
+pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::File>) -> Option<usize> {
     let text = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES)?;
     let known = files.iter().position(|(_, file)| file.name == hrdsl_stdlib::DEVICES || file.text == text);
     known.or_else(|| {
@@ -136,7 +136,7 @@ fn misplaced(module: &ast::File) -> Vec<Diagnostic> {
     let items = module.items.iter().filter_map(|i| Some((i.span, only_in_scenario(&i.kind)?)));
     let error = |(span, what): (Span, &str)| {
         Diagnostic::error(
-            Code::MODULE_ITEM,
+            DiagnosticCode::MODULE_ITEM,
             span,
             format!("a module has no {}", what.trim_start_matches("a ")),
         )
@@ -157,7 +157,7 @@ fn find(used: &Module, from: &str, loader: &dyn Loader) -> Result<Source, Diagno
         }
         Module::File(path) => loader.load(from, &path.text).map_err(|why| {
             let message = format!("cannot use `{}`: {why}", path.text);
-            Diagnostic::error(Code::UNKNOWN_MODULE, path.span, message)
+            Diagnostic::error(DiagnosticCode::UNKNOWN_MODULE, path.span, message)
                 .help("the path is relative to the file that uses it")
         }),
     }
@@ -177,8 +177,12 @@ fn span_of(used: &Module) -> Span {
 
 /// HR0106
 fn not_a_module(used: &Module) -> Diagnostic {
-    Diagnostic::error(Code::MODULE_ITEM, span_of(used), "a scenario is no module, and no file uses itself")
-        .help("take the line away, or move what is shared to a file of its own")
+    Diagnostic::error(
+        DiagnosticCode::MODULE_ITEM,
+        span_of(used),
+        "a scenario is no module, and no file uses itself",
+    )
+    .help("take the line away, or move what is shared to a file of its own")
 }
 
 /// HR0104, at the first name that differs from those of the nearest module.
@@ -188,7 +192,8 @@ fn unknown(name: &str, path: &ast::Path) -> Diagnostic {
     let parts = near.unwrap_or_default().split('.').map(Some).chain(std::iter::repeat(None));
     let wrong = path.names.iter().zip(parts).find(|(n, part)| Some(n.text.as_str()) != *part);
     let span = if near.is_some() { wrong.map_or(path.span, |(n, _)| n.span) } else { path.span };
-    let error = Diagnostic::error(Code::UNKNOWN_MODULE, span, format!("no module is called `{name}`"));
+    let error =
+        Diagnostic::error(DiagnosticCode::UNKNOWN_MODULE, span, format!("no module is called `{name}`"));
     match near {
         Some(near) => error.help(format!("did you mean `{near}`?")),
         None => error.help(format!("the modules are: `{}`", names.join("`, `"))),

@@ -1,19 +1,19 @@
 //! The pages of the diagnostic codes, embedded: what `hrdsl explain` prints.
 
-use hrdsl_source::Code;
+use hrdsl_source::DiagnosticCode;
 
 /// `(code, text)`, in the order of the codes; made by the build script from `spec/codes/`.
 const PAGES: &[(u16, &str)] = include!(concat!(env!("OUT_DIR"), "/pages.rs"));
 
 /// The page of a code, as Markdown.
 #[must_use]
-pub fn page(code: Code) -> Option<&'static str> {
+pub fn page(code: DiagnosticCode) -> Option<&'static str> {
     PAGES.binary_search_by_key(&code.0, |p| p.0).ok().map(|at| PAGES[at].1)
 }
 
 /// Where the page of a code is in the project.
 #[must_use]
-pub fn path(code: Code) -> String {
+pub fn path(code: DiagnosticCode) -> String {
     format!("spec/codes/{code}.md")
 }
 
@@ -30,6 +30,6 @@ mod tests {
             assert!(page.starts_with(&format!("# {}: {}\n", info.code, info.title)), "{}", info.code);
         }
         assert_eq!(PAGES.len(), REGISTRY.len());
-        assert_eq!(page(Code(9999)), None);
+        assert_eq!(page(DiagnosticCode(9999)), None);
     }
 }

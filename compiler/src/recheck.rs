@@ -1,7 +1,7 @@
 //! One declaration, whose text has changed, checked again alone: what an editor asks at every key.
 
 use hrdsl_model::{DefinedType, Resolutions};
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use hrdsl_syntax::ast::{self, ItemKind};
 
 use crate::Compilation;
@@ -34,7 +34,7 @@ pub fn recheck(compilation: &Compilation, at: usize, text: &str) -> Option<Reche
     }
     let modules: Vec<&ast::File> =
         compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
-    let missing = compilation.diagnostics.iter().any(|d| d.code == Code::UNKNOWN_MODULE);
+    let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
     diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, missing));
     let same_names = declares(&files, old) == declares(&files, item);
     let moved = Moved { alone: file, old: old.span, len: text.len() };
@@ -48,7 +48,7 @@ fn is_of_the_whole(kind: &ItemKind) -> bool {
 }
 
 /// What the rest of a scenario sees of a declaration. Of some all is seen: the value of a constant, the parts of the world.
-fn declares(files: &hrdsl_source::Files, item: &ast::Item) -> Vec<(&'static str, String, String)> {
+fn declares(files: &hrdsl_source::SourceFiles, item: &ast::Item) -> Vec<(&'static str, String, String)> {
     let whole = match &item.kind {
         ItemKind::Agent(_)
         | ItemKind::Automaton(_)

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{Code, Diagnostic, FileId, Files, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, SourceFiles, Span};
 use hrdsl_syntax::{
     ast::{File, Item, ItemKind},
     words,
@@ -19,8 +19,8 @@ struct Spoken<'f> {
 }
 
 /// Fixes that take a declaration away stay certain only if its name stands nowhere else.
-pub(crate) fn doubt(files: &Files, ast: &[File], diagnostics: &mut [Diagnostic]) {
-    let is_sure = |d: &&mut Diagnostic| d.code == Code::UNUSED && d.fixes.iter().any(|f| f.certain);
+pub(crate) fn doubt(files: &SourceFiles, ast: &[File], diagnostics: &mut [Diagnostic]) {
+    let is_sure = |d: &&mut Diagnostic| d.code == DiagnosticCode::UNUSED && d.fixes.iter().any(|f| f.certain);
     let mut unused = diagnostics.iter_mut().filter(is_sure).peekable();
     if unused.peek().is_none() {
         return;
@@ -36,7 +36,7 @@ pub(crate) fn doubt(files: &Files, ast: &[File], diagnostics: &mut [Diagnostic])
 }
 
 impl<'f> Spoken<'f> {
-    fn of(files: &'f Files, ast: &[File]) -> Self {
+    fn of(files: &'f SourceFiles, ast: &[File]) -> Self {
         let is_automaton = |i: &&Item| matches!(i.kind, ItemKind::Automaton(_));
         let automata = ast[0].items.iter().filter(is_automaton).map(|i| i.span).collect();
         let mut spoken = Self { all: BTreeMap::new(), within: BTreeMap::new(), automata };
@@ -60,7 +60,7 @@ impl<'f> Spoken<'f> {
     }
 
     /// Whether a name stands where it may mean what this span declares, other than in the span itself.
-    fn elsewhere(&self, files: &Files, name: &str, whole: Span) -> bool {
+    fn elsewhere(&self, files: &SourceFiles, name: &str, whole: Span) -> bool {
         let text = files.text(whole);
         let own = words(text).filter(|word| &text[word.clone()] == name).count();
         let within = |place| self.within.get(&(place, name)).copied().unwrap_or(0);

@@ -6,7 +6,7 @@ use hrdsl_source::{Span, Symbol};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    event::{ActorId, EventId, EventPattern, Param},
+    event::{ActorId, EventId, EventPattern, Parameter},
     expr::Expr,
     list::ListFunction,
     value::Value,
@@ -34,12 +34,12 @@ pub struct Agent<E = Expr> {
     pub name: String,
     /// The actor it plays.
     pub actor: ActorId,
-    pub beliefs: Vec<Belief>,
-    pub goals: Vec<Goal>,
+    pub beliefs: Vec<BeliefDecl>,
+    pub goals: Vec<GoalDecl>,
     /// Rules, in source order: those of a belief are tried after its facts.
-    pub rules: Vec<Rule<E>>,
+    pub rules: Vec<BeliefRule<E>>,
     /// Beliefs held at the start, in source order.
-    pub initial_beliefs: Vec<Fact>,
+    pub initial_beliefs: Vec<InitialFact>,
     /// Goals adopted at the start, in source order.
     pub initial_goals: Vec<(GoalId, Vec<Value>)>,
     /// The plan library, in source order: the first applicable plan is chosen.
@@ -49,11 +49,11 @@ pub struct Agent<E = Expr> {
 
 /// A declared belief. A strongly negated one, `~b`, is a belief of its own, with `~` in its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Belief {
+pub struct BeliefDecl {
     pub name: String,
-    pub params: Vec<Param>,
+    pub params: Vec<Parameter>,
     /// The annotations that its facts may have besides `source`: each a name with one value.
-    pub annotations: Vec<Param>,
+    pub annotations: Vec<Parameter>,
     /// `belief b(…) on e`: the arguments of the latest such event that the agent perceived, with the source `percept`.
     pub percept: Option<EventId>,
     /// It is the strong negation of this one.
@@ -64,19 +64,19 @@ pub struct Belief {
 
 /// A goal that some plan achieves. `arity` arguments; their types, if it is declared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Goal {
+pub struct GoalDecl {
     pub name: String,
     pub arity: u16,
-    pub params: Option<Vec<Param>>,
+    pub params: Option<Vec<Parameter>>,
 }
 
 /// `rule b(…) when body`: what follows from other beliefs. Once the body has an answer, every variable of the head has a
 /// value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule<E = Expr> {
+pub struct BeliefRule<E = Expr> {
     pub belief: BeliefId,
-    pub args: Vec<Term<E>>,
-    pub body: Context<E>,
+    pub args: Vec<AgentTerm<E>>,
+    pub body: PlanContext<E>,
     /// The names of the rule's variables.
     pub vars: Vec<String>,
     /// `b(…)`
@@ -86,20 +86,20 @@ pub struct Rule<E = Expr> {
 
 /// A ground belief.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fact {
+pub struct InitialFact {
     pub belief: BeliefId,
     pub args: Vec<Value>,
     /// Without a source: `self`.
-    pub annotations: Vec<(Annotation, Value)>,
+    pub annotations: Vec<(BeliefAnnotation, Value)>,
 }
 
 /// What an annotation says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Annotation {
+pub enum BeliefAnnotation {
     /// Who told it: an agent's name, `self` or `percept`.
     Source,
-    /// Index into [`Belief::annotations`].
+    /// Index into [`BeliefDecl::annotations`].
     Declared(u16),
 }
 
@@ -110,9 +110,9 @@ pub struct Plan<E = Expr> {
     pub label: String,
     /// `@label[atomic]`: while it is not finished, and does not wait, no other intention is executed.
     pub atomic: bool,
-    pub trigger: Trigger<E>,
-    pub context: Context<E>,
-    pub body: Vec<Step<E>>,
+    pub trigger: PlanTrigger<E>,
+    pub context: PlanContext<E>,
+    pub body: Vec<PlanStep<E>>,
     /// The names of the plan's variables; `Expr::Var(i)` and `Term::Var(i)` index it.
     pub vars: Vec<String>,
     pub origin: Span,
@@ -120,11 +120,11 @@ pub struct Plan<E = Expr> {
 
 /// What makes a plan relevant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trigger<E = Expr> {
+pub struct PlanTrigger<E = Expr> {
     pub on: TriggerOn,
-    pub args: Vec<Term<E>>,
+    pub args: Vec<AgentTerm<E>>,
     /// Of a goal `source` only: who asked for it.
-    pub annotations: Vec<(Annotation, Term<E>)>,
+    pub annotations: Vec<(BeliefAnnotation, AgentTerm<E>)>,
     pub origin: Span,
     /// The name in it.
     pub name: Span,
@@ -166,7 +166,7 @@ impl TriggerOn {
 /// A term that is matched: in a trigger, in a belief literal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Term<E = Expr> {
+pub enum AgentTerm<E = Expr> {
     /// `_`
     Any,
     /// A variable: bound here if it is not yet, compared otherwise.
@@ -174,16 +174,16 @@ pub enum Term<E = Expr> {
     /// A ground or computed value; its variables are bound before.
     Expr(E),
     /// `[A, B | Rest]`: a list that begins so; without a rest, of just these elements.
-    List(Vec<Term<E>>, Option<Box<Term<E>>>),
+    List(Vec<AgentTerm<E>>, Option<Box<AgentTerm<E>>>),
 }
 
-impl<E> Term<E> {
+impl<E> AgentTerm<E> {
     /// Calls `f` with each variable that is bound or compared as a whole.
     pub fn each_var(&self, f: &mut dyn FnMut(u16)) {
         match self {
-            Term::Any | Term::Expr(_) => {}
-            Term::Var(i) => f(*i),
-            Term::List(items, rest) => {
+            AgentTerm::Any | AgentTerm::Expr(_) => {}
+            AgentTerm::Var(i) => f(*i),
+            AgentTerm::List(items, rest) => {
                 items.iter().for_each(|t| t.each_var(f));
                 rest.iter().for_each(|t| t.each_var(f));
             }
@@ -193,10 +193,10 @@ impl<E> Term<E> {
 
 /// A belief that is matched. Each annotation must be one of the fact's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Literal<E = Expr> {
+pub struct BeliefLiteral<E = Expr> {
     pub belief: BeliefId,
-    pub args: Vec<Term<E>>,
-    pub annotations: Vec<(Annotation, Term<E>)>,
+    pub args: Vec<AgentTerm<E>>,
+    pub annotations: Vec<(BeliefAnnotation, AgentTerm<E>)>,
     pub origin: Span,
 }
 
@@ -206,37 +206,37 @@ pub struct Assertion<E = Expr> {
     pub belief: BeliefId,
     pub args: Vec<E>,
     /// Without a source: `self`.
-    pub annotations: Vec<(Annotation, E)>,
+    pub annotations: Vec<(BeliefAnnotation, E)>,
 }
 
 /// A plan's context, a rule's body, a condition of a step: a formula over the belief base. Its answers are searched
 /// depth first, facts from the oldest, then rules; mostly the first is taken.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Context<E = Expr> {
+pub enum PlanContext<E = Expr> {
     True,
-    Belief(Literal<E>),
+    Belief(BeliefLiteral<E>),
     /// Negation as failure; binds nothing.
-    Not(Box<Context<E>>),
-    And(Vec<Context<E>>),
-    Or(Vec<Context<E>>),
+    Not(Box<PlanContext<E>>),
+    And(Vec<PlanContext<E>>),
+    Or(Vec<PlanContext<E>>),
     /// A boolean expression over variables bound before it.
     Test(E),
     /// `X = e`, `[H | T] = e`
-    Unify(Term<E>, E),
+    Unify(AgentTerm<E>, E),
     /// An internal action that asks, in the place of a belief.
-    Internal(Box<Internal<E>>, Span),
+    Internal(Box<InternalAct<E>>, Span),
 }
 
-impl<E> Context<E> {
+impl<E> PlanContext<E> {
     /// Calls `f` with the formula and each formula in it, the whole first.
-    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Context<E>)) {
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a PlanContext<E>)) {
         f(self);
         match self {
-            Context::Not(inner) => inner.each(f),
-            Context::And(all) | Context::Or(all) => all.iter().for_each(|c| c.each(f)),
-            Context::Internal(action, _) => action.formula().iter().for_each(|c| c.each(f)),
-            Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
+            PlanContext::Not(inner) => inner.each(f),
+            PlanContext::And(all) | PlanContext::Or(all) => all.iter().for_each(|c| c.each(f)),
+            PlanContext::Internal(action, _) => action.formula().iter().for_each(|c| c.each(f)),
+            PlanContext::True | PlanContext::Belief(_) | PlanContext::Test(_) | PlanContext::Unify(..) => {}
         }
     }
 
@@ -246,14 +246,16 @@ impl<E> Context<E> {
         let mut vars = Vec::new();
         let mut add = |var| vars.push(var);
         match self {
-            Context::True | Context::Not(_) | Context::Test(_) => {}
-            Context::And(all) | Context::Or(all) => return all.iter().flat_map(Context::binds).collect(),
-            Context::Belief(literal) => {
+            PlanContext::True | PlanContext::Not(_) | PlanContext::Test(_) => {}
+            PlanContext::And(all) | PlanContext::Or(all) => {
+                return all.iter().flat_map(PlanContext::binds).collect();
+            }
+            PlanContext::Belief(literal) => {
                 literal.args.iter().for_each(|a| a.each_var(&mut add));
                 literal.annotations.iter().for_each(|(_, a)| a.each_var(&mut add));
             }
-            Context::Unify(term, _) => term.each_var(&mut add),
-            Context::Internal(action, _) => action.terms().into_iter().for_each(|a| a.each_var(&mut add)),
+            PlanContext::Unify(term, _) => term.each_var(&mut add),
+            PlanContext::Internal(action, _) => action.terms().into_iter().for_each(|a| a.each_var(&mut add)),
         }
         vars
     }
@@ -262,86 +264,86 @@ impl<E> Context<E> {
 /// An internal action that asks: it has answers, and changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Internal<E = Expr> {
+pub enum InternalAct<E = Expr> {
     /// `.findall(X, F, L)`, and `.setof`: sorted, without duplicates. F binds nothing outside.
-    FindAll { template: E, formula: Context<E>, set: bool, out: Term<E> },
+    FindAll { template: E, formula: PlanContext<E>, set: bool, out: AgentTerm<E> },
     /// `.count(F, N)`
-    Count { formula: Context<E>, out: Term<E> },
+    Count { formula: PlanContext<E>, out: AgentTerm<E> },
     /// `.member(X, L)`: an answer for each element, in order
-    Member { element: Term<E>, list: E },
+    Member { element: AgentTerm<E>, list: E },
     /// A function of lists and strings; no answer if it has no value.
-    Apply { function: ListFunction, args: Vec<E>, out: Term<E> },
+    Apply { function: ListFunction, args: Vec<E>, out: AgentTerm<E> },
     /// `.empty(L)`, `.prefix(A, B)`, …: a function that yields a bool.
     Holds { function: ListFunction, args: Vec<E> },
     /// `.intend(g(…))`: an intention has the goal
-    Intend { goal: GoalId, args: Vec<Term<E>> },
+    Intend { goal: GoalId, args: Vec<AgentTerm<E>> },
     /// `.desire(g(…))`: an intention, or an event not yet handled, has the goal
-    Desire { goal: GoalId, args: Vec<Term<E>> },
+    Desire { goal: GoalId, args: Vec<AgentTerm<E>> },
     /// `.suspended(g(…))`
-    Suspended { goal: GoalId, args: Vec<Term<E>> },
+    Suspended { goal: GoalId, args: Vec<AgentTerm<E>> },
     /// `.random(X)`: evenly in [0, 1); `.random(L, X)`: an element; no answer from an empty list
-    Random { from: Option<E>, out: Term<E> },
+    Random { from: Option<E>, out: AgentTerm<E> },
     /// `.shuffle(L, M)`
-    Shuffle { list: E, out: Term<E> },
+    Shuffle { list: E, out: AgentTerm<E> },
     /// `.time(T)`: the virtual time, in seconds
-    Time { out: Term<E> },
+    Time { out: AgentTerm<E> },
     /// `.my_name(A)`
-    MyName { out: Term<E> },
+    MyName { out: AgentTerm<E> },
     /// `.all_names(L)`: of the agents of this run, in their order
-    AllNames { out: Term<E> },
+    AllNames { out: AgentTerm<E> },
 }
 
-impl<E> Internal<E> {
+impl<E> InternalAct<E> {
     /// The formula that it asks.
     #[must_use]
-    pub fn formula(&self) -> Option<&Context<E>> {
+    pub fn formula(&self) -> Option<&PlanContext<E>> {
         match self {
-            Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => Some(formula),
-            Internal::Member { .. }
-            | Internal::Apply { .. }
-            | Internal::Holds { .. }
-            | Internal::Intend { .. }
-            | Internal::Desire { .. }
-            | Internal::Suspended { .. }
-            | Internal::Random { .. }
-            | Internal::Shuffle { .. }
-            | Internal::Time { .. }
-            | Internal::MyName { .. }
-            | Internal::AllNames { .. } => None,
+            InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => Some(formula),
+            InternalAct::Member { .. }
+            | InternalAct::Apply { .. }
+            | InternalAct::Holds { .. }
+            | InternalAct::Intend { .. }
+            | InternalAct::Desire { .. }
+            | InternalAct::Suspended { .. }
+            | InternalAct::Random { .. }
+            | InternalAct::Shuffle { .. }
+            | InternalAct::Time { .. }
+            | InternalAct::MyName { .. }
+            | InternalAct::AllNames { .. } => None,
         }
     }
 
     /// What it matches.
     #[must_use]
-    pub fn terms(&self) -> Vec<&Term<E>> {
+    pub fn terms(&self) -> Vec<&AgentTerm<E>> {
         match self {
-            Internal::FindAll { out, .. }
-            | Internal::Count { out, .. }
-            | Internal::Member { element: out, .. }
-            | Internal::Apply { out, .. }
-            | Internal::Random { out, .. }
-            | Internal::Shuffle { out, .. }
-            | Internal::Time { out }
-            | Internal::MyName { out }
-            | Internal::AllNames { out } => vec![out],
-            Internal::Holds { .. } => Vec::new(),
-            Internal::Intend { args, .. }
-            | Internal::Desire { args, .. }
-            | Internal::Suspended { args, .. } => args.iter().collect(),
+            InternalAct::FindAll { out, .. }
+            | InternalAct::Count { out, .. }
+            | InternalAct::Member { element: out, .. }
+            | InternalAct::Apply { out, .. }
+            | InternalAct::Random { out, .. }
+            | InternalAct::Shuffle { out, .. }
+            | InternalAct::Time { out }
+            | InternalAct::MyName { out }
+            | InternalAct::AllNames { out } => vec![out],
+            InternalAct::Holds { .. } => Vec::new(),
+            InternalAct::Intend { args, .. }
+            | InternalAct::Desire { args, .. }
+            | InternalAct::Suspended { args, .. } => args.iter().collect(),
         }
     }
 }
 
 /// One formula of a plan's body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Step<E = Expr> {
-    pub kind: StepKind<E>,
+pub struct PlanStep<E = Expr> {
+    pub kind: PlanStepKind<E>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StepKind<E = Expr> {
+pub enum PlanStepKind<E = Expr> {
     /// Do a stimulus, or make an event, of the actor that the agent plays.
     Do { event: EventId, args: Vec<E> },
     /// `!g(…) within D`: achieve it before going on, before the time in seconds is over
@@ -349,96 +351,103 @@ pub enum StepKind<E = Expr> {
     /// `!!g(…)`: achieve it in an intention of its own
     Spawn { goal: GoalId, args: Vec<E> },
     /// `?b(…)`: query the belief base, then the plans for the test goal; fails without an answer
-    Query(Literal<E>),
+    Query(BeliefLiteral<E>),
     /// `?(F)`, `X = e`, an internal action that asks: fails without an answer
-    Test(Context<E>),
+    Test(PlanContext<E>),
     /// `+b(…)`
     Add(Assertion<E>),
     /// `-b(…)`: takes the first belief that matches from one source, `self` unless it is said; none: nothing happens
-    Remove(Literal<E>),
+    Remove(BeliefLiteral<E>),
     /// `-+b(…)`: removes every belief of that name, then adds
     Replace(Assertion<E>),
     /// `.abolish(b(…))`: removes every belief that matches, whatever its source
-    Abolish(Literal<E>),
+    Abolish(BeliefLiteral<E>),
     /// `await e1 | e2 within D`: waits for an event; fails when the time in seconds is over
     Await { events: Vec<EventPattern>, within: Option<E> },
     /// `wait D`: an expression in seconds
     Wait { seconds: E },
     /// `if F { … } else { … }`
-    If { condition: Context<E>, then: Vec<Step<E>>, otherwise: Vec<Step<E>> },
+    If { condition: PlanContext<E>, then: Vec<PlanStep<E>>, otherwise: Vec<PlanStep<E>> },
     /// `while F { … }`: what F and the body bind is open again each time
-    While { condition: Context<E>, body: Vec<Step<E>> },
+    While { condition: PlanContext<E>, body: Vec<PlanStep<E>> },
     /// `for F { … }`: once for each answer that F has at the start
-    For { condition: Context<E>, body: Vec<Step<E>> },
+    For { condition: PlanContext<E>, body: Vec<PlanStep<E>> },
     /// `fork { … } and { … }`: all at once, until all are done; with `or` until one is
-    Fork { branches: Vec<Vec<Step<E>>>, all: bool },
+    Fork { branches: Vec<Vec<PlanStep<E>>>, all: bool },
     /// `.send(A, tell, b(…))`, `.broadcast(tell, b(…))`
-    Send { to: Option<E>, performative: Performative, content: ContentId, args: Vec<Term<E>> },
+    Send { to: Option<E>, performative: Performative, content: ContentId, args: Vec<AgentTerm<E>> },
     /// `.ask(A, b(…), D)`: waits for the answer, which binds variables; fails if there is none, or after D
-    Ask { to: E, content: ContentId, args: Vec<Term<E>>, within: Option<E> },
+    Ask { to: E, content: ContentId, args: Vec<AgentTerm<E>>, within: Option<E> },
     /// `.ask_all(A, X, b(X), L, D)`: waits for the list of the template's values for all answers
-    AskAll { to: E, template: E, content: ContentId, args: Vec<Term<E>>, out: Term<E>, within: Option<E> },
+    AskAll {
+        to: E,
+        template: E,
+        content: ContentId,
+        args: Vec<AgentTerm<E>>,
+        out: AgentTerm<E>,
+        within: Option<E>,
+    },
     /// `.print(…)`: into the log
     Print { args: Vec<E> },
     /// Changes what is intended; without a goal of all, or of this intention.
-    Control { what: Control, goal: Option<(GoalId, Vec<Term<E>>)> },
+    Control { what: ControlAct, goal: Option<(GoalId, Vec<AgentTerm<E>>)> },
     /// `.fail`
     Fail,
 }
 
-impl<E> Step<E> {
+impl<E> PlanStep<E> {
     /// The steps within it.
     #[must_use]
-    pub fn blocks(&self) -> Vec<&[Step<E>]> {
+    pub fn blocks(&self) -> Vec<&[PlanStep<E>]> {
         match &self.kind {
-            StepKind::If { then, otherwise, .. } => vec![then, otherwise],
-            StepKind::While { body, .. } | StepKind::For { body, .. } => vec![body],
-            StepKind::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
-            StepKind::Do { .. }
-            | StepKind::Achieve { .. }
-            | StepKind::Spawn { .. }
-            | StepKind::Query(_)
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => Vec::new(),
+            PlanStepKind::If { then, otherwise, .. } => vec![then, otherwise],
+            PlanStepKind::While { body, .. } | PlanStepKind::For { body, .. } => vec![body],
+            PlanStepKind::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
+            PlanStepKind::Do { .. }
+            | PlanStepKind::Achieve { .. }
+            | PlanStepKind::Spawn { .. }
+            | PlanStepKind::Query(_)
+            | PlanStepKind::Test(_)
+            | PlanStepKind::Add(_)
+            | PlanStepKind::Remove(_)
+            | PlanStepKind::Replace(_)
+            | PlanStepKind::Abolish(_)
+            | PlanStepKind::Await { .. }
+            | PlanStepKind::Wait { .. }
+            | PlanStepKind::Send { .. }
+            | PlanStepKind::Ask { .. }
+            | PlanStepKind::AskAll { .. }
+            | PlanStepKind::Print { .. }
+            | PlanStepKind::Control { .. }
+            | PlanStepKind::Fail => Vec::new(),
         }
     }
 
     /// The formula that it asks.
     #[must_use]
-    pub fn condition(&self) -> Option<&Context<E>> {
+    pub fn condition(&self) -> Option<&PlanContext<E>> {
         match &self.kind {
-            StepKind::Test(condition)
-            | StepKind::If { condition, .. }
-            | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } => Some(condition),
-            StepKind::Do { .. }
-            | StepKind::Achieve { .. }
-            | StepKind::Spawn { .. }
-            | StepKind::Query(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::Fork { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => None,
+            PlanStepKind::Test(condition)
+            | PlanStepKind::If { condition, .. }
+            | PlanStepKind::While { condition, .. }
+            | PlanStepKind::For { condition, .. } => Some(condition),
+            PlanStepKind::Do { .. }
+            | PlanStepKind::Achieve { .. }
+            | PlanStepKind::Spawn { .. }
+            | PlanStepKind::Query(_)
+            | PlanStepKind::Add(_)
+            | PlanStepKind::Remove(_)
+            | PlanStepKind::Replace(_)
+            | PlanStepKind::Abolish(_)
+            | PlanStepKind::Await { .. }
+            | PlanStepKind::Wait { .. }
+            | PlanStepKind::Fork { .. }
+            | PlanStepKind::Send { .. }
+            | PlanStepKind::Ask { .. }
+            | PlanStepKind::AskAll { .. }
+            | PlanStepKind::Print { .. }
+            | PlanStepKind::Control { .. }
+            | PlanStepKind::Fail => None,
         }
     }
 }
@@ -460,7 +469,7 @@ pub enum Performative {
 /// What an internal action does to goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Control {
+pub enum ControlAct {
     /// `.drop_intention(g)`, `.drop_all_intentions`: removes whole intentions that have the goal, without failure
     DropIntention,
     /// `.drop_desire(g)`, `.drop_all_desires`: intentions, and events not yet handled
@@ -479,15 +488,15 @@ pub enum Control {
 
 /// What messages are about: the name, and what it is to each agent of the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Content {
+pub struct MessageContent {
     pub name: String,
     /// By agent; `None`: the agent has nothing of this name.
-    pub of: Vec<Option<Subject>>,
+    pub of: Vec<Option<MessageSubject>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Subject {
+pub enum MessageSubject {
     Belief(BeliefId),
     Goal(GoalId),
 }
@@ -507,7 +516,7 @@ pub fn source_percept() -> Symbol {
 }
 
 /// Calls `f` with each step, those within blocks too, in the order of the text.
-pub fn each_step<'p, E>(steps: &'p [Step<E>], f: &mut dyn FnMut(&'p Step<E>)) {
+pub fn each_step<'p, E>(steps: &'p [PlanStep<E>], f: &mut dyn FnMut(&'p PlanStep<E>)) {
     for step in steps {
         f(step);
         step.blocks().into_iter().for_each(|block| each_step(block, f));

@@ -9,13 +9,13 @@ use crate::event::EventPattern;
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    pub points: Vec<Point>,
-    pub crosses: Vec<Cross>,
+    pub points: Vec<Coverpoint>,
+    pub crosses: Vec<CoverCross>,
 }
 
 /// Index into [`Coverage::points`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct PointId(pub u16);
+pub struct CoverpointId(pub u16);
 
 /// Index into [`Coverage::crosses`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -23,22 +23,22 @@ pub struct CrossId(pub u16);
 
 /// A number of a test, sorted into bins: how often any of the events happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct Coverpoint {
     pub name: String,
     pub count: Vec<EventPattern>,
-    pub bins: Vec<Bin>,
+    pub bins: Vec<CoverBin>,
     pub origin: Span,
 }
 
 /// `lo..=hi`; no upper end: `lo..`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bin {
+pub struct CoverBin {
     pub name: String,
     pub lo: i64,
     pub hi: Option<i64>,
 }
 
-impl Bin {
+impl CoverBin {
     #[must_use]
     pub fn holds(&self, n: i64) -> bool {
         self.lo <= n && self.hi.is_none_or(|hi| n <= hi)
@@ -47,12 +47,12 @@ impl Bin {
 
 /// A cross product of points, collapsed into named bins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cross {
+pub struct CoverCross {
     pub name: String,
-    pub points: Vec<PointId>,
+    pub points: Vec<CoverpointId>,
     pub bins: Vec<CrossBin>,
     /// Combinations that do not count.
-    pub ignore: Vec<Condition>,
+    pub ignore: Vec<BinCondition>,
     pub origin: Span,
 }
 
@@ -60,7 +60,7 @@ pub struct Cross {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrossBin {
     pub name: String,
-    pub when: Condition,
+    pub when: BinCondition,
     pub origin: Span,
 }
 
@@ -136,28 +136,28 @@ impl TryFrom<String> for BinName {
 /// A formula over points' bins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Condition {
+pub enum BinCondition {
     /// The point's number lies in its bin of this index.
     In {
-        point: PointId,
+        point: CoverpointId,
         bin: u16,
     },
-    Not(Box<Condition>),
-    And(Vec<Condition>),
-    Or(Vec<Condition>),
+    Not(Box<BinCondition>),
+    And(Vec<BinCondition>),
+    Or(Vec<BinCondition>),
 }
 
-impl Condition {
+impl BinCondition {
     /// Whether the condition holds, `number(point)` giving each point's number.
     #[must_use]
-    pub fn holds(&self, coverage: &Coverage, number: &dyn Fn(PointId) -> i64) -> bool {
+    pub fn holds(&self, coverage: &Coverage, number: &dyn Fn(CoverpointId) -> i64) -> bool {
         match self {
-            Condition::In { point, bin } => {
+            BinCondition::In { point, bin } => {
                 coverage.points[point.0 as usize].bins[*bin as usize].holds(number(*point))
             }
-            Condition::Not(c) => !c.holds(coverage, number),
-            Condition::And(cs) => cs.iter().all(|c| c.holds(coverage, number)),
-            Condition::Or(cs) => cs.iter().any(|c| c.holds(coverage, number)),
+            BinCondition::Not(c) => !c.holds(coverage, number),
+            BinCondition::And(cs) => cs.iter().all(|c| c.holds(coverage, number)),
+            BinCondition::Or(cs) => cs.iter().any(|c| c.holds(coverage, number)),
         }
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Unit,
-    world::{ArmId, DeviceCommandId, DeviceKindId, GripperId, Term, Vec3},
+    world::{ArmId, DeviceCommandId, DeviceKindId, GripperId, SignalTerm, Vec3},
 };
 
 /// What the world has of which devices can be made.
@@ -194,9 +194,9 @@ impl DeviceMeasure {
 
     /// The measurement of this device; `None`: it has none.
     #[must_use]
-    pub fn of(self, body: DeviceBody) -> Option<Term> {
+    pub fn of(self, body: DeviceBody) -> Option<SignalTerm> {
         match (self, body) {
-            (DeviceMeasure::Holds, DeviceBody::Gripper(gripper)) => Some(Term::HoldsAny(gripper)),
+            (DeviceMeasure::Holds, DeviceBody::Gripper(gripper)) => Some(SignalTerm::HoldsAny(gripper)),
             (DeviceMeasure::Holds, DeviceBody::Arm(_)) => None,
         }
     }

@@ -35,7 +35,7 @@ pub enum Role {
 
 /// A named parameter of an event, belief or goal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Param {
+pub struct Parameter {
     pub name: String,
     pub ty: Type,
 }
@@ -44,7 +44,7 @@ pub struct Param {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event<E = Expr> {
     pub name: String,
-    pub params: Vec<Param>,
+    pub params: Vec<Parameter>,
     /// The actor that makes it.
     pub from: ActorId,
     /// The actors it is addressed to; empty: everybody but `from` perceives it. A stimulus is perceived by
@@ -67,7 +67,7 @@ impl<E> Event<E> {
 /// In expressions, `Expr::Var(i)` is the i-th parameter for `i < params.len()`, then the samples in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stimulus<E = Expr> {
-    pub samples: Vec<Sample<E>>,
+    pub samples: Vec<StimulusSample<E>>,
     pub steps: Vec<StimulusStep<E>>,
 }
 
@@ -101,7 +101,7 @@ fn take<'a, E>(
 
 /// A value of the second tier, drawn uniformly from `lo..hi` by the test's seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sample<E = Expr> {
+pub struct StimulusSample<E = Expr> {
     pub name: String,
     pub ty: Type,
     pub lo: E,

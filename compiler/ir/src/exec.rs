@@ -1,6 +1,6 @@
 //! The functions of automata, executed: the one meaning that every interpreter of a [`Program`] shares.
 //!
-//! A [`View`] evaluates expressions and assigns lvalues over a [`Memory`] (the variables that an automaton knows) and binders
+//! A [`MemoryView`] evaluates expressions and assigns lvalues over a [`VariableMemory`] (the variables that an automaton knows) and binders
 //! (selects and received arguments). Everything is evaluated from left to right: arguments in their order, the indices of a
 //! lvalue before the value that is assigned to it, the bounds of a loop before its first round.
 //!
@@ -11,8 +11,8 @@ use std::cell::{Cell, RefCell};
 
 use crate::{
     Program,
-    expr::{EvalError, Expr, Place, Scope},
-    ta::{AutomatonId, Function, FunctionId, Statement, Var},
+    expr::{EvalError, EvalScope, Expr, Lvalue},
+    ta::{AutomatonFunction, AutomatonId, AutomatonVar, FunctionId, FunctionStatement},
     value::Value,
 };
 
@@ -23,7 +23,7 @@ pub const STEPS: u32 = 1_000_000;
 pub const DEPTH: u32 = 100;
 
 /// Variables outside functions, as one automaton counts them: the program's shared ones, then its own.
-pub trait Memory {
+pub trait VariableMemory {
     /// The value of a variable; `None`: there is no such variable.
     fn read(&self, slot: u16) -> Option<Value>;
 
@@ -38,28 +38,28 @@ pub trait Memory {
 ///
 /// # Errors
 /// `Outside` if it is not in the variable's range, with the slot that is given; `Type` if the value is of another type.
-pub fn fit(var: &Var, slot: u16, value: Value) -> Result<i64, EvalError> {
+pub fn fit(var: &AutomatonVar, slot: u16, value: Value) -> Result<i64, EvalError> {
     let n = var.number(value).ok_or(EvalError::Type)?;
     if (var.lo..=var.hi).contains(&n) { Ok(n) } else { Err(EvalError::Outside { slot, value: n }) }
 }
 
 /// The functions of a program, with where the variables of each are.
 #[derive(Clone, Debug)]
-pub struct Functions<'a> {
-    list: &'a [Function],
+pub struct FunctionTable<'a> {
+    list: &'a [AutomatonFunction],
     shared: u16,
     /// The number of each automaton's own variables.
     own: Vec<u16>,
 }
 
-impl<'a> Functions<'a> {
+impl<'a> FunctionTable<'a> {
     #[must_use]
     pub fn new(program: &'a Program) -> Self {
         let own = program.automata.iter().map(|a| count(a.vars.len())).collect();
         Self { list: &program.functions, shared: count(program.shared.len()), own }
     }
 
-    fn get(&self, id: FunctionId) -> Option<&'a Function> {
+    fn get(&self, id: FunctionId) -> Option<&'a AutomatonFunction> {
         self.list.get(usize::from(id.0))
     }
 
@@ -77,40 +77,40 @@ fn count(n: usize) -> u16 {
 ///
 /// An owner's function may only be called where the memory is that owner's; a function without owner reads shared variables
 /// alone, which come first in every memory.
-pub struct View<'a> {
-    functions: &'a Functions<'a>,
-    memory: Store<'a>,
+pub struct MemoryView<'a> {
+    functions: &'a FunctionTable<'a>,
+    memory: FunctionStore<'a>,
     /// The number of variables in memory: the first binder's slot.
     base: u16,
     binders: &'a [Value],
 }
 
-enum Store<'a> {
-    Shut(&'a dyn Memory),
-    Open(RefCell<&'a mut dyn Memory>),
+enum FunctionStore<'a> {
+    Shut(&'a dyn VariableMemory),
+    Open(RefCell<&'a mut dyn VariableMemory>),
 }
 
-impl<'a> View<'a> {
+impl<'a> MemoryView<'a> {
     /// For guards, invariants, arguments and queries: nothing can be assigned.
     #[must_use]
     pub fn new(
-        functions: &'a Functions<'a>,
-        memory: &'a dyn Memory,
+        functions: &'a FunctionTable<'a>,
+        memory: &'a dyn VariableMemory,
         base: u16,
         binders: &'a [Value],
     ) -> Self {
-        Self { functions, memory: Store::Shut(memory), base, binders }
+        Self { functions, memory: FunctionStore::Shut(memory), base, binders }
     }
 
     /// For updates.
     #[must_use]
     pub fn open(
-        functions: &'a Functions<'a>,
-        memory: &'a mut dyn Memory,
+        functions: &'a FunctionTable<'a>,
+        memory: &'a mut dyn VariableMemory,
         base: u16,
         binders: &'a [Value],
     ) -> Self {
-        Self { functions, memory: Store::Open(RefCell::new(memory)), base, binders }
+        Self { functions, memory: FunctionStore::Open(RefCell::new(memory)), base, binders }
     }
 
     /// The value of an expression. A function in it may assign variables, if the view is open.
@@ -125,7 +125,7 @@ impl<'a> View<'a> {
     ///
     /// # Errors
     /// See [`EvalError`]; `Type` if the view is not open, or the lvalue is a binder.
-    pub fn assign(&self, place: &Place, value: &Expr) -> Result<(), EvalError> {
+    pub fn assign(&self, place: &Lvalue, value: &Expr) -> Result<(), EvalError> {
         let slot = place.resolve(self)?;
         let value = value.eval_in(self)?;
         self.write(slot, value)
@@ -137,25 +137,25 @@ impl<'a> View<'a> {
     /// See [`EvalError`].
     pub fn call(&self, function: FunctionId, args: &[Expr]) -> Result<(), EvalError> {
         let args: Vec<Value> = args.iter().map(|a| a.eval_in(self)).collect::<Result<_, _>>()?;
-        Budget::full().invoke(self, function, &args).map(drop)
+        StepBudget::full().invoke(self, function, &args).map(drop)
     }
 
     fn read(&self, slot: u16) -> Option<Value> {
         match &self.memory {
-            Store::Shut(memory) => memory.read(slot),
-            Store::Open(memory) => memory.borrow().read(slot),
+            FunctionStore::Shut(memory) => memory.read(slot),
+            FunctionStore::Open(memory) => memory.borrow().read(slot),
         }
     }
 
     fn write(&self, slot: u16, value: Value) -> Result<(), EvalError> {
         match &self.memory {
-            Store::Open(memory) if slot < self.base => memory.borrow_mut().write(slot, value),
-            Store::Open(_) | Store::Shut(_) => Err(EvalError::Type),
+            FunctionStore::Open(memory) if slot < self.base => memory.borrow_mut().write(slot, value),
+            FunctionStore::Open(_) | FunctionStore::Shut(_) => Err(EvalError::Type),
         }
     }
 }
 
-impl Scope for View<'_> {
+impl EvalScope for MemoryView<'_> {
     fn var(&self, slot: u16) -> Option<Value> {
         match slot.checked_sub(self.base) {
             None => self.read(slot),
@@ -164,17 +164,17 @@ impl Scope for View<'_> {
     }
 
     fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
-        Budget::full().invoke(self, function, args)?.ok_or(EvalError::Type)
+        StepBudget::full().invoke(self, function, args)?.ok_or(EvalError::Type)
     }
 }
 
 /// What is left of a call from outside.
-struct Budget {
+struct StepBudget {
     steps: Cell<u32>,
     depth: Cell<u32>,
 }
 
-impl Budget {
+impl StepBudget {
     fn full() -> Self {
         Self { steps: Cell::new(STEPS), depth: Cell::new(DEPTH) }
     }
@@ -186,7 +186,12 @@ impl Budget {
     }
 
     /// The function's value, if it has one.
-    fn invoke(&self, view: &View<'_>, id: FunctionId, args: &[Value]) -> Result<Option<Value>, EvalError> {
+    fn invoke(
+        &self,
+        view: &MemoryView<'_>,
+        id: FunctionId,
+        args: &[Value],
+    ) -> Result<Option<Value>, EvalError> {
         let function = view.functions.get(id).ok_or(EvalError::Type)?;
         if args.len() != function.params.len() {
             return Err(EvalError::Type);
@@ -201,18 +206,18 @@ impl Budget {
         }
         let base = view.functions.base(function.owner);
         self.depth.set(depth);
-        let flow = Frame { budget: self, view, function, base, values }.block(&function.body);
+        let flow = CallFrame { budget: self, view, function, base, values }.block(&function.body);
         self.depth.set(depth + 1);
         match (flow?, &function.result) {
-            (Flow::Return(Some(value)), Some(result)) => within(result, value).map(Some),
-            (Flow::Return(None) | Flow::On, None) => Ok(None),
-            (Flow::Return(_) | Flow::On, _) => Err(EvalError::Type),
+            (ControlFlow::Return(Some(value)), Some(result)) => within(result, value).map(Some),
+            (ControlFlow::Return(None) | ControlFlow::On, None) => Ok(None),
+            (ControlFlow::Return(_) | ControlFlow::On, _) => Err(EvalError::Type),
         }
     }
 }
 
 /// The value, if it is in the range of a variable of a function.
-fn within(var: &Var, value: Value) -> Result<Value, EvalError> {
+fn within(var: &AutomatonVar, value: Value) -> Result<Value, EvalError> {
     match fit(var, 0, value) {
         Ok(_) => Ok(value),
         Err(EvalError::Outside { value, .. }) => Err(EvalError::Range(value)),
@@ -220,22 +225,22 @@ fn within(var: &Var, value: Value) -> Result<Value, EvalError> {
     }
 }
 
-enum Flow {
+enum ControlFlow {
     On,
     Return(Option<Value>),
 }
 
 /// One call.
-struct Frame<'a, 'v> {
-    budget: &'a Budget,
-    view: &'a View<'v>,
-    function: &'a Function,
+struct CallFrame<'a, 'v> {
+    budget: &'a StepBudget,
+    view: &'a MemoryView<'v>,
+    function: &'a AutomatonFunction,
     base: u16,
     /// Of the parameters, then of the locals.
     values: Vec<Value>,
 }
 
-impl Scope for Frame<'_, '_> {
+impl EvalScope for CallFrame<'_, '_> {
     fn var(&self, slot: u16) -> Option<Value> {
         match slot.checked_sub(self.base) {
             None => self.view.read(slot),
@@ -248,61 +253,67 @@ impl Scope for Frame<'_, '_> {
     }
 }
 
-impl Frame<'_, '_> {
-    fn block(&mut self, statements: &[Statement]) -> Result<Flow, EvalError> {
+impl CallFrame<'_, '_> {
+    fn block(&mut self, statements: &[FunctionStatement]) -> Result<ControlFlow, EvalError> {
         for statement in statements {
-            if let Flow::Return(value) = self.statement(statement)? {
-                return Ok(Flow::Return(value));
+            if let ControlFlow::Return(value) = self.statement(statement)? {
+                return Ok(ControlFlow::Return(value));
             }
         }
-        Ok(Flow::On)
+        Ok(ControlFlow::On)
     }
 
-    fn statement(&mut self, statement: &Statement) -> Result<Flow, EvalError> {
+    fn statement(&mut self, statement: &FunctionStatement) -> Result<ControlFlow, EvalError> {
         self.budget.step()?;
         match statement {
-            Statement::Assign { place, value } => {
+            FunctionStatement::Assign { place, value } => {
                 let slot = place.resolve(self)?;
                 let value = value.eval_in(self)?;
                 self.write(slot, value)?;
-                Ok(Flow::On)
+                Ok(ControlFlow::On)
             }
-            Statement::Call { function, args } => {
+            FunctionStatement::Call { function, args } => {
                 let args: Vec<Value> = args.iter().map(|a| a.eval_in(self)).collect::<Result<_, _>>()?;
                 self.budget.invoke(self.view, *function, &args)?;
-                Ok(Flow::On)
+                Ok(ControlFlow::On)
             }
-            Statement::If { condition, then, otherwise } => {
+            FunctionStatement::If { condition, then, otherwise } => {
                 let holds = self.holds(condition)?;
                 self.block(if holds { then } else { otherwise })
             }
-            Statement::While { condition, body } => {
+            FunctionStatement::While { condition, body } => {
                 while self.holds(condition)? {
                     self.budget.step()?;
-                    if let Flow::Return(value) = self.block(body)? {
-                        return Ok(Flow::Return(value));
+                    if let ControlFlow::Return(value) = self.block(body)? {
+                        return Ok(ControlFlow::Return(value));
                     }
                 }
-                Ok(Flow::On)
+                Ok(ControlFlow::On)
             }
-            Statement::For { slot, lo, hi, body } => self.each(*slot, lo, hi, body),
-            Statement::Return(value) => {
-                Ok(Flow::Return(value.as_ref().map(|v| v.eval_in(self)).transpose()?))
+            FunctionStatement::For { slot, lo, hi, body } => self.each(*slot, lo, hi, body),
+            FunctionStatement::Return(value) => {
+                Ok(ControlFlow::Return(value.as_ref().map(|v| v.eval_in(self)).transpose()?))
             }
         }
     }
 
-    fn each(&mut self, slot: u16, lo: &Expr, hi: &Expr, body: &[Statement]) -> Result<Flow, EvalError> {
+    fn each(
+        &mut self,
+        slot: u16,
+        lo: &Expr,
+        hi: &Expr,
+        body: &[FunctionStatement],
+    ) -> Result<ControlFlow, EvalError> {
         let bound = |e: &Expr| e.eval_in(self)?.as_int().ok_or(EvalError::Type);
         let (lo, hi) = (bound(lo)?, bound(hi)?);
         for n in lo..=hi {
             self.budget.step()?;
             self.write(slot, Value::Int(n))?;
-            if let Flow::Return(value) = self.block(body)? {
-                return Ok(Flow::Return(value));
+            if let ControlFlow::Return(value) = self.block(body)? {
+                return Ok(ControlFlow::Return(value));
             }
         }
-        Ok(Flow::On)
+        Ok(ControlFlow::On)
     }
 
     fn holds(&self, condition: &Expr) -> Result<bool, EvalError> {

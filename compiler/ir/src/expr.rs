@@ -25,25 +25,25 @@ pub enum Expr {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `if cond { a } else { b }`
     If(Box<Expr>, Box<Expr>, Box<Expr>),
-    Call(Function, Vec<Expr>),
+    Call(NumberFunction, Vec<Expr>),
     /// `[a, b | rest]`; without a rest, of just these elements.
     List(Vec<Expr>, Option<Box<Expr>>),
     /// An element of an array of variables. Automata only.
-    Element(Box<Place>),
-    /// A function of automata, applied: see [`ta::Function`](crate::ta::Function).
+    Element(Box<Lvalue>),
+    /// A function of automata, applied: see [`ta::NumberFunction`](crate::ta::Function).
     Apply(FunctionId, Vec<Expr>),
 }
 
 /// A variable, perhaps one that indices choose among several: `slot + Σ at · stride`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Place<E = Expr, V = u16> {
+pub struct Lvalue<E = Expr, V = u16> {
     /// The variable, or the first of the array.
     pub slot: V,
     #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
-    pub indices: Vec<Index<E>>,
+    pub indices: Vec<ArrayIndex<E>>,
 }
 
-impl<E, V> Place<E, V> {
+impl<E, V> Lvalue<E, V> {
     /// A variable outright.
     #[must_use]
     pub fn slot(slot: V) -> Self {
@@ -53,14 +53,14 @@ impl<E, V> Place<E, V> {
 
 /// One index of an lvalue: less than `count` and not negative, or there is no such element, which is an error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Index<E = Expr> {
+pub struct ArrayIndex<E = Expr> {
     pub at: E,
     pub count: u16,
     pub stride: u16,
 }
 
 /// What an expression's variables and functions mean.
-pub trait Scope {
+pub trait EvalScope {
     /// The value of a variable, if it has one.
     fn var(&self, slot: u16) -> Option<Value>;
 
@@ -75,9 +75,9 @@ pub trait Scope {
 }
 
 /// Variables alone.
-struct Vars<'a>(&'a dyn Fn(u16) -> Option<Value>);
+struct VarsOnly<'a>(&'a dyn Fn(u16) -> Option<Value>);
 
-impl Scope for Vars<'_> {
+impl EvalScope for VarsOnly<'_> {
     fn var(&self, slot: u16) -> Option<Value> {
         (self.0)(slot)
     }
@@ -86,7 +86,7 @@ impl Scope for Vars<'_> {
 /// Functions on numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Function {
+pub enum NumberFunction {
     Abs,
     Min,
     Max,
@@ -169,14 +169,14 @@ impl Expr {
     /// # Errors
     /// See [`EvalError`].
     pub fn eval(&self, var: &dyn Fn(u16) -> Option<Value>) -> Result<Value, EvalError> {
-        self.eval_in(&Vars(var))
+        self.eval_in(&VarsOnly(var))
     }
 
     /// As [`eval`](Self::eval), where there may be functions, too.
     ///
     /// # Errors
     /// See [`EvalError`].
-    pub fn eval_in(&self, scope: &dyn Scope) -> Result<Value, EvalError> {
+    pub fn eval_in(&self, scope: &dyn EvalScope) -> Result<Value, EvalError> {
         match self {
             Expr::Const(v) => Ok(*v),
             Expr::Var(i) => scope.var(*i).ok_or(EvalError::Unbound(*i)),
@@ -251,12 +251,12 @@ impl Expr {
     }
 }
 
-impl Place {
+impl Lvalue {
     /// The slot that the indices choose.
     ///
     /// # Errors
     /// Of the indices' expressions; `Index` if there is no such element.
-    pub fn resolve(&self, scope: &dyn Scope) -> Result<u16, EvalError> {
+    pub fn resolve(&self, scope: &dyn EvalScope) -> Result<u16, EvalError> {
         let mut slot = self.slot;
         for index in &self.indices {
             let at = index.at.eval_in(scope)?.as_int().ok_or(EvalError::Type)?;
@@ -400,14 +400,14 @@ fn on_floats(op: BinaryOp, a: f64, b: f64) -> Result<Value, EvalError> {
 ///
 /// # Errors
 /// See [`EvalError`].
-pub fn call(f: Function, args: &[Value]) -> Result<Value, EvalError> {
+pub fn call(f: NumberFunction, args: &[Value]) -> Result<Value, EvalError> {
     match (f, args) {
-        (Function::Abs, [Value::Int(n)]) => n.checked_abs().map(Value::Int).ok_or(EvalError::Overflow),
-        (Function::Abs, [Value::Float(x)]) => Ok(Value::Float(x.abs())),
-        (Function::Min, [a, b]) => pick(*a, *b, BinaryOp::Le),
-        (Function::Max, [a, b]) => pick(*a, *b, BinaryOp::Ge),
-        (Function::Norm, args) => norm(args),
-        (Function::Abs | Function::Min | Function::Max, _) => Err(EvalError::Type),
+        (NumberFunction::Abs, [Value::Int(n)]) => n.checked_abs().map(Value::Int).ok_or(EvalError::Overflow),
+        (NumberFunction::Abs, [Value::Float(x)]) => Ok(Value::Float(x.abs())),
+        (NumberFunction::Min, [a, b]) => pick(*a, *b, BinaryOp::Le),
+        (NumberFunction::Max, [a, b]) => pick(*a, *b, BinaryOp::Ge),
+        (NumberFunction::Norm, args) => norm(args),
+        (NumberFunction::Abs | NumberFunction::Min | NumberFunction::Max, _) => Err(EvalError::Type),
     }
 }
 
@@ -471,7 +471,7 @@ mod tests {
         for op in [UnaryOp::Not, UnaryOp::Neg] {
             assert_eq!(unary(op, slow), Err(EvalError::Type));
         }
-        for f in [Function::Abs, Function::Min, Function::Max, Function::Norm] {
+        for f in [NumberFunction::Abs, NumberFunction::Min, NumberFunction::Max, NumberFunction::Norm] {
             assert_eq!(call(f, &[slow]), Err(EvalError::Type));
             assert_eq!(call(f, &[slow, fast]), Err(EvalError::Type));
         }
@@ -488,18 +488,19 @@ mod tests {
 
     #[test]
     fn the_norm_is_the_root_of_the_sum_of_squares() {
-        let norm =
-            |args: &[f64]| call(Function::Norm, &args.iter().map(|x| Value::Float(*x)).collect::<Vec<_>>());
+        let norm = |args: &[f64]| {
+            call(NumberFunction::Norm, &args.iter().map(|x| Value::Float(*x)).collect::<Vec<_>>())
+        };
         assert_eq!(norm(&[3.0, -4.0]), Ok(Value::Float(5.0)));
         assert_eq!(norm(&[2.0, 3.0, 6.0]), Ok(Value::Float(7.0)));
-        assert_eq!(call(Function::Norm, &[Value::Int(-3), Value::Float(4.0)]), Ok(Value::Float(5.0)));
+        assert_eq!(call(NumberFunction::Norm, &[Value::Int(-3), Value::Float(4.0)]), Ok(Value::Float(5.0)));
         assert_eq!(norm(&[1.0, 1.0]), Ok(Value::Float(std::f64::consts::SQRT_2)));
         // Exact, where squaring would overflow or vanish.
         for x in [0.1, -0.1, 1e300, -1e-300, f64::MAX, f64::MIN_POSITIVE] {
             assert_eq!(norm(&[x]), Ok(Value::Float(x.abs())));
         }
-        assert_eq!(call(Function::Norm, &[Value::Int(-2)]), Ok(Value::Float(2.0)));
-        assert_eq!(call(Function::Norm, &[]), Err(EvalError::Type));
-        assert_eq!(call(Function::Norm, &[Value::Bool(true)]), Err(EvalError::Type));
+        assert_eq!(call(NumberFunction::Norm, &[Value::Int(-2)]), Ok(Value::Float(2.0)));
+        assert_eq!(call(NumberFunction::Norm, &[]), Err(EvalError::Type));
+        assert_eq!(call(NumberFunction::Norm, &[Value::Bool(true)]), Err(EvalError::Type));
     }
 }

@@ -25,7 +25,7 @@ pub mod world;
 
 use serde::{Deserialize, Serialize};
 
-pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Param, Role};
+pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Parameter, Role};
 pub use expr::Expr;
 pub use hrdsl_source::{Enumeration, Span, Symbol};
 pub use list::{List, Text};
@@ -40,16 +40,16 @@ pub struct Program {
     pub events: Vec<Event>,
     pub agents: Vec<bdi::Agent>,
     /// What the agents' messages are about.
-    pub contents: Vec<bdi::Content>,
+    pub contents: Vec<bdi::MessageContent>,
     /// Variables that all automata share.
-    pub shared: Vec<ta::Var>,
+    pub shared: Vec<ta::AutomatonVar>,
     /// Clocks that all automata share.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clocks: Vec<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub channels: Vec<ta::Channel>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub functions: Vec<ta::Function>,
+    pub functions: Vec<ta::AutomatonFunction>,
     pub automata: Vec<ta::Automaton>,
     pub networks: Vec<ta::Network>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -62,7 +62,7 @@ pub struct Program {
     pub suites: Vec<suite::Suite>,
     pub tests: Vec<test::Test>,
     pub world: Option<world::World>,
-    pub system: Option<system::System>,
+    pub system: Option<system::SystemUnderTest>,
 }
 
 impl Program {

@@ -39,7 +39,7 @@ impl fmt::Display for Text {
     }
 }
 
-struct Cell {
+struct ListCell {
     head: Value,
     tail: List,
     len: u32,
@@ -48,14 +48,14 @@ struct Cell {
 
 /// A list: empty, or an element and the rest.
 #[derive(Clone, Copy)]
-pub struct List(Option<&'static Cell>);
+pub struct List(Option<&'static ListCell>);
 
 /// By what equal cells are known: the head's key, the rest's address.
-type Key = (u8, u64, usize);
+type ListKey = (u8, u64, usize);
 
 const SHARDS: usize = 16;
 
-static CELLS: LazyLock<[Mutex<FxHashMap<Key, &'static Cell>>; SHARDS]> =
+static CELLS: LazyLock<[Mutex<FxHashMap<ListKey, &'static ListCell>>; SHARDS]> =
     LazyLock::new(|| std::array::from_fn(|_| Mutex::default()));
 
 impl List {
@@ -75,7 +75,7 @@ impl List {
         let shard = &CELLS[number as usize % SHARDS];
         let mut cells = shard.lock().unwrap_or_else(PoisonError::into_inner);
         let len = tail.0.map_or(0, |c| c.len) + 1;
-        let make = || -> &'static Cell { Box::leak(Box::new(Cell { head, tail, len, number })) };
+        let make = || -> &'static ListCell { Box::leak(Box::new(ListCell { head, tail, len, number })) };
         List(Some(cells.entry((kind, content, tail.address())).or_insert_with(make)))
     }
 

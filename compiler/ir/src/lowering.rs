@@ -3,12 +3,18 @@
 
 use crate::{
     Expr,
-    bdi::{Agent, Assertion, Context, Internal, Literal, Plan, Rule, Step, StepKind, Term, Trigger},
-    event::{Event, Sample, Stimulus, StimulusStep},
-    expr::{Index, Place},
-    suite::{Choice, Condition, Method, Suite},
-    ta::{Ask, ClockConstraint, Edge, Formula, Location, Measure, Statement, Sync, Time, TimeTerm, Update},
-    world::{Point, WorldAction},
+    bdi::{
+        Agent, AgentTerm, Assertion, BeliefLiteral, BeliefRule, InternalAct, Plan, PlanContext, PlanStep,
+        PlanStepKind, PlanTrigger,
+    },
+    event::{Event, Stimulus, StimulusSample, StimulusStep},
+    expr::{ArrayIndex, Lvalue},
+    suite::{BeliefChoice, BeliefCondition, Suite, SuiteMethod},
+    ta::{
+        ClockConstraint, Edge, EdgeAssignment, FunctionStatement, Location, QueryFormula, QueryKind,
+        QueryMeasure, SyncLabel, TimeSum, TimeTerm,
+    },
+    world::{WorldAction, WorldPoint},
 };
 
 /// What an expression becomes where all variables are of one place: an agent's plan, a stimulus.
@@ -38,9 +44,9 @@ impl<E> Agent<E> {
     }
 }
 
-impl<E> Rule<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Rule {
-        Rule {
+impl<E> BeliefRule<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> BeliefRule {
+        BeliefRule {
             belief: self.belief,
             args: terms(&self.args, f),
             body: self.body.lower(f),
@@ -56,7 +62,7 @@ impl<E> Plan<E> {
         Plan {
             label: self.label.clone(),
             atomic: self.atomic,
-            trigger: Trigger {
+            trigger: PlanTrigger {
                 on: self.trigger.on,
                 args: terms(&self.trigger.args, f),
                 annotations: annotations(&self.trigger.annotations, f),
@@ -71,33 +77,33 @@ impl<E> Plan<E> {
     }
 }
 
-impl<E> Term<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Term {
+impl<E> AgentTerm<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> AgentTerm {
         match self {
-            Term::Any => Term::Any,
-            Term::Var(i) => Term::Var(*i),
-            Term::Expr(e) => Term::Expr(f(e)),
-            Term::List(items, rest) => {
-                Term::List(terms(items, f), rest.as_ref().map(|rest| Box::new(rest.lower(f))))
+            AgentTerm::Any => AgentTerm::Any,
+            AgentTerm::Var(i) => AgentTerm::Var(*i),
+            AgentTerm::Expr(e) => AgentTerm::Expr(f(e)),
+            AgentTerm::List(items, rest) => {
+                AgentTerm::List(terms(items, f), rest.as_ref().map(|rest| Box::new(rest.lower(f))))
             }
         }
     }
 }
 
-fn terms<E>(ts: &[Term<E>], f: LowerExpr<'_, E>) -> Vec<Term> {
+fn terms<E>(ts: &[AgentTerm<E>], f: LowerExpr<'_, E>) -> Vec<AgentTerm> {
     ts.iter().map(|t| t.lower(f)).collect()
 }
 
 fn annotations<E>(
-    of: &[(crate::bdi::Annotation, Term<E>)],
+    of: &[(crate::bdi::BeliefAnnotation, AgentTerm<E>)],
     f: LowerExpr<'_, E>,
-) -> Vec<(crate::bdi::Annotation, Term)> {
+) -> Vec<(crate::bdi::BeliefAnnotation, AgentTerm)> {
     of.iter().map(|(a, t)| (*a, t.lower(f))).collect()
 }
 
-impl<E> Literal<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Literal {
-        Literal {
+impl<E> BeliefLiteral<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> BeliefLiteral {
+        BeliefLiteral {
             belief: self.belief,
             args: terms(&self.args, f),
             annotations: annotations(&self.annotations, f),
@@ -113,106 +119,112 @@ impl<E> Assertion<E> {
     }
 }
 
-impl<E> Context<E> {
+impl<E> PlanContext<E> {
     /// The formula over the Program's expressions.
     #[must_use]
-    pub fn lower(&self, f: LowerExpr<'_, E>) -> Context {
-        let each = |cs: &[Context<E>]| cs.iter().map(|c| c.lower(f)).collect();
+    pub fn lower(&self, f: LowerExpr<'_, E>) -> PlanContext {
+        let each = |cs: &[PlanContext<E>]| cs.iter().map(|c| c.lower(f)).collect();
         match self {
-            Context::True => Context::True,
-            Context::Belief(l) => Context::Belief(l.lower(f)),
-            Context::Not(c) => Context::Not(Box::new(c.lower(f))),
-            Context::And(cs) => Context::And(each(cs)),
-            Context::Or(cs) => Context::Or(each(cs)),
-            Context::Test(e) => Context::Test(f(e)),
-            Context::Unify(term, e) => Context::Unify(term.lower(f), f(e)),
-            Context::Internal(action, origin) => Context::Internal(Box::new(action.lower(f)), *origin),
+            PlanContext::True => PlanContext::True,
+            PlanContext::Belief(l) => PlanContext::Belief(l.lower(f)),
+            PlanContext::Not(c) => PlanContext::Not(Box::new(c.lower(f))),
+            PlanContext::And(cs) => PlanContext::And(each(cs)),
+            PlanContext::Or(cs) => PlanContext::Or(each(cs)),
+            PlanContext::Test(e) => PlanContext::Test(f(e)),
+            PlanContext::Unify(term, e) => PlanContext::Unify(term.lower(f), f(e)),
+            PlanContext::Internal(action, origin) => {
+                PlanContext::Internal(Box::new(action.lower(f)), *origin)
+            }
         }
     }
 }
 
-impl<E> Internal<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Internal {
+impl<E> InternalAct<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> InternalAct {
         match self {
-            Internal::FindAll { template, formula, set, out } => Internal::FindAll {
+            InternalAct::FindAll { template, formula, set, out } => InternalAct::FindAll {
                 template: f(template),
                 formula: formula.lower(f),
                 set: *set,
                 out: out.lower(f),
             },
-            Internal::Count { formula, out } => {
-                Internal::Count { formula: formula.lower(f), out: out.lower(f) }
+            InternalAct::Count { formula, out } => {
+                InternalAct::Count { formula: formula.lower(f), out: out.lower(f) }
             }
-            Internal::Member { element, list } => {
-                Internal::Member { element: element.lower(f), list: f(list) }
+            InternalAct::Member { element, list } => {
+                InternalAct::Member { element: element.lower(f), list: f(list) }
             }
-            Internal::Apply { function, args, out } => {
-                Internal::Apply { function: *function, args: all(args, f), out: out.lower(f) }
+            InternalAct::Apply { function, args, out } => {
+                InternalAct::Apply { function: *function, args: all(args, f), out: out.lower(f) }
             }
-            Internal::Holds { function, args } => Internal::Holds { function: *function, args: all(args, f) },
-            Internal::Intend { goal, args } => Internal::Intend { goal: *goal, args: terms(args, f) },
-            Internal::Desire { goal, args } => Internal::Desire { goal: *goal, args: terms(args, f) },
-            Internal::Suspended { goal, args } => Internal::Suspended { goal: *goal, args: terms(args, f) },
-            Internal::Random { from, out } => {
-                Internal::Random { from: from.as_ref().map(f), out: out.lower(f) }
+            InternalAct::Holds { function, args } => {
+                InternalAct::Holds { function: *function, args: all(args, f) }
             }
-            Internal::Shuffle { list, out } => Internal::Shuffle { list: f(list), out: out.lower(f) },
-            Internal::Time { out } => Internal::Time { out: out.lower(f) },
-            Internal::MyName { out } => Internal::MyName { out: out.lower(f) },
-            Internal::AllNames { out } => Internal::AllNames { out: out.lower(f) },
+            InternalAct::Intend { goal, args } => InternalAct::Intend { goal: *goal, args: terms(args, f) },
+            InternalAct::Desire { goal, args } => InternalAct::Desire { goal: *goal, args: terms(args, f) },
+            InternalAct::Suspended { goal, args } => {
+                InternalAct::Suspended { goal: *goal, args: terms(args, f) }
+            }
+            InternalAct::Random { from, out } => {
+                InternalAct::Random { from: from.as_ref().map(f), out: out.lower(f) }
+            }
+            InternalAct::Shuffle { list, out } => InternalAct::Shuffle { list: f(list), out: out.lower(f) },
+            InternalAct::Time { out } => InternalAct::Time { out: out.lower(f) },
+            InternalAct::MyName { out } => InternalAct::MyName { out: out.lower(f) },
+            InternalAct::AllNames { out } => InternalAct::AllNames { out: out.lower(f) },
         }
     }
 }
 
-fn steps<E>(of: &[Step<E>], f: LowerExpr<'_, E>) -> Vec<Step> {
-    of.iter().map(|s| Step { kind: s.kind.lower(f), origin: s.origin }).collect()
+fn steps<E>(of: &[PlanStep<E>], f: LowerExpr<'_, E>) -> Vec<PlanStep> {
+    of.iter().map(|s| PlanStep { kind: s.kind.lower(f), origin: s.origin }).collect()
 }
 
-impl<E> StepKind<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> StepKind {
+impl<E> PlanStepKind<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> PlanStepKind {
         match self {
-            StepKind::Do { event, args } => StepKind::Do { event: *event, args: all(args, f) },
-            StepKind::Achieve { goal, args, within } => {
-                StepKind::Achieve { goal: *goal, args: all(args, f), within: within.as_ref().map(f) }
+            PlanStepKind::Do { event, args } => PlanStepKind::Do { event: *event, args: all(args, f) },
+            PlanStepKind::Achieve { goal, args, within } => {
+                PlanStepKind::Achieve { goal: *goal, args: all(args, f), within: within.as_ref().map(f) }
             }
-            StepKind::Spawn { goal, args } => StepKind::Spawn { goal: *goal, args: all(args, f) },
-            StepKind::Query(l) => StepKind::Query(l.lower(f)),
-            StepKind::Test(c) => StepKind::Test(c.lower(f)),
-            StepKind::Add(a) => StepKind::Add(a.lower(f)),
-            StepKind::Remove(l) => StepKind::Remove(l.lower(f)),
-            StepKind::Replace(a) => StepKind::Replace(a.lower(f)),
-            StepKind::Abolish(l) => StepKind::Abolish(l.lower(f)),
-            StepKind::Await { events, within } => {
-                StepKind::Await { events: events.clone(), within: within.as_ref().map(f) }
+            PlanStepKind::Spawn { goal, args } => PlanStepKind::Spawn { goal: *goal, args: all(args, f) },
+            PlanStepKind::Query(l) => PlanStepKind::Query(l.lower(f)),
+            PlanStepKind::Test(c) => PlanStepKind::Test(c.lower(f)),
+            PlanStepKind::Add(a) => PlanStepKind::Add(a.lower(f)),
+            PlanStepKind::Remove(l) => PlanStepKind::Remove(l.lower(f)),
+            PlanStepKind::Replace(a) => PlanStepKind::Replace(a.lower(f)),
+            PlanStepKind::Abolish(l) => PlanStepKind::Abolish(l.lower(f)),
+            PlanStepKind::Await { events, within } => {
+                PlanStepKind::Await { events: events.clone(), within: within.as_ref().map(f) }
             }
-            StepKind::Wait { seconds } => StepKind::Wait { seconds: f(seconds) },
-            StepKind::If { condition, then, otherwise } => StepKind::If {
+            PlanStepKind::Wait { seconds } => PlanStepKind::Wait { seconds: f(seconds) },
+            PlanStepKind::If { condition, then, otherwise } => PlanStepKind::If {
                 condition: condition.lower(f),
                 then: steps(then, f),
                 otherwise: steps(otherwise, f),
             },
-            StepKind::While { condition, body } => {
-                StepKind::While { condition: condition.lower(f), body: steps(body, f) }
+            PlanStepKind::While { condition, body } => {
+                PlanStepKind::While { condition: condition.lower(f), body: steps(body, f) }
             }
-            StepKind::For { condition, body } => {
-                StepKind::For { condition: condition.lower(f), body: steps(body, f) }
+            PlanStepKind::For { condition, body } => {
+                PlanStepKind::For { condition: condition.lower(f), body: steps(body, f) }
             }
-            StepKind::Fork { branches, all } => {
-                StepKind::Fork { branches: branches.iter().map(|b| steps(b, f)).collect(), all: *all }
+            PlanStepKind::Fork { branches, all } => {
+                PlanStepKind::Fork { branches: branches.iter().map(|b| steps(b, f)).collect(), all: *all }
             }
-            StepKind::Send { to, performative, content, args } => StepKind::Send {
+            PlanStepKind::Send { to, performative, content, args } => PlanStepKind::Send {
                 to: to.as_ref().map(f),
                 performative: *performative,
                 content: *content,
                 args: terms(args, f),
             },
-            StepKind::Ask { to, content, args, within } => StepKind::Ask {
+            PlanStepKind::Ask { to, content, args, within } => PlanStepKind::Ask {
                 to: f(to),
                 content: *content,
                 args: terms(args, f),
                 within: within.as_ref().map(f),
             },
-            StepKind::AskAll { to, template, content, args, out, within } => StepKind::AskAll {
+            PlanStepKind::AskAll { to, template, content, args, out, within } => PlanStepKind::AskAll {
                 to: f(to),
                 template: f(template),
                 content: *content,
@@ -220,11 +232,12 @@ impl<E> StepKind<E> {
                 out: out.lower(f),
                 within: within.as_ref().map(f),
             },
-            StepKind::Print { args } => StepKind::Print { args: all(args, f) },
-            StepKind::Control { what, goal } => {
-                StepKind::Control { what: *what, goal: goal.as_ref().map(|(g, args)| (*g, terms(args, f))) }
-            }
-            StepKind::Fail => StepKind::Fail,
+            PlanStepKind::Print { args } => PlanStepKind::Print { args: all(args, f) },
+            PlanStepKind::Control { what, goal } => PlanStepKind::Control {
+                what: *what,
+                goal: goal.as_ref().map(|(g, args)| (*g, terms(args, f))),
+            },
+            PlanStepKind::Fail => PlanStepKind::Fail,
         }
     }
 }
@@ -248,7 +261,12 @@ impl<E> Event<E> {
 
 impl<E> Stimulus<E> {
     fn lower(&self, f: LowerExpr<'_, E>) -> Stimulus {
-        let sample = |s: &Sample<E>| Sample { name: s.name.clone(), ty: s.ty, lo: f(&s.lo), hi: f(&s.hi) };
+        let sample = |s: &StimulusSample<E>| StimulusSample {
+            name: s.name.clone(),
+            ty: s.ty,
+            lo: f(&s.lo),
+            hi: f(&s.hi),
+        };
         Stimulus { samples: self.samples.iter().map(sample).collect(), steps: stimulus_steps(&self.steps, f) }
     }
 }
@@ -271,7 +289,7 @@ impl<E> WorldAction<E> {
     fn lower(&self, f: LowerExpr<'_, E>) -> WorldAction {
         match self {
             WorldAction::Move { body, to, over } => {
-                let to = Point { of: to.of, offset: to.offset.each_ref().map(f) };
+                let to = WorldPoint { of: to.of, offset: to.offset.each_ref().map(f) };
                 WorldAction::Move { body: *body, to, over: f(over) }
             }
             WorldAction::Look { body, at, offset, distance, angle } => WorldAction::Look {
@@ -304,40 +322,47 @@ impl<E> Suite<E> {
     }
 }
 
-impl<E> Method<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Method {
+impl<E> SuiteMethod<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> SuiteMethod {
         match self {
-            Method::Agents { players, choose, explore, stop_after, goals, minimise } => Method::Agents {
-                players: players.clone(),
-                choose: choose.iter().map(|c| c.lower(f)).collect(),
-                explore: *explore,
-                stop_after: *stop_after,
-                goals: goals.clone(),
-                minimise: *minimise,
-            },
-            Method::Search { network, goals, witness, delays } => {
-                Method::Search { network: *network, goals: goals.clone(), witness: *witness, delays: *delays }
+            SuiteMethod::Agents { players, choose, explore, stop_after, goals, minimise } => {
+                SuiteMethod::Agents {
+                    players: players.clone(),
+                    choose: choose.iter().map(|c| c.lower(f)).collect(),
+                    explore: *explore,
+                    stop_after: *stop_after,
+                    goals: goals.clone(),
+                    minimise: *minimise,
+                }
             }
-            Method::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } => Method::Random {
-                stimuli: stimuli.clone(),
-                awaits: awaits.clone(),
-                length_lo: *length_lo,
-                length_hi: *length_hi,
-                pause_lo: *pause_lo,
-                pause_hi: *pause_hi,
+            SuiteMethod::Search { network, goals, witness, delays } => SuiteMethod::Search {
+                network: *network,
+                goals: goals.clone(),
+                witness: *witness,
+                delays: *delays,
             },
+            SuiteMethod::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } => {
+                SuiteMethod::Random {
+                    stimuli: stimuli.clone(),
+                    awaits: awaits.clone(),
+                    length_lo: *length_lo,
+                    length_hi: *length_hi,
+                    pause_lo: *pause_lo,
+                    pause_hi: *pause_hi,
+                }
+            }
         }
     }
 }
 
-impl<E> Choice<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> Choice {
-        let condition = |c: &Condition<E>| Condition {
+impl<E> BeliefChoice<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> BeliefChoice {
+        let condition = |c: &BeliefCondition<E>| BeliefCondition {
             context: c.context.lower(f),
             vars: c.vars.clone(),
             origin: c.origin,
         };
-        Choice {
+        BeliefChoice {
             agent: self.agent,
             belief: self.belief,
             how: self.how,
@@ -349,7 +374,7 @@ impl<E> Choice<E> {
 // ── automata ──
 
 /// Where the variables of an automaton, a function or a query lie.
-pub trait Slots<E, V> {
+pub trait VariableSlots<E, V> {
     /// The expression over slots.
     fn expr(&self, e: &E) -> Expr;
 
@@ -357,23 +382,24 @@ pub trait Slots<E, V> {
     fn slot(&self, of: &V) -> u16;
 }
 
-fn exprs<E, V>(es: &[E], slots: &dyn Slots<E, V>) -> Vec<Expr> {
+fn exprs<E, V>(es: &[E], slots: &dyn VariableSlots<E, V>) -> Vec<Expr> {
     es.iter().map(|e| slots.expr(e)).collect()
 }
 
-impl<E, V> Place<E, V> {
+impl<E, V> Lvalue<E, V> {
     /// The place among slots.
     #[must_use]
-    pub fn lower(&self, slots: &dyn Slots<E, V>) -> Place {
-        let index = |i: &Index<E>| Index { at: slots.expr(&i.at), count: i.count, stride: i.stride };
-        Place { slot: slots.slot(&self.slot), indices: self.indices.iter().map(index).collect() }
+    pub fn lower(&self, slots: &dyn VariableSlots<E, V>) -> Lvalue {
+        let index =
+            |i: &ArrayIndex<E>| ArrayIndex { at: slots.expr(&i.at), count: i.count, stride: i.stride };
+        Lvalue { slot: slots.slot(&self.slot), indices: self.indices.iter().map(index).collect() }
     }
 }
 
 impl<E> Location<E> {
     /// The location over slots.
     #[must_use]
-    pub fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Location {
+    pub fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> Location {
         Location {
             name: self.name.clone(),
             kind: self.kind,
@@ -385,22 +411,22 @@ impl<E> Location<E> {
 }
 
 impl<E> ClockConstraint<E> {
-    fn lower<V>(&self, slots: &dyn Slots<E, V>) -> ClockConstraint {
+    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> ClockConstraint {
         ClockConstraint { clock: self.clock, minus: self.minus, op: self.op, bound: self.bound.lower(slots) }
     }
 }
 
-impl<E> Time<E> {
-    fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Time {
+impl<E> TimeSum<E> {
+    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> TimeSum {
         let term = |t: &TimeTerm<E>| TimeTerm { factor: t.factor, value: slots.expr(&t.value) };
-        Time { nanos: self.nanos, terms: self.terms.iter().map(term).collect() }
+        TimeSum { nanos: self.nanos, terms: self.terms.iter().map(term).collect() }
     }
 }
 
 impl<E, V> Edge<E, V> {
     /// The edge over slots.
     #[must_use]
-    pub fn lower(&self, slots: &dyn Slots<E, V>) -> Edge {
+    pub fn lower(&self, slots: &dyn VariableSlots<E, V>) -> Edge {
         Edge {
             from: self.from,
             to: self.to,
@@ -414,103 +440,113 @@ impl<E, V> Edge<E, V> {
     }
 }
 
-impl<E> Sync<E> {
-    fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Sync {
+impl<E> SyncLabel<E> {
+    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> SyncLabel {
         match self {
-            Sync::Internal => Sync::Internal,
-            Sync::Send { event, args } => Sync::Send { event: *event, args: exprs(args, slots) },
-            Sync::Receive { event, args } => Sync::Receive { event: *event, args: args.clone() },
-            Sync::Offer { channel, args } => Sync::Offer { channel: *channel, args: exprs(args, slots) },
-            Sync::Accept { channel, args } => Sync::Accept { channel: *channel, args: args.clone() },
-            Sync::Join { channel } => Sync::Join { channel: *channel },
+            SyncLabel::Internal => SyncLabel::Internal,
+            SyncLabel::Send { event, args } => SyncLabel::Send { event: *event, args: exprs(args, slots) },
+            SyncLabel::Receive { event, args } => SyncLabel::Receive { event: *event, args: args.clone() },
+            SyncLabel::Offer { channel, args } => {
+                SyncLabel::Offer { channel: *channel, args: exprs(args, slots) }
+            }
+            SyncLabel::Accept { channel, args } => {
+                SyncLabel::Accept { channel: *channel, args: args.clone() }
+            }
+            SyncLabel::Join { channel } => SyncLabel::Join { channel: *channel },
         }
     }
 }
 
-impl<E, V> Update<E, V> {
-    fn lower(&self, slots: &dyn Slots<E, V>) -> Update {
+impl<E, V> EdgeAssignment<E, V> {
+    fn lower(&self, slots: &dyn VariableSlots<E, V>) -> EdgeAssignment {
         match self {
-            Update::Assign { place, value } => {
-                Update::Assign { place: place.lower(slots), value: slots.expr(value) }
+            EdgeAssignment::Assign { place, value } => {
+                EdgeAssignment::Assign { place: place.lower(slots), value: slots.expr(value) }
             }
-            Update::Reset { clock, from, to } => {
-                Update::Reset { clock: *clock, from: *from, to: to.lower(slots) }
+            EdgeAssignment::Reset { clock, from, to } => {
+                EdgeAssignment::Reset { clock: *clock, from: *from, to: to.lower(slots) }
             }
-            Update::Call { function, args } => Update::Call { function: *function, args: exprs(args, slots) },
+            EdgeAssignment::Call { function, args } => {
+                EdgeAssignment::Call { function: *function, args: exprs(args, slots) }
+            }
         }
     }
 }
 
-impl<E, V> Statement<E, V> {
+impl<E, V> FunctionStatement<E, V> {
     /// The statement over slots.
     #[must_use]
-    pub fn lower(&self, slots: &dyn Slots<E, V>) -> Statement {
-        let block = |of: &[Statement<E, V>]| of.iter().map(|s| s.lower(slots)).collect();
+    pub fn lower(&self, slots: &dyn VariableSlots<E, V>) -> FunctionStatement {
+        let block = |of: &[FunctionStatement<E, V>]| of.iter().map(|s| s.lower(slots)).collect();
         match self {
-            Statement::Assign { place, value } => {
-                Statement::Assign { place: place.lower(slots), value: slots.expr(value) }
+            FunctionStatement::Assign { place, value } => {
+                FunctionStatement::Assign { place: place.lower(slots), value: slots.expr(value) }
             }
-            Statement::Call { function, args } => {
-                Statement::Call { function: *function, args: exprs(args, slots) }
+            FunctionStatement::Call { function, args } => {
+                FunctionStatement::Call { function: *function, args: exprs(args, slots) }
             }
-            Statement::If { condition, then, otherwise } => Statement::If {
+            FunctionStatement::If { condition, then, otherwise } => FunctionStatement::If {
                 condition: slots.expr(condition),
                 then: block(then),
                 otherwise: block(otherwise),
             },
-            Statement::While { condition, body } => {
-                Statement::While { condition: slots.expr(condition), body: block(body) }
+            FunctionStatement::While { condition, body } => {
+                FunctionStatement::While { condition: slots.expr(condition), body: block(body) }
             }
-            Statement::For { slot, lo, hi, body } => Statement::For {
+            FunctionStatement::For { slot, lo, hi, body } => FunctionStatement::For {
                 slot: slots.slot(slot),
                 lo: slots.expr(lo),
                 hi: slots.expr(hi),
                 body: block(body),
             },
-            Statement::Return(value) => Statement::Return(value.as_ref().map(|v| slots.expr(v))),
+            FunctionStatement::Return(value) => {
+                FunctionStatement::Return(value.as_ref().map(|v| slots.expr(v)))
+            }
         }
     }
 }
 
 // ── queries ──
 
-impl<E> Ask<E> {
+impl<E> QueryKind<E> {
     /// The question over slots.
     #[must_use]
-    pub fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Ask {
-        let measures = |of: &[Measure<E>]| of.iter().map(|m| m.lower(slots)).collect();
+    pub fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> QueryKind {
+        let measures = |of: &[QueryMeasure<E>]| of.iter().map(|m| m.lower(slots)).collect();
         match self {
-            Ask::Possibly(f) => Ask::Possibly(f.lower(slots)),
-            Ask::Invariantly(f) => Ask::Invariantly(f.lower(slots)),
-            Ask::PotentiallyAlways(f) => Ask::PotentiallyAlways(f.lower(slots)),
-            Ask::Eventually(f) => Ask::Eventually(f.lower(slots)),
-            Ask::LeadsTo(f, g) => Ask::LeadsTo(f.lower(slots), g.lower(slots)),
-            Ask::Sup { of, when } => Ask::Sup { of: measures(of), when: when.lower(slots) },
-            Ask::Inf { of, when } => Ask::Inf { of: measures(of), when: when.lower(slots) },
+            QueryKind::Possibly(f) => QueryKind::Possibly(f.lower(slots)),
+            QueryKind::Invariantly(f) => QueryKind::Invariantly(f.lower(slots)),
+            QueryKind::PotentiallyAlways(f) => QueryKind::PotentiallyAlways(f.lower(slots)),
+            QueryKind::Eventually(f) => QueryKind::Eventually(f.lower(slots)),
+            QueryKind::LeadsTo(f, g) => QueryKind::LeadsTo(f.lower(slots), g.lower(slots)),
+            QueryKind::Sup { of, when } => QueryKind::Sup { of: measures(of), when: when.lower(slots) },
+            QueryKind::Inf { of, when } => QueryKind::Inf { of: measures(of), when: when.lower(slots) },
         }
     }
 }
 
-impl<E> Formula<E> {
-    fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Formula {
-        let each = |fs: &[Formula<E>]| fs.iter().map(|f| f.lower(slots)).collect();
+impl<E> QueryFormula<E> {
+    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> QueryFormula {
+        let each = |fs: &[QueryFormula<E>]| fs.iter().map(|f| f.lower(slots)).collect();
         match self {
-            Formula::At { automaton, location } => Formula::At { automaton: *automaton, location: *location },
-            Formula::Data(e) => Formula::Data(slots.expr(e)),
-            Formula::Clock(c) => Formula::Clock(c.lower(slots)),
-            Formula::Deadlock => Formula::Deadlock,
-            Formula::Not(f) => Formula::Not(Box::new(f.lower(slots))),
-            Formula::And(fs) => Formula::And(each(fs)),
-            Formula::Or(fs) => Formula::Or(each(fs)),
+            QueryFormula::At { automaton, location } => {
+                QueryFormula::At { automaton: *automaton, location: *location }
+            }
+            QueryFormula::Data(e) => QueryFormula::Data(slots.expr(e)),
+            QueryFormula::Clock(c) => QueryFormula::Clock(c.lower(slots)),
+            QueryFormula::Deadlock => QueryFormula::Deadlock,
+            QueryFormula::Not(f) => QueryFormula::Not(Box::new(f.lower(slots))),
+            QueryFormula::And(fs) => QueryFormula::And(each(fs)),
+            QueryFormula::Or(fs) => QueryFormula::Or(each(fs)),
         }
     }
 }
 
-impl<E> Measure<E> {
-    fn lower<V>(&self, slots: &dyn Slots<E, V>) -> Measure {
+impl<E> QueryMeasure<E> {
+    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> QueryMeasure {
         match self {
-            Measure::Clock(clock) => Measure::Clock(*clock),
-            Measure::Data(e) => Measure::Data(slots.expr(e)),
+            QueryMeasure::Clock(clock) => QueryMeasure::Clock(*clock),
+            QueryMeasure::Data(e) => QueryMeasure::Data(slots.expr(e)),
         }
     }
 }

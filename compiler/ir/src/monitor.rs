@@ -26,12 +26,12 @@ pub struct Monitor {
     pub text: String,
     /// Signals that guards and margins read: `Expr::Var(i)` is `signals[i]`.
     pub signals: Vec<SignalId>,
-    pub states: Vec<State>,
+    pub states: Vec<MonitorState>,
     pub initial: StateId,
     /// In each state the first edge, in order, whose trigger and guard hold is taken; none: the state stays.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<MonitorEdge>,
     /// The robustness of a numeric requirement: positive as long as it holds. The verdict keeps the least.
-    pub margin: Option<Margin>,
+    pub margin: Option<MonitorMargin>,
     pub origin: Span,
 }
 
@@ -47,27 +47,27 @@ pub enum RequirementKind {
 pub struct StateId(pub u16);
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub struct MonitorState {
     pub name: String,
     /// An obligation is pending here: a trace that ends in this state is inconclusive, not passed.
     pub pending: bool,
-    /// The state is left by a [`On::Deadline`] edge once the clock reaches this.
+    /// The state is left by a [`MonitorTrigger::Deadline`] edge once the clock reaches this.
     pub deadline: Option<Nanos>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Edge {
+pub struct MonitorEdge {
     pub from: StateId,
     pub to: StateId,
-    pub on: On,
+    pub on: MonitorTrigger,
     /// A boolean expression over the signals.
     pub guard: Option<Expr>,
-    pub effects: Vec<Effect>,
+    pub effects: Vec<MonitorEffect>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum On {
+pub enum MonitorTrigger {
     /// Any of these events.
     Event(Vec<EventPattern>),
     /// Any new sample of a signal that the monitor reads.
@@ -78,7 +78,7 @@ pub enum On {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Effect {
+pub enum MonitorEffect {
     /// The monitor's clock is set to zero.
     ResetClock,
     /// The requirement was triggered: it is checked, and this step is its first witness.
@@ -91,7 +91,7 @@ pub enum Effect {
 
 /// `value` is the margin, in `unit`. It is evaluated on each step of the given kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Margin {
+pub struct MonitorMargin {
     pub value: Expr,
     pub unit: Unit,
     /// Only at these events; empty: on every sample.

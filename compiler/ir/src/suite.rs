@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    bdi::{AgentId, BeliefId, Context},
+    bdi::{AgentId, BeliefId, PlanContext},
     coverage::CrossId,
     event::{EventId, EventPattern},
     expr::Expr,
@@ -16,7 +16,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Suite<E = Expr> {
     pub name: String,
-    pub method: Method<E>,
+    pub method: SuiteMethod<E>,
     /// How many concrete tests; abstract tests that are fewer are made concrete several times, with other seeds.
     pub tests: u32,
     /// A model run (by agents) ends at this virtual time.
@@ -28,12 +28,12 @@ pub struct Suite<E = Expr> {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method<E = Expr> {
+pub enum SuiteMethod<E = Expr> {
     /// Run a multi-agent system once for each chosen set of beliefs.
     Agents {
         players: Vec<PlayerRef>,
-        choose: Vec<Choice<E>>,
-        explore: Explore,
+        choose: Vec<BeliefChoice<E>>,
+        explore: ExploreMode,
         /// End when so many belief sets in a row reached nothing new.
         stop_after: Option<u32>,
         /// What the suite is to reach; without any, each plan and each bin.
@@ -48,7 +48,7 @@ pub enum Method<E = Expr> {
         #[serde(default)]
         witness: WitnessKind,
         #[serde(default)]
-        delays: Delays,
+        delays: DelayChoice,
     },
     /// Draw stimuli, waits and pauses at random.
     Random {
@@ -72,19 +72,19 @@ pub enum PlayerRef {
 
 /// Which ground beliefs an agent starts with: one dimension (or several) of the belief space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Choice<E = Expr> {
+pub struct BeliefChoice<E = Expr> {
     pub agent: AgentId,
     pub belief: BeliefId,
     pub how: ChoiceKind,
     /// `where F`: only sets of beliefs with which the agent has an answer of F are in the space.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub condition: Option<Condition<E>>,
+    pub condition: Option<BeliefCondition<E>>,
 }
 
 /// What the beliefs that an agent starts with must answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Condition<E = Expr> {
-    pub context: Context<E>,
+pub struct BeliefCondition<E = Expr> {
+    pub context: PlanContext<E>,
     /// The names of its variables; [`Term::Var`](crate::bdi::Term::Var) counts in them.
     pub vars: Vec<String>,
     pub origin: Span,
@@ -103,7 +103,7 @@ pub enum ChoiceKind {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Explore {
+pub enum ExploreMode {
     Exhaustive,
     /// Every t values of t dimensions occur together in some test: `pairwise` with 2.
     Wise(u8),
@@ -133,7 +133,7 @@ pub enum ModelGoal {
 /// What the items of agents' programs are tallied by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ItemKind {
+pub enum CoverItemKind {
     Selected,
     Completed,
     Failed,
@@ -145,32 +145,32 @@ pub enum ItemKind {
     Path,
 }
 
-impl ItemKind {
-    pub const ALL: [ItemKind; 9] = [
-        ItemKind::Selected,
-        ItemKind::Completed,
-        ItemKind::Failed,
-        ItemKind::ContextTrue,
-        ItemKind::ContextFalse,
-        ItemKind::Applicable,
-        ItemKind::Message,
-        ItemKind::Edge,
-        ItemKind::Path,
+impl CoverItemKind {
+    pub const ALL: [CoverItemKind; 9] = [
+        CoverItemKind::Selected,
+        CoverItemKind::Completed,
+        CoverItemKind::Failed,
+        CoverItemKind::ContextTrue,
+        CoverItemKind::ContextFalse,
+        CoverItemKind::Applicable,
+        CoverItemKind::Message,
+        CoverItemKind::Edge,
+        CoverItemKind::Path,
     ];
 
     /// As the heading of a column.
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {
-            ItemKind::Selected => "plans selected",
-            ItemKind::Completed => "completed",
-            ItemKind::Failed => "failed",
-            ItemKind::ContextTrue => "contexts true",
-            ItemKind::ContextFalse => "contexts false",
-            ItemKind::Applicable => "applicable sets",
-            ItemKind::Message => "messages",
-            ItemKind::Edge => "edges",
-            ItemKind::Path => "paths",
+            CoverItemKind::Selected => "plans selected",
+            CoverItemKind::Completed => "completed",
+            CoverItemKind::Failed => "failed",
+            CoverItemKind::ContextTrue => "contexts true",
+            CoverItemKind::ContextFalse => "contexts false",
+            CoverItemKind::Applicable => "applicable sets",
+            CoverItemKind::Message => "messages",
+            CoverItemKind::Edge => "edges",
+            CoverItemKind::Path => "paths",
         }
     }
 }
@@ -212,7 +212,7 @@ pub enum WitnessKind {
 /// When the transitions of a witness happen, among the times at which they can.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Delays {
+pub enum DelayChoice {
     #[default]
     Earliest,
     Latest,

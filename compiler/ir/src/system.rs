@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::{event::ActorId, value::Nanos};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct System {
+pub struct SystemUnderTest {
     /// The actor that the code plays.
     pub actor: ActorId,
     /// The command, split into words; paths are relative to the scenario's folder.

@@ -7,7 +7,7 @@ pub use hrdsl_source::LocationKind;
 
 use crate::{
     event::{ActorId, ArgPattern, EventId},
-    expr::{Expr, Place},
+    expr::{Expr, Lvalue},
     value::{Nanos, Type, Value},
 };
 
@@ -50,7 +50,7 @@ pub struct Network {
 /// A variable of a finite type, kept as a number of `lo..=hi`: a bool as one of `0..=1`, a symbol as its index in the
 /// enumeration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Var {
+pub struct AutomatonVar {
     pub name: String,
     pub lo: i64,
     pub hi: i64,
@@ -63,7 +63,7 @@ pub struct Var {
     pub enumeration: Option<Enumeration>,
 }
 
-impl Var {
+impl AutomatonVar {
     /// A variable of this type that starts with its first value; `None`: the type is not finite.
     #[must_use]
     pub fn of_type(name: &str, ty: Type) -> Option<Self> {
@@ -126,7 +126,7 @@ pub struct Automaton<E = Expr, V = u16> {
     /// The actor it plays: it can only send this actor's events. `None`: it sends and takes no events, only channels.
     pub actor: Option<ActorId>,
     pub clocks: Vec<String>,
-    pub vars: Vec<Var>,
+    pub vars: Vec<AutomatonVar>,
     pub locations: Vec<Location<E>>,
     pub initial: LocationId,
     pub edges: Vec<Edge<E, V>>,
@@ -151,7 +151,7 @@ pub struct ClockConstraint<E = Expr> {
     pub clock: ClockId,
     pub minus: Option<ClockId>,
     pub op: ClockOp,
-    pub bound: Time<E>,
+    pub bound: TimeSum<E>,
 }
 
 impl<E> ClockConstraint<E> {
@@ -163,20 +163,20 @@ impl<E> ClockConstraint<E> {
 
 /// A time that variables may have a part in: `nanos + Σ factor · value`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Time<E = Expr> {
+pub struct TimeSum<E = Expr> {
     pub nanos: Nanos,
     #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<TimeTerm<E>>,
 }
 
-impl<E> Default for Time<E> {
+impl<E> Default for TimeSum<E> {
     fn default() -> Self {
         Self::ZERO
     }
 }
 
-impl<E> Time<E> {
-    pub const ZERO: Self = Time { nanos: 0, terms: Vec::new() };
+impl<E> TimeSum<E> {
+    pub const ZERO: Self = TimeSum { nanos: 0, terms: Vec::new() };
 
     #[must_use]
     pub fn constant(nanos: Nanos) -> Self {
@@ -213,13 +213,13 @@ pub struct Edge<E = Expr, V = u16> {
     pub from: LocationId,
     pub to: LocationId,
     /// Nondeterministic choices, each an integer of `lo..=hi`, a bool or a symbol, as a variable is.
-    pub selects: Vec<Var>,
+    pub selects: Vec<AutomatonVar>,
     pub clock_guard: Vec<ClockConstraint<E>>,
     /// A boolean expression over variables, selects and received arguments.
     pub guard: Option<E>,
-    pub sync: Sync<E>,
+    pub sync: SyncLabel<E>,
     /// In order; each sees the effect of those before it. In a synchronisation the sender's updates come first.
-    pub updates: Vec<Update<E, V>>,
+    pub updates: Vec<EdgeAssignment<E, V>>,
     pub origin: Span,
 }
 
@@ -227,7 +227,7 @@ pub struct Edge<E = Expr, V = u16> {
 /// receiving edge takes part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sync<E = Expr> {
+pub enum SyncLabel<E = Expr> {
     Internal,
     /// The event or stimulus sent, with its arguments.
     Send {
@@ -254,15 +254,15 @@ pub enum Sync<E = Expr> {
     },
 }
 
-impl<E> Sync<E> {
+impl<E> SyncLabel<E> {
     /// The channel that it is a part in.
     #[must_use]
     pub fn channel(&self) -> Option<ChannelId> {
         match self {
-            Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => None,
-            Sync::Offer { channel, .. } | Sync::Accept { channel, .. } | Sync::Join { channel } => {
-                Some(*channel)
-            }
+            SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Receive { .. } => None,
+            SyncLabel::Offer { channel, .. }
+            | SyncLabel::Accept { channel, .. }
+            | SyncLabel::Join { channel } => Some(*channel),
         }
     }
 }
@@ -279,20 +279,20 @@ pub enum ReceiveArg {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Update<E = Expr, V = u16> {
+pub enum EdgeAssignment<E = Expr, V = u16> {
     /// Slots count as `Expr::Var` does: shared variables, then own ones. Leaving the range is a model error.
-    Assign { place: Place<E, V>, value: E },
+    Assign { place: Lvalue<E, V>, value: E },
     /// The clock becomes `from + to`; without `from`, just `to`. A negative value is a model error.
-    Reset { clock: ClockId, from: Option<ClockId>, to: Time<E> },
+    Reset { clock: ClockId, from: Option<ClockId>, to: TimeSum<E> },
     /// Calls an update function.
     Call { function: FunctionId, args: Vec<E> },
 }
 
-impl Update {
+impl EdgeAssignment {
     /// Sets a clock to zero.
     #[must_use]
     pub fn zero(clock: ClockId) -> Self {
-        Update::Reset { clock, from: None, to: Time::ZERO }
+        EdgeAssignment::Reset { clock, from: None, to: TimeSum::ZERO }
     }
 }
 
@@ -305,7 +305,7 @@ pub struct Channel {
     /// a broadcast.
     pub urgent: bool,
     /// Of finite types; the `init` has no meaning. None, if the channel is joint.
-    pub params: Vec<Var>,
+    pub params: Vec<AutomatonVar>,
     pub origin: Span,
 }
 
@@ -317,11 +317,11 @@ pub enum ChannelKind {
     /// One edge that offers, and of each other automaton that can one that accepts.
     Broadcast,
     /// An edge of each of these automata at once, their updates in this order; if all are optional, at least one's.
-    Joint(Vec<Party>),
+    Joint(Vec<ChannelParticipant>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Party {
+pub struct ChannelParticipant {
     pub automaton: AutomatonId,
     /// It takes part if it can (TChecker's weak synchronisation); otherwise nobody can without it.
     pub optional: bool,
@@ -332,25 +332,25 @@ pub struct Party {
 /// In its body `Expr::Var(i)` is, in order: the program's shared variables, the owner's own variables if it has an owner,
 /// the parameters, the locals. Locals start with their `init`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Function<E = Expr, V = u16> {
+pub struct AutomatonFunction<E = Expr, V = u16> {
     pub name: String,
     /// The automaton whose variables it knows.
     pub owner: Option<AutomatonId>,
-    pub params: Vec<Var>,
-    pub locals: Vec<Var>,
+    pub params: Vec<AutomatonVar>,
+    pub locals: Vec<AutomatonVar>,
     /// The type of its value, as that of a variable; its `init` has no meaning. `None`: it is for its effect.
-    pub result: Option<Var>,
+    pub result: Option<AutomatonVar>,
     /// It assigns nothing but its parameters and locals, nor does what it calls.
     pub pure: bool,
-    pub body: Vec<Statement<E, V>>,
+    pub body: Vec<FunctionStatement<E, V>>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Statement<E = Expr, V = u16> {
+pub enum FunctionStatement<E = Expr, V = u16> {
     Assign {
-        place: Place<E, V>,
+        place: Lvalue<E, V>,
         value: E,
     },
     Call {
@@ -359,33 +359,35 @@ pub enum Statement<E = Expr, V = u16> {
     },
     If {
         condition: E,
-        then: Vec<Statement<E, V>>,
-        otherwise: Vec<Statement<E, V>>,
+        then: Vec<FunctionStatement<E, V>>,
+        otherwise: Vec<FunctionStatement<E, V>>,
     },
     While {
         condition: E,
-        body: Vec<Statement<E, V>>,
+        body: Vec<FunctionStatement<E, V>>,
     },
     /// For each number from `lo` to `hi`, both evaluated once; `slot` is a local.
     For {
         slot: V,
         lo: E,
         hi: E,
-        body: Vec<Statement<E, V>>,
+        body: Vec<FunctionStatement<E, V>>,
     },
     Return(Option<E>),
 }
 
-impl<E, V> Statement<E, V> {
+impl<E, V> FunctionStatement<E, V> {
     /// Calls `f` with this statement and each one in it, the outer one first.
-    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a Statement<E, V>)) {
+    pub fn each<'a>(&'a self, f: &mut dyn FnMut(&'a FunctionStatement<E, V>)) {
         f(self);
         match self {
-            Statement::Assign { .. } | Statement::Call { .. } | Statement::Return(_) => {}
-            Statement::If { then, otherwise, .. } => {
+            FunctionStatement::Assign { .. }
+            | FunctionStatement::Call { .. }
+            | FunctionStatement::Return(_) => {}
+            FunctionStatement::If { then, otherwise, .. } => {
                 then.iter().chain(otherwise).for_each(|s| s.each(f));
             }
-            Statement::While { body, .. } | Statement::For { body, .. } => {
+            FunctionStatement::While { body, .. } | FunctionStatement::For { body, .. } => {
                 body.iter().for_each(|s| s.each(f));
             }
         }
@@ -395,11 +397,13 @@ impl<E, V> Statement<E, V> {
     #[must_use]
     pub fn expressions(&self) -> Vec<&E> {
         match self {
-            Statement::Assign { value: e, .. } | Statement::Return(Some(e)) => vec![e],
-            Statement::Call { args, .. } => args.iter().collect(),
-            Statement::If { condition, .. } | Statement::While { condition, .. } => vec![condition],
-            Statement::For { lo, hi, .. } => vec![lo, hi],
-            Statement::Return(None) => Vec::new(),
+            FunctionStatement::Assign { value: e, .. } | FunctionStatement::Return(Some(e)) => vec![e],
+            FunctionStatement::Call { args, .. } => args.iter().collect(),
+            FunctionStatement::If { condition, .. } | FunctionStatement::While { condition, .. } => {
+                vec![condition]
+            }
+            FunctionStatement::For { lo, hi, .. } => vec![lo, hi],
+            FunctionStatement::Return(None) => Vec::new(),
         }
     }
 }
@@ -414,34 +418,34 @@ pub struct Query<E = Expr> {
     /// The formal part as written in the source.
     pub text: String,
     pub network: NetworkId,
-    pub ask: Ask<E>,
+    pub ask: QueryKind<E>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ask<E = Expr> {
+pub enum QueryKind<E = Expr> {
     /// `E<> f`: some run reaches it.
-    Possibly(Formula<E>),
+    Possibly(QueryFormula<E>),
     /// `A[] f`: no run leaves it.
-    Invariantly(Formula<E>),
+    Invariantly(QueryFormula<E>),
     /// `E[] f`: some maximal run stays in it.
-    PotentiallyAlways(Formula<E>),
+    PotentiallyAlways(QueryFormula<E>),
     /// `A<> f`: every maximal run reaches it.
-    Eventually(Formula<E>),
+    Eventually(QueryFormula<E>),
     /// `f --> g`: `A[] (f imply A<> g)`
-    LeadsTo(Formula<E>, Formula<E>),
+    LeadsTo(QueryFormula<E>, QueryFormula<E>),
     /// The least upper bound of each measure where the formula holds.
-    Sup { of: Vec<Measure<E>>, when: Formula<E> },
+    Sup { of: Vec<QueryMeasure<E>>, when: QueryFormula<E> },
     /// The greatest lower bound.
-    Inf { of: Vec<Measure<E>>, when: Formula<E> },
+    Inf { of: Vec<QueryMeasure<E>>, when: QueryFormula<E> },
 }
 
 /// A formula over a network's states. Automata are given by their index in the network; clocks are numbered with the
 /// shared ones first, then each automaton's own, in the network's order; so are variables in expressions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Formula<E = Expr> {
+pub enum QueryFormula<E = Expr> {
     At {
         automaton: u16,
         location: LocationId,
@@ -451,27 +455,27 @@ pub enum Formula<E = Expr> {
     Clock(ClockConstraint<E>),
     /// No transition is possible, now or after any delay.
     Deadlock,
-    Not(Box<Formula<E>>),
-    And(Vec<Formula<E>>),
-    Or(Vec<Formula<E>>),
+    Not(Box<QueryFormula<E>>),
+    And(Vec<QueryFormula<E>>),
+    Or(Vec<QueryFormula<E>>),
 }
 
-impl<E> Formula<E> {
+impl<E> QueryFormula<E> {
     /// Whether it speaks of `deadlock`.
     #[must_use]
     pub fn asks_deadlock(&self) -> bool {
         match self {
-            Formula::Deadlock => true,
-            Formula::Not(f) => f.asks_deadlock(),
-            Formula::And(fs) | Formula::Or(fs) => fs.iter().any(Formula::asks_deadlock),
-            Formula::At { .. } | Formula::Data(_) | Formula::Clock(_) => false,
+            QueryFormula::Deadlock => true,
+            QueryFormula::Not(f) => f.asks_deadlock(),
+            QueryFormula::And(fs) | QueryFormula::Or(fs) => fs.iter().any(QueryFormula::asks_deadlock),
+            QueryFormula::At { .. } | QueryFormula::Data(_) | QueryFormula::Clock(_) => false,
         }
     }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Measure<E = Expr> {
+pub enum QueryMeasure<E = Expr> {
     Clock(ClockId),
     /// An integer.
     Data(E),

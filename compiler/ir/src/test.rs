@@ -15,14 +15,14 @@ pub struct Test {
     /// `handover.bdi_tests.t017`
     pub name: String,
     pub seed: u64,
-    pub provenance: Provenance,
+    pub provenance: TestProvenance,
     pub steps: Vec<TestStep>,
     pub origin: Span,
 }
 
 /// Where a test came from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Provenance {
+pub struct TestProvenance {
     pub suite: String,
     pub method: TestMethod,
     /// One line for each fact: the beliefs chosen, the goal and its witness.

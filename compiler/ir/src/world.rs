@@ -59,8 +59,8 @@ pub struct World {
     pub devices: Vec<Device>,
     /// What it can tell them.
     pub device_kinds: Vec<DeviceKind>,
-    pub currents: Vec<Current>,
-    pub rules: Vec<Rule>,
+    pub currents: Vec<CurrentBody>,
+    pub rules: Vec<WorldRule>,
     pub origin: Span,
 }
 
@@ -94,8 +94,8 @@ impl World {
 pub struct Body {
     /// `robot.palm`
     pub name: String,
-    pub motion: Motion,
-    pub shape: Shape,
+    pub motion: BodyMotion,
+    pub shape: BodyShape,
     /// Where it starts, in the world.
     pub position: Vec3,
     pub rotation: Vec3,
@@ -107,7 +107,7 @@ pub struct Body {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Motion {
+pub enum BodyMotion {
     Fixed,
     Dynamic,
     /// Moved by actions only; pushes dynamic bodies.
@@ -116,7 +116,7 @@ pub enum Motion {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shape {
+pub enum BodyShape {
     /// Full edge lengths.
     Box {
         size: Vec3,
@@ -182,13 +182,13 @@ pub struct Gripper {
 /// A name for one of several bodies: the one that the gripper holds; or, if none, the first that no gripper has yet
 /// taken; or the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Current {
+pub struct CurrentBody {
     pub name: String,
     pub of: Vec<BodyId>,
     pub by: GripperId,
 }
 
-/// A body, named outright or as [`Current`].
+/// A body, named outright or as [`CurrentBody`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BodyRef {
@@ -198,8 +198,8 @@ pub enum BodyRef {
 
 /// `on trigger when guard emit event(args)`: what the world answers as an environment actor, or what it sees the system do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule {
-    pub on: RuleOn,
+pub struct WorldRule {
+    pub on: RuleTrigger,
     /// A boolean over signals: `Expr::Var(i)` is `signals[i]`.
     pub guard: Option<Expr>,
     pub event: EventId,
@@ -210,7 +210,7 @@ pub struct Rule {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RuleOn {
+pub enum RuleTrigger {
     Event(crate::event::EventPattern),
     /// The system told a device to do this.
     Commanded {
@@ -228,7 +228,7 @@ pub struct Signal {
     /// The actors that can read it.
     pub to: Vec<ActorId>,
     /// What is measured; `Expr::Var(i)` in `value` is `terms[i]`.
-    pub terms: Vec<Term>,
+    pub terms: Vec<SignalTerm>,
     pub value: Expr,
     /// A requirement reads it: it is sampled into the trace.
     pub recorded: bool,
@@ -238,7 +238,7 @@ pub struct Signal {
 /// A primitive measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Term {
+pub enum SignalTerm {
     /// `distance(a, b)`: between the surfaces, m; 0 if they touch or overlap
     Distance(BodyRef, BodyRef),
     /// `range(a, b)`: between the centres, m
@@ -270,7 +270,7 @@ pub enum Axis {
 
 /// A point: a place in the world, or relative to a body's centre (in world axes) at the time of the action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point<E = Expr> {
+pub struct WorldPoint<E = Expr> {
     pub of: Option<BodyRef>,
     /// Metres.
     pub offset: [E; 3],
@@ -282,7 +282,7 @@ pub struct Point<E = Expr> {
 pub enum WorldAction<E = Expr> {
     /// `move(b, to, over)`: a kinematic body goes to the point on a straight line, in the given seconds; the body keeps
     /// its rotation.
-    Move { body: BodyId, to: Point<E>, over: E },
+    Move { body: BodyId, to: WorldPoint<E>, over: E },
     /// `look(b, at, offset, distance, angle)`: a kinematic body goes, in half a second, to look at a target. The line of
     /// sight runs level through the target's centre, along the body's own x axis at the start of the run. The body goes
     /// to that end of it where it is now, then `offset` to the left as seen from the target, at its present height but

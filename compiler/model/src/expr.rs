@@ -3,49 +3,49 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{FunctionId, Kind, SignalId, Term, Type, Value};
+use crate::{FunctionId, InferredType, SignalId, SignalTerm, Type, Value};
 
-pub use hrdsl_ir::expr::{BinaryOp, EvalError, Function as NumberFunction, UnaryOp};
+pub use hrdsl_ir::expr::{BinaryOp, EvalError, NumberFunction, UnaryOp};
 
 /// A typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Expr {
-    pub kind: ExprKind,
-    pub ty: Kind,
+pub struct TypedExpr {
+    pub kind: TypedExprKind,
+    pub ty: InferredType,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ExprKind {
+pub enum TypedExprKind {
     Const(Value),
-    Leaf(Leaf),
+    Leaf(VariableRef),
     /// A measurement of the world.
-    Term(Term),
-    Unary(UnaryOp, Box<Expr>),
-    Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    If(Box<Expr>, Box<Expr>, Box<Expr>),
-    Call(NumberFunction, Vec<Expr>),
+    Term(SignalTerm),
+    Unary(UnaryOp, Box<TypedExpr>),
+    Binary(BinaryOp, Box<TypedExpr>, Box<TypedExpr>),
+    If(Box<TypedExpr>, Box<TypedExpr>, Box<TypedExpr>),
+    Call(NumberFunction, Vec<TypedExpr>),
     /// `[a, b | rest]`
-    List(Vec<Expr>, Option<Box<Expr>>),
+    List(Vec<TypedExpr>, Option<Box<TypedExpr>>),
     /// `a[i]`: an element of an array of variables that is chosen at run time. Automata only.
-    Element(Box<Place>),
+    Element(Box<TypedLvalue>),
     /// A function of automata, applied; with the type of its value.
-    Apply(FunctionId, Vec<Expr>, Type),
+    Apply(FunctionId, Vec<TypedExpr>, Type),
     /// Has a diagnostic.
     Error,
 }
 
 /// A variable, perhaps one that indices choose among several.
-pub type Place = hrdsl_ir::expr::Place<Expr, Leaf>;
-pub type Index = hrdsl_ir::expr::Index<Expr>;
+pub type TypedLvalue = hrdsl_ir::expr::Lvalue<TypedExpr, VariableRef>;
+pub type TypedIndex = hrdsl_ir::expr::ArrayIndex<TypedExpr>;
 
 /// All variables that an lvalue may stand for.
 #[must_use]
-pub fn leaves(place: &Place) -> Vec<Leaf> {
+pub fn leaves(place: &TypedLvalue) -> Vec<VariableRef> {
     let mut leaves = vec![place.slot];
     for index in &place.indices {
-        let steps = |l: &Leaf| {
+        let steps = |l: &VariableRef| {
             let l = *l;
             (0..index.count).map(move |n| l.plus(n.saturating_mul(index.stride)))
         };
@@ -57,7 +57,7 @@ pub fn leaves(place: &Place) -> Vec<Leaf> {
 /// A name that has a value at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Leaf {
+pub enum VariableRef {
     /// A stimulus's parameters, then its samples; a plan's variables; an edge's selects, then what it binds.
     Local(u16),
     /// A variable of the automaton.
@@ -67,81 +67,86 @@ pub enum Leaf {
     Signal(SignalId),
 }
 
-impl Leaf {
+impl VariableRef {
     /// The variable so many places after it.
     #[must_use]
     pub fn plus(self, n: u16) -> Self {
         match self {
-            Leaf::Local(i) => Leaf::Local(i.saturating_add(n)),
-            Leaf::Own(i) => Leaf::Own(i.saturating_add(n)),
-            Leaf::Shared(i) => Leaf::Shared(i.saturating_add(n)),
-            Leaf::Signal(_) => self,
+            VariableRef::Local(i) => VariableRef::Local(i.saturating_add(n)),
+            VariableRef::Own(i) => VariableRef::Own(i.saturating_add(n)),
+            VariableRef::Shared(i) => VariableRef::Shared(i.saturating_add(n)),
+            VariableRef::Signal(_) => self,
         }
     }
 }
 
-impl Expr {
+impl TypedExpr {
     pub(crate) fn error(span: Span) -> Self {
-        Expr { kind: ExprKind::Error, ty: Kind::Unknown, span }
+        TypedExpr { kind: TypedExprKind::Error, ty: InferredType::Unknown, span }
     }
 
-    pub(crate) fn value(value: Value, ty: Kind, span: Span) -> Self {
-        Expr { kind: ExprKind::Const(value), ty, span }
+    pub(crate) fn value(value: Value, ty: InferredType, span: Span) -> Self {
+        TypedExpr { kind: TypedExprKind::Const(value), ty, span }
     }
 
     /// The value, if it is a constant.
     #[must_use]
     pub fn constant(&self) -> Option<Value> {
         match self.kind {
-            ExprKind::Const(value) => Some(value),
-            ExprKind::Leaf(_)
-            | ExprKind::Term(_)
-            | ExprKind::Unary(..)
-            | ExprKind::Binary(..)
-            | ExprKind::If(..)
-            | ExprKind::Call(..)
-            | ExprKind::List(..)
-            | ExprKind::Element(_)
-            | ExprKind::Apply(..)
-            | ExprKind::Error => None,
+            TypedExprKind::Const(value) => Some(value),
+            TypedExprKind::Leaf(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Unary(..)
+            | TypedExprKind::Binary(..)
+            | TypedExprKind::If(..)
+            | TypedExprKind::Call(..)
+            | TypedExprKind::List(..)
+            | TypedExprKind::Element(_)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error => None,
         }
     }
 
     /// Calls `f` with each variable that the expression may read, as often as it occurs; without what functions read.
-    pub fn each_leaf(&self, f: &mut dyn FnMut(Leaf)) {
+    pub fn each_leaf(&self, f: &mut dyn FnMut(VariableRef)) {
         self.each(&mut |e| match &e.kind {
-            ExprKind::Leaf(leaf) => f(*leaf),
-            ExprKind::Element(place) => leaves(place).into_iter().for_each(&mut *f),
-            ExprKind::Const(_)
-            | ExprKind::Term(_)
-            | ExprKind::Unary(..)
-            | ExprKind::Binary(..)
-            | ExprKind::If(..)
-            | ExprKind::Call(..)
-            | ExprKind::List(..)
-            | ExprKind::Apply(..)
-            | ExprKind::Error => {}
+            TypedExprKind::Leaf(leaf) => f(*leaf),
+            TypedExprKind::Element(place) => leaves(place).into_iter().for_each(&mut *f),
+            TypedExprKind::Const(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Unary(..)
+            | TypedExprKind::Binary(..)
+            | TypedExprKind::If(..)
+            | TypedExprKind::Call(..)
+            | TypedExprKind::List(..)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error => {}
         });
     }
 
     /// Calls `f` with the expression and each part of it, the whole first.
-    pub fn each(&self, f: &mut dyn FnMut(&Expr)) {
+    pub fn each(&self, f: &mut dyn FnMut(&TypedExpr)) {
         f(self);
         match &self.kind {
-            ExprKind::Const(_) | ExprKind::Leaf(_) | ExprKind::Term(_) | ExprKind::Error => {}
-            ExprKind::Unary(_, a) => a.each(f),
-            ExprKind::Binary(_, a, b) => {
+            TypedExprKind::Const(_)
+            | TypedExprKind::Leaf(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Error => {}
+            TypedExprKind::Unary(_, a) => a.each(f),
+            TypedExprKind::Binary(_, a, b) => {
                 a.each(f);
                 b.each(f);
             }
-            ExprKind::If(c, a, b) => {
+            TypedExprKind::If(c, a, b) => {
                 c.each(f);
                 a.each(f);
                 b.each(f);
             }
-            ExprKind::Call(_, args) | ExprKind::Apply(_, args, _) => args.iter().for_each(|a| a.each(f)),
-            ExprKind::Element(place) => place.indices.iter().for_each(|i| i.at.each(f)),
-            ExprKind::List(items, rest) => {
+            TypedExprKind::Call(_, args) | TypedExprKind::Apply(_, args, _) => {
+                args.iter().for_each(|a| a.each(f))
+            }
+            TypedExprKind::Element(place) => place.indices.iter().for_each(|i| i.at.each(f)),
+            TypedExprKind::List(items, rest) => {
                 items.iter().for_each(|e| e.each(f));
                 rest.iter().for_each(|e| e.each(f));
             }

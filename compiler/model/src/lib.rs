@@ -12,12 +12,15 @@ mod scenario;
 mod types;
 pub mod world;
 
-pub use check::{INTERNAL_ACTIONS, InternalAction, Slot};
+pub use check::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 pub use check::{resolve, resolve_alone, resolve_part};
-pub use expr::{BinaryOp, EvalError, Expr, ExprKind, Index, Leaf, NumberFunction, Place, UnaryOp, leaves};
+pub use expr::{
+    BinaryOp, EvalError, NumberFunction, TypedExpr, TypedExprKind, TypedIndex, TypedLvalue, UnaryOp,
+    VariableRef, leaves,
+};
 pub use lint::lint;
 pub use nearest::{distance, nearest};
 pub use report::world::LIBRARY_PARTS;
-pub use resolution::{DefinedType, Definition, Resolutions};
+pub use resolution::{DefinedType, NameDefinition, Resolutions};
 pub use scenario::*;
-pub use types::{Dim, Kind, Of, UNITS, Unit, type_named, type_names};
+pub use types::{Dimension, InferredType, InternedKind, UNITS, UnitOfMeasure, type_named, type_names};

@@ -10,105 +10,108 @@ use hrdsl_ir::device::DeviceKind;
 use hrdsl_source::{Enumeration, Span};
 use serde::Serialize;
 
-use crate::{Expr, Leaf, world::World};
+use crate::{TypedExpr, VariableRef, world::TypedWorld};
 
 pub use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, EventId, EventPattern, List, Param, Role, Symbol, Text, Type, Value,
+    Actor, ActorId, ArgPattern, EventId, EventPattern, List, Parameter, Role, Symbol, Text, Type, Value,
     bdi::{
-        AgentId, Annotation, Belief, BeliefId, Content, ContentId, Control, Fact, Goal, GoalId, Performative,
-        Subject, TriggerOn,
+        AgentId, BeliefAnnotation, BeliefDecl, BeliefId, ContentId, ControlAct, GoalDecl, GoalId,
+        InitialFact, MessageContent, MessageSubject, Performative, TriggerOn,
     },
-    coverage::{Bin, Condition, Cross, CrossBin, CrossId, Point as CoverPoint, PointId},
+    coverage::{
+        BinCondition, CoverBin, CoverCross, Coverpoint as CoverPoint, CoverpointId, CrossBin, CrossId,
+    },
     list::ListFunction,
     monitor::{RequirementId, RequirementKind},
-    suite::{ChoiceKind, Delays, Explore, ModelGoal, PlayerRef, SearchGoal, WitnessKind},
-    system::System,
+    suite::{ChoiceKind, DelayChoice, ExploreMode, ModelGoal, PlayerRef, SearchGoal, WitnessKind},
+    system::SystemUnderTest,
     ta::{
-        AutomatonId, Channel, ChannelId, ChannelKind, ClockId, ClockOp, FunctionId, LocationId, LocationKind,
-        Network, NetworkId, Party, QueryId, ReceiveArg, Var,
+        AutomatonId, AutomatonVar, Channel, ChannelId, ChannelKind, ChannelParticipant, ClockId, ClockOp,
+        FunctionId, LocationId, LocationKind, Network, NetworkId, QueryId, ReceiveArg,
     },
     test::{Test, TestStep},
     world::{
-        ArmId, Axis, BodyId, BodyRef, Current, CurrentId, GripperId, JointId, Motion, Shape, SignalId, Term,
+        ArmId, Axis, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, GripperId, JointId,
+        SignalId, SignalTerm,
     },
 };
 
 // The Program's trees over the checker's expressions and variables.
-pub type Event = hrdsl_ir::Event<Expr>;
-pub type Stimulus = hrdsl_ir::event::Stimulus<Expr>;
-pub type StimulusStep = hrdsl_ir::event::StimulusStep<Expr>;
-pub type Sample = hrdsl_ir::event::Sample<Expr>;
-pub type WorldAction = hrdsl_ir::world::WorldAction<Expr>;
-pub type Point = hrdsl_ir::world::Point<Expr>;
-pub type Agent = hrdsl_ir::bdi::Agent<Expr>;
-pub type Rule = hrdsl_ir::bdi::Rule<Expr>;
-pub type Plan = hrdsl_ir::bdi::Plan<Expr>;
-pub type Trigger = hrdsl_ir::bdi::Trigger<Expr>;
-pub type Arg = hrdsl_ir::bdi::Term<Expr>;
-pub type Literal = hrdsl_ir::bdi::Literal<Expr>;
-pub type Assertion = hrdsl_ir::bdi::Assertion<Expr>;
-pub type Context = hrdsl_ir::bdi::Context<Expr>;
-pub type Internal = hrdsl_ir::bdi::Internal<Expr>;
-pub type Step = hrdsl_ir::bdi::Step<Expr>;
-pub type StepKind = hrdsl_ir::bdi::StepKind<Expr>;
-pub type Automaton = hrdsl_ir::ta::Automaton<Expr, Leaf>;
-pub type Location = hrdsl_ir::ta::Location<Expr>;
-pub type Edge = hrdsl_ir::ta::Edge<Expr, Leaf>;
-pub type Sync = hrdsl_ir::ta::Sync<Expr>;
-pub type Update = hrdsl_ir::ta::Update<Expr, Leaf>;
-pub type ClockConstraint = hrdsl_ir::ta::ClockConstraint<Expr>;
-pub type Time = hrdsl_ir::ta::Time<Expr>;
-pub type TimeTerm = hrdsl_ir::ta::TimeTerm<Expr>;
-pub type Function = hrdsl_ir::ta::Function<Expr, Leaf>;
-pub type Statement = hrdsl_ir::ta::Statement<Expr, Leaf>;
-pub type Ask = hrdsl_ir::ta::Ask<Expr>;
-pub type Formula = hrdsl_ir::ta::Formula<Expr>;
-pub type Measure = hrdsl_ir::ta::Measure<Expr>;
-pub type Suite = hrdsl_ir::suite::Suite<Expr>;
-pub type Method = hrdsl_ir::suite::Method<Expr>;
-pub type Choice = hrdsl_ir::suite::Choice<Expr>;
-pub type ChoiceCondition = hrdsl_ir::suite::Condition<Expr>;
+pub type TypedEvent = hrdsl_ir::Event<TypedExpr>;
+pub type TypedStimulus = hrdsl_ir::event::Stimulus<TypedExpr>;
+pub type TypedStimulusStep = hrdsl_ir::event::StimulusStep<TypedExpr>;
+pub type TypedSample = hrdsl_ir::event::StimulusSample<TypedExpr>;
+pub type TypedWorldAction = hrdsl_ir::world::WorldAction<TypedExpr>;
+pub type TypedPoint = hrdsl_ir::world::WorldPoint<TypedExpr>;
+pub type TypedAgent = hrdsl_ir::bdi::Agent<TypedExpr>;
+pub type TypedBeliefRule = hrdsl_ir::bdi::BeliefRule<TypedExpr>;
+pub type TypedPlan = hrdsl_ir::bdi::Plan<TypedExpr>;
+pub type TypedTrigger = hrdsl_ir::bdi::PlanTrigger<TypedExpr>;
+pub type TypedTerm = hrdsl_ir::bdi::AgentTerm<TypedExpr>;
+pub type TypedLiteral = hrdsl_ir::bdi::BeliefLiteral<TypedExpr>;
+pub type TypedAssertion = hrdsl_ir::bdi::Assertion<TypedExpr>;
+pub type TypedContext = hrdsl_ir::bdi::PlanContext<TypedExpr>;
+pub type TypedInternalAct = hrdsl_ir::bdi::InternalAct<TypedExpr>;
+pub type TypedStep = hrdsl_ir::bdi::PlanStep<TypedExpr>;
+pub type TypedStepKind = hrdsl_ir::bdi::PlanStepKind<TypedExpr>;
+pub type TypedAutomaton = hrdsl_ir::ta::Automaton<TypedExpr, VariableRef>;
+pub type TypedLocation = hrdsl_ir::ta::Location<TypedExpr>;
+pub type TypedEdge = hrdsl_ir::ta::Edge<TypedExpr, VariableRef>;
+pub type TypedSync = hrdsl_ir::ta::SyncLabel<TypedExpr>;
+pub type TypedUpdate = hrdsl_ir::ta::EdgeAssignment<TypedExpr, VariableRef>;
+pub type TypedClockConstraint = hrdsl_ir::ta::ClockConstraint<TypedExpr>;
+pub type TypedTime = hrdsl_ir::ta::TimeSum<TypedExpr>;
+pub type TypedTimeTerm = hrdsl_ir::ta::TimeTerm<TypedExpr>;
+pub type TypedFunction = hrdsl_ir::ta::AutomatonFunction<TypedExpr, VariableRef>;
+pub type TypedStatement = hrdsl_ir::ta::FunctionStatement<TypedExpr, VariableRef>;
+pub type TypedQueryKind = hrdsl_ir::ta::QueryKind<TypedExpr>;
+pub type TypedFormula = hrdsl_ir::ta::QueryFormula<TypedExpr>;
+pub type TypedMeasure = hrdsl_ir::ta::QueryMeasure<TypedExpr>;
+pub type TypedSuite = hrdsl_ir::suite::Suite<TypedExpr>;
+pub type TypedMethod = hrdsl_ir::suite::SuiteMethod<TypedExpr>;
+pub type TypedChoice = hrdsl_ir::suite::BeliefChoice<TypedExpr>;
+pub type TypedChoiceCondition = hrdsl_ir::suite::BeliefCondition<TypedExpr>;
 
 /// A whole scenario, resolved. If there were errors, what they concern is missing from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Scenario {
     pub name: String,
     pub actors: Vec<Actor>,
-    pub enums: Vec<Enum>,
-    pub events: Vec<Event>,
-    pub agents: Vec<Agent>,
-    pub contents: Vec<Content>,
+    pub enums: Vec<EnumDecl>,
+    pub events: Vec<TypedEvent>,
+    pub agents: Vec<TypedAgent>,
+    pub contents: Vec<MessageContent>,
     /// How the contents are used, by their ids.
-    pub speech: Vec<Speech>,
-    pub shared: Vec<Var>,
-    pub functions: Vec<Function>,
+    pub speech: Vec<AgentSpeech>,
+    pub shared: Vec<AutomatonVar>,
+    pub functions: Vec<TypedFunction>,
     /// What the functions read and assign, by their ids.
-    pub effects: Vec<Effects>,
+    pub effects: Vec<FunctionEffects>,
     /// Clocks that all automata share.
     pub clocks: Vec<String>,
     pub channels: Vec<Channel>,
-    pub automata: Vec<Automaton>,
+    pub automata: Vec<TypedAutomaton>,
     pub networks: Vec<Network>,
-    pub queries: Vec<Query>,
-    pub requirements: Vec<Requirement>,
-    pub assumptions: Vec<Assumption>,
+    pub queries: Vec<TypedQuery>,
+    pub requirements: Vec<TypedRequirement>,
+    pub assumptions: Vec<TypedAssumption>,
     pub points: Vec<CoverPoint>,
-    pub crosses: Vec<Cross>,
-    pub suites: Vec<Suite>,
+    pub crosses: Vec<CoverCross>,
+    pub suites: Vec<TypedSuite>,
     pub tests: Vec<Test>,
     pub device_kinds: Vec<DeviceKind>,
-    pub world: Option<World>,
-    pub system: Option<System>,
-    pub declared: Vec<Named>,
+    pub world: Option<TypedWorld>,
+    pub system: Option<SystemUnderTest>,
+    pub declared: Vec<NamedSpan>,
     #[serde(skip)]
-    pub places: Places,
+    pub places: DeclarationPlaces,
     #[serde(skip)]
     pub names: Resolutions,
 }
 
 /// A declaration of which nothing is left where it is used: a constant, a type, a template, a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Named {
+pub struct NamedSpan {
     /// `the constant`
     pub noun: &'static str,
     pub name: String,
@@ -121,7 +124,7 @@ pub struct Named {
 
 /// Where names stand that a diagnostic points at; each list is by the id of its elements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Places {
+pub struct DeclarationPlaces {
     pub events: Vec<Span>,
     pub agents: Vec<AgentPlaces>,
     pub shared: Vec<VarPlace>,
@@ -181,14 +184,14 @@ pub struct VarPlace {
 
 /// An enumeration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Enum {
+pub struct EnumDecl {
     pub of: Enumeration,
     pub span: Span,
 }
 
 /// How messages use a content.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Speech {
+pub struct AgentSpeech {
     pub is_goal: bool,
     pub arity: usize,
     /// What it is sent with, and by whom; `None` is a question that waits for its answer.
@@ -197,20 +200,20 @@ pub struct Speech {
 
 /// What a function of automata may do to variables, itself or by what it calls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Effects {
-    pub reads: Vec<Leaf>,
+pub struct FunctionEffects {
+    pub reads: Vec<VariableRef>,
     /// None, if it is pure.
-    pub assigns: Vec<Leaf>,
+    pub assigns: Vec<VariableRef>,
 }
 
 // ── Requirements ──
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Requirement {
+pub struct TypedRequirement {
     pub name: String,
     pub kind: RequirementKind,
     pub title: String,
-    pub pattern: Pattern,
+    pub pattern: RequirementPattern,
     /// The formal part.
     pub text: Span,
     pub span: Span,
@@ -219,16 +222,16 @@ pub struct Requirement {
 /// Times in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Pattern {
+pub enum RequirementPattern {
     Causes { trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<f64> },
     Forbids { trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern> },
-    NeverWhile { events: Vec<EventPattern>, condition: Option<Expr> },
-    Globally(Expr),
+    NeverWhile { events: Vec<EventPattern>, condition: Option<TypedExpr> },
+    Globally(TypedExpr),
 }
 
 /// `assume at most N e within D`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Assumption {
+pub struct TypedAssumption {
     pub events: Vec<EventPattern>,
     pub at_most: u32,
     /// Seconds.
@@ -236,14 +239,14 @@ pub struct Assumption {
     pub span: Span,
 }
 
-/// A question about a network. In its expressions, [`Leaf::Own`] counts the variables of all automata, in the network's order.
+/// A question about a network. In its expressions, [`VariableRef::Own`] counts the variables of all automata, in the network's order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Query {
+pub struct TypedQuery {
     pub name: String,
     pub title: String,
     /// The formal part.
     pub text: Span,
     pub network: NetworkId,
-    pub ask: Ask,
+    pub ask: TypedQueryKind,
     pub span: Span,
 }

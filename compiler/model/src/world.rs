@@ -4,50 +4,52 @@ use hrdsl_ir::{device::DeviceBody, world::DeviceCommandId};
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{ActorId, BodyId, Current, EventId, EventPattern, Expr, JointId, Motion, Shape, Type};
+use crate::{
+    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, EventId, EventPattern, JointId, Type, TypedExpr,
+};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct World {
+pub struct TypedWorld {
     /// Seconds.
     pub step: f64,
     pub sample: f64,
     pub gravity: [f64; 3],
-    pub bodies: Vec<Body>,
-    pub joints: Vec<Joint>,
-    pub arms: Vec<Arm>,
-    pub grippers: Vec<Gripper>,
-    pub currents: Vec<Current>,
-    pub signals: Vec<Signal>,
-    pub rules: Vec<WorldRule>,
+    pub bodies: Vec<TypedBody>,
+    pub joints: Vec<TypedJoint>,
+    pub arms: Vec<TypedArm>,
+    pub grippers: Vec<TypedGripper>,
+    pub currents: Vec<CurrentBody>,
+    pub signals: Vec<TypedSignal>,
+    pub rules: Vec<TypedWorldRule>,
     /// The parts that are put into it; what they are made of is in the lists above.
     #[serde(skip)]
-    pub parts: Vec<Instance>,
+    pub parts: Vec<PartInstance>,
     pub span: Span,
 }
 
 /// A part that is put somewhere.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
+pub struct PartInstance {
     /// `left.hand`
     pub name: String,
-    pub frame: Frame,
+    pub frame: PartFrame,
     pub span: Span,
 }
 
 /// Where a part's coordinates lie in the world: turned about z by `yaw`, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Frame {
+pub struct PartFrame {
     pub at: [f64; 3],
     pub yaw: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Body {
+pub struct TypedBody {
     /// `robot.palm`
     pub name: String,
-    pub motion: Motion,
-    pub shape: Shape,
-    pub frame: Frame,
+    pub motion: BodyMotion,
+    pub shape: BodyShape,
+    pub frame: PartFrame,
     pub position: [f64; 3],
     pub rotation: [f64; 3],
     pub mass: f64,
@@ -57,11 +59,11 @@ pub struct Body {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Joint {
+pub struct TypedJoint {
     pub name: String,
     pub parent: BodyId,
     pub child: BodyId,
-    pub frame: Frame,
+    pub frame: PartFrame,
     pub anchor: [f64; 3],
     /// Not zero; not yet of length 1.
     pub axis: [f64; 3],
@@ -70,7 +72,7 @@ pub struct Joint {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Arm {
+pub struct TypedArm {
     pub name: String,
     pub joints: Vec<JointId>,
     pub tip: BodyId,
@@ -79,7 +81,7 @@ pub struct Arm {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Gripper {
+pub struct TypedGripper {
     pub name: String,
     pub palm: BodyId,
     pub tool: [f64; 3],
@@ -89,34 +91,34 @@ pub struct Gripper {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Signal {
+pub struct TypedSignal {
     pub name: String,
     pub ty: Type,
     pub to: Vec<ActorId>,
     /// Over terms and earlier signals.
-    pub value: Expr,
+    pub value: TypedExpr,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct WorldRule {
-    pub on: RuleOn,
+pub struct TypedWorldRule {
+    pub on: TypedRuleTrigger,
     /// Over terms and signals.
-    pub guard: Option<Expr>,
+    pub guard: Option<TypedExpr>,
     pub event: EventId,
-    pub args: Vec<Expr>,
+    pub args: Vec<TypedExpr>,
     pub span: Span,
 }
 
 /// What a rule waits for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RuleOn {
+pub enum TypedRuleTrigger {
     Event(EventPattern),
     Commanded { device: DeviceBody, command: DeviceCommandId },
 }
 
-impl Frame {
+impl PartFrame {
     /// A direction of the part, in the world.
     #[must_use]
     pub fn turn(self, v: [f64; 3]) -> [f64; 3] {
@@ -165,7 +167,7 @@ mod tests {
 
     #[test]
     fn quarter_turns_are_exact() {
-        let turned = |k: f64| Frame { at: [1.0, 2.0, 3.0], yaw: k * FRAC_PI_2 }.place([0.5, 0.25, 0.125]);
+        let turned = |k: f64| PartFrame { at: [1.0, 2.0, 3.0], yaw: k * FRAC_PI_2 }.place([0.5, 0.25, 0.125]);
         assert_eq!(turned(0.0), [1.5, 2.25, 3.125]);
         assert_eq!(turned(1.0), [0.75, 2.5, 3.125]);
         assert_eq!(turned(2.0), [0.5, 1.75, 3.125]);

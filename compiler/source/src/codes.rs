@@ -7,15 +7,15 @@ use serde::{Serialize, Serializer};
 
 /// A diagnostic code; its page is `spec/codes/HRnnnn.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Code(pub u16);
+pub struct DiagnosticCode(pub u16);
 
-impl fmt::Display for Code {
+impl fmt::Display for DiagnosticCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "HR{:04}", self.0)
     }
 }
 
-impl Serialize for Code {
+impl Serialize for DiagnosticCode {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.collect_str(self)
     }
@@ -24,7 +24,7 @@ impl Serialize for Code {
 /// One row of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeInfo {
-    pub code: Code,
+    pub code: DiagnosticCode,
     /// The rule in a few words.
     pub title: &'static str,
 }
@@ -43,7 +43,7 @@ pub const GROUPS: &[(u16, &str)] = &[
     (9, "tests"),
 ];
 
-impl Code {
+impl DiagnosticCode {
     /// What the codes of its hundred are about.
     #[must_use]
     pub fn group(self) -> &'static str {
@@ -59,12 +59,12 @@ impl Code {
 
 macro_rules! codes {
     ($($(#[$doc:meta])* $name:ident = $number:literal $title:literal),* $(,)?) => {
-        impl Code {
-            $($(#[$doc])* pub const $name: Code = Code($number);)*
+        impl DiagnosticCode {
+            $($(#[$doc])* pub const $name: DiagnosticCode = DiagnosticCode($number);)*
         }
 
         /// All codes, in order.
-        pub const REGISTRY: &[CodeInfo] = &[$(CodeInfo { code: Code::$name, title: $title }),*];
+        pub const REGISTRY: &[CodeInfo] = &[$(CodeInfo { code: DiagnosticCode::$name, title: $title }),*];
     };
 }
 

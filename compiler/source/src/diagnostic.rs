@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{Code, Span};
+use crate::{DiagnosticCode, Span};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -14,53 +14,53 @@ pub enum Severity {
 /// A code, a lower-case message, labelled spans, and help that says what to type.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
-    pub code: Code,
+    pub code: DiagnosticCode,
     pub severity: Severity,
     pub message: String,
     /// The first is the place of the fault; others show what it clashes with.
-    pub labels: Vec<Label>,
+    pub labels: Vec<SpanLabel>,
     pub help: Option<String>,
     /// Changes of the text that would fix it, the likeliest first.
-    pub fixes: Vec<Fix>,
+    pub fixes: Vec<SuggestedFix>,
 }
 
 /// A change of the text that fixes a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Fix {
+pub struct SuggestedFix {
     /// What it does, as a command: "replace `wats` by `wants`".
     pub title: String,
     /// In order of place, not overlapping.
-    pub edits: Vec<Edit>,
+    pub edits: Vec<TextEdit>,
     /// Nothing else can have been meant, so that a tool may apply it unasked.
     pub certain: bool,
 }
 
 /// A piece of text and what is to stand there; an empty span inserts, an empty text deletes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Edit {
+pub struct TextEdit {
     pub span: Span,
     pub text: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Label {
+pub struct SpanLabel {
     pub span: Span,
     pub text: String,
 }
 
 impl Diagnostic {
     #[must_use]
-    pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
+    pub fn error(code: DiagnosticCode, span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Error, code, span, message.into())
     }
 
     #[must_use]
-    pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
+    pub fn warning(code: DiagnosticCode, span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, span, message.into())
     }
 
-    fn new(severity: Severity, code: Code, span: Span, message: String) -> Self {
-        let labels = vec![Label { span, text: String::new() }];
+    fn new(severity: Severity, code: DiagnosticCode, span: Span, message: String) -> Self {
+        let labels = vec![SpanLabel { span, text: String::new() }];
         Self { code, severity, message, labels, help: None, fixes: Vec::new() }
     }
 
@@ -75,7 +75,7 @@ impl Diagnostic {
     /// A further place.
     #[must_use]
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.labels.push(Label { span, text: text.into() });
+        self.labels.push(SpanLabel { span, text: text.into() });
         self
     }
 
@@ -94,8 +94,8 @@ impl Diagnostic {
         text: impl Into<String>,
         certain: bool,
     ) -> Self {
-        let edits = vec![Edit { span, text: text.into() }];
-        self.fixes.push(Fix { title: title.into(), edits, certain });
+        let edits = vec![TextEdit { span, text: text.into() }];
+        self.fixes.push(SuggestedFix { title: title.into(), edits, certain });
         self
     }
 

@@ -20,18 +20,18 @@ const BLOCK: usize = 256;
 
 /// A place as people count: from 1, columns in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Position {
+pub struct TextPosition {
     pub line: u32,
     pub column: u32,
 }
 
 /// All files of a compilation.
 #[derive(Clone, Debug, Default)]
-pub struct Files {
+pub struct SourceFiles {
     files: Vec<SourceFile>,
 }
 
-impl Files {
+impl SourceFiles {
     /// Adds a file and gives its id.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let text = text.into();
@@ -57,14 +57,14 @@ impl Files {
 
     /// Where a span starts.
     #[must_use]
-    pub fn position(&self, span: Span) -> Position {
-        self.get(span.file).map_or(Position { line: 1, column: 1 }, |f| f.position(span.start))
+    pub fn position(&self, span: Span) -> TextPosition {
+        self.get(span.file).map_or(TextPosition { line: 1, column: 1 }, |f| f.position(span.start))
     }
 
     /// `file:line:column`, on one line whatever the file is called.
     #[must_use]
     pub fn place(&self, span: Span) -> String {
-        let Position { line, column } = self.position(span);
+        let TextPosition { line, column } = self.position(span);
         let name = self.get(span.file).map_or("?", |f| &f.name);
         format!("{}:{line}:{column}", printable_line(name))
     }
@@ -87,10 +87,10 @@ impl SourceFile {
 
     /// The line and column of a byte.
     #[must_use]
-    pub fn position(&self, byte: u32) -> Position {
+    pub fn position(&self, byte: u32) -> TextPosition {
         let line = self.line_at(byte);
         let before = self.chars_until(byte as usize).saturating_sub(self.chars_until(self.start_of(line)));
-        Position { line: line as u32 + 1, column: before + 1 }
+        TextPosition { line: line as u32 + 1, column: before + 1 }
     }
 
     /// The line of a byte, from 0.
@@ -133,19 +133,19 @@ mod tests {
     #[test]
     fn columns_are_counted_in_characters_from_the_start_of_their_line() {
         let text = format!("ä{}\r\n{}x\n", "é€".repeat(300), "b".repeat(255));
-        let mut files = Files::default();
+        let mut files = SourceFiles::default();
         let file = files.add("a\nb", text.as_str());
         let source = files.get(file).unwrap();
         let (mut line, mut column) = (1, 1);
         for (at, c) in text.char_indices() {
-            assert_eq!(source.position(at as u32), Position { line, column }, "{at}");
+            assert_eq!(source.position(at as u32), TextPosition { line, column }, "{at}");
             (line, column) = if c == '\n' { (line + 1, 1) } else { (line, column + 1) };
         }
-        assert_eq!(source.position(text.len() as u32), Position { line: 3, column: 1 });
+        assert_eq!(source.position(text.len() as u32), TextPosition { line: 3, column: 1 });
         assert_eq!(source.line(0).map(|l| l.end), text.find('\r'));
         assert_eq!((source.line(2).map(|l| l.len()), source.line(3)), (Some(0), None));
         assert_eq!(files.place(Span::new(file, 2, 3)), "a␊b:1:2");
         files.add("", "");
-        assert_eq!(files.get(FileId(1)).unwrap().position(0), Position { line: 1, column: 1 });
+        assert_eq!(files.get(FileId(1)).unwrap().position(0), TextPosition { line: 1, column: 1 });
     }
 }

@@ -9,9 +9,9 @@ mod shared_words;
 mod span;
 mod symbol;
 
-pub use codes::{Code, CodeInfo, GROUPS, REGISTRY};
-pub use diagnostic::{Diagnostic, Edit, Fix, Label, Severity};
-pub use files::{Files, Position, SourceFile};
+pub use codes::{CodeInfo, DiagnosticCode, GROUPS, REGISTRY};
+pub use diagnostic::{Diagnostic, Severity, SpanLabel, SuggestedFix, TextEdit};
+pub use files::{SourceFile, SourceFiles, TextPosition};
 pub use printable::{is_steering, printable, printable_char, printable_line};
 pub use shared_words::{BinaryOp, LocationKind, UnaryOp};
 pub use span::{FileId, Span};

@@ -14,7 +14,7 @@ use std::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A name kept for as long as the process lives.
-struct Name {
+struct SymbolName {
     name: Box<str>,
     hash: u64,
 }
@@ -32,7 +32,7 @@ static ENUMERATIONS: Mutex<BTreeMap<(String, Vec<Symbol>), Enumeration>> = Mutex
 /// A value of an enumeration: a name. Symbols of the same name are equal, whatever enumeration they come from, and are
 /// ordered by name.
 #[derive(Clone, Copy)]
-pub struct Symbol(&'static Name);
+pub struct Symbol(&'static SymbolName);
 
 impl Symbol {
     /// The symbol of this name.
@@ -42,7 +42,8 @@ impl Symbol {
         if let Some(known) = table.get(name) {
             return *known;
         }
-        let entry: &'static Name = Box::leak(Box::new(Name { name: name.into(), hash: hash(name) }));
+        let entry: &'static SymbolName =
+            Box::leak(Box::new(SymbolName { name: name.into(), hash: hash(name) }));
         table.insert(&entry.name, Symbol(entry));
         Symbol(entry)
     }
@@ -202,20 +203,20 @@ impl fmt::Display for Enumeration {
 /// How an enumeration is written as data.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Enumeration")]
-struct Written {
+struct WrittenSymbol {
     name: String,
     values: Vec<Symbol>,
 }
 
 impl Serialize for Enumeration {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Written { name: self.name().to_owned(), values: self.values().to_vec() }.serialize(serializer)
+        WrittenSymbol { name: self.name().to_owned(), values: self.values().to_vec() }.serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Enumeration {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Written::deserialize(deserializer).map(|w| Self::of(&w.name, w.values.into_iter()))
+        WrittenSymbol::deserialize(deserializer).map(|w| Self::of(&w.name, w.values.into_iter()))
     }
 }
 
@@ -225,7 +226,8 @@ mod tests {
 
     #[test]
     fn entries_of_the_same_name_are_equal() {
-        let entry: &'static Name = Box::leak(Box::new(Name { name: "same".into(), hash: hash("same") }));
+        let entry: &'static SymbolName =
+            Box::leak(Box::new(SymbolName { name: "same".into(), hash: hash("same") }));
         assert_eq!(Symbol(entry), Symbol::intern("same"));
         let (values, places) = (vec![Symbol(entry)].into(), BTreeMap::from([(Symbol(entry), 0)]));
         let made = Enumeration(Box::leak(Box::new(EnumEntry { name: "Same".into(), values, places })));

@@ -9,13 +9,13 @@ pub mod world;
 
 use hrdsl_ir::{Program, coverage::Coverage};
 use hrdsl_model::Scenario;
-use hrdsl_source::Files;
+use hrdsl_source::SourceFiles;
 
 use expr::local;
 
 /// Lowers a scenario without errors. `files` gives the text of requirements.
 #[must_use]
-pub fn lower(scenario: &Scenario, files: &Files) -> Program {
+pub fn lower(scenario: &Scenario, files: &SourceFiles) -> Program {
     let mut signals = world::Signals::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &scenario.device_kinds, &mut signals));
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();

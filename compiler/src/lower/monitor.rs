@@ -2,37 +2,45 @@
 
 use hrdsl_ir::{
     EventPattern, Expr, Nanos, Unit,
-    expr::{BinaryOp, Function, UnaryOp},
-    monitor::{Assumption, Edge, Effect, Margin, Monitor, On, State, StateId},
+    expr::{BinaryOp, NumberFunction, UnaryOp},
+    monitor::{
+        Assumption, Monitor, MonitorEdge, MonitorEffect, MonitorMargin, MonitorState, MonitorTrigger, StateId,
+    },
     value::nanos,
     world::SignalId,
 };
-use hrdsl_model::{self as model, ExprKind, Kind, Pattern};
-use hrdsl_source::Files;
+use hrdsl_model::{self as model, InferredType, RequirementPattern, TypedExprKind};
+use hrdsl_source::SourceFiles;
 use hrdsl_syntax::ast;
 
 use super::world::{Reader, Signals};
-use Effect::{Discharge, Fail, ResetClock, Trigger};
+use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
 
 /// The part of a monitor that its pattern decides.
 #[derive(Default)]
 struct Machine {
-    states: Vec<State>,
-    edges: Vec<Edge>,
+    states: Vec<MonitorState>,
+    edges: Vec<MonitorEdge>,
     signals: Vec<SignalId>,
-    margin: Option<Margin>,
+    margin: Option<MonitorMargin>,
 }
 
-pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signals<'_>) -> Monitor {
+pub(crate) fn monitor(
+    r: &model::TypedRequirement,
+    files: &SourceFiles,
+    signals: &mut Signals<'_>,
+) -> Monitor {
     let machine = match &r.pattern {
-        Pattern::Causes { trigger, response, within } => {
+        RequirementPattern::Causes { trigger, response, within } => {
             causes(trigger.clone(), response.clone(), within.map(nanos))
         }
-        Pattern::Forbids { trigger, forbidden, until } => {
+        RequirementPattern::Forbids { trigger, forbidden, until } => {
             forbids(trigger.clone(), forbidden.clone(), until.clone())
         }
-        Pattern::NeverWhile { events, condition } => never(events.clone(), condition.as_ref(), signals),
-        Pattern::Globally(condition) => globally(condition, signals),
+        RequirementPattern::NeverWhile { events, condition } => {
+            never(events.clone(), condition.as_ref(), signals)
+        }
+        RequirementPattern::Globally(condition) => globally(condition, signals),
     };
     Monitor {
         name: r.name.clone(),
@@ -48,7 +56,7 @@ pub(crate) fn monitor(r: &model::Requirement, files: &Files, signals: &mut Signa
     }
 }
 
-pub(crate) fn assumption(a: &model::Assumption, files: &Files) -> Assumption {
+pub(crate) fn assumption(a: &model::TypedAssumption, files: &SourceFiles) -> Assumption {
     Assumption {
         text: one_line(files.text(a.span)),
         events: a.events.clone(),
@@ -62,23 +70,29 @@ pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn state(name: &str, pending: bool, deadline: Option<Nanos>) -> State {
-    State { name: name.to_owned(), pending, deadline }
+fn state(name: &str, pending: bool, deadline: Option<Nanos>) -> MonitorState {
+    MonitorState { name: name.to_owned(), pending, deadline }
 }
 
-fn edge(from: u16, to: u16, on: On, guard: Option<Expr>, effects: &[Effect]) -> Edge {
-    Edge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
+fn edge(
+    from: u16,
+    to: u16,
+    on: MonitorTrigger,
+    guard: Option<Expr>,
+    effects: &[MonitorEffect],
+) -> MonitorEdge {
+    MonitorEdge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
 }
 
 /// While an answer is due, an event that is both answer and trigger answers.
 fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<Nanos>) -> Machine {
     let mut edges = vec![
-        edge(0, 1, On::Event(trigger.clone()), None, &[Trigger, ResetClock]),
-        edge(1, 0, On::Event(response), None, &[Discharge]),
-        edge(1, 1, On::Event(trigger), None, &[Trigger]),
+        edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger, ResetClock]),
+        edge(1, 0, MonitorTrigger::Event(response), None, &[Discharge]),
+        edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
     ];
     if within.is_some() {
-        edges.push(edge(1, 0, On::Deadline, None, &[Fail]));
+        edges.push(edge(1, 0, MonitorTrigger::Deadline, None, &[Fail]));
     }
     let states = vec![state("idle", false, None), state("pending", true, within)];
     Machine { states, edges, ..Machine::default() }
@@ -86,43 +100,47 @@ fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Optio
 
 fn forbids(trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern>) -> Machine {
     let edges = vec![
-        edge(0, 1, On::Event(trigger.clone()), None, &[Trigger]),
-        edge(1, 1, On::Event(forbidden), None, &[Fail]),
-        edge(1, 0, On::Event(until), None, &[Discharge]),
-        edge(1, 1, On::Event(trigger), None, &[Trigger]),
+        edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger]),
+        edge(1, 1, MonitorTrigger::Event(forbidden), None, &[Fail]),
+        edge(1, 0, MonitorTrigger::Event(until), None, &[Discharge]),
+        edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
     ];
     let states = vec![state("idle", false, None), state("armed", false, None)];
     Machine { states, edges, ..Machine::default() }
 }
 
 /// The margin is that of the negated condition, at the events.
-fn never(events: Vec<EventPattern>, condition: Option<&model::Expr>, signals: &mut Signals<'_>) -> Machine {
+fn never(
+    events: Vec<EventPattern>,
+    condition: Option<&model::TypedExpr>,
+    signals: &mut Signals<'_>,
+) -> Machine {
     let mut reader = Reader::new(signals);
     let guard = condition.map(|c| reader.expr(c));
     let margin = condition.and_then(|c| margin(c, false, &mut reader));
-    let mut edges = vec![edge(0, 0, On::Event(events.clone()), guard, &[Trigger, Fail])];
+    let mut edges = vec![edge(0, 0, MonitorTrigger::Event(events.clone()), guard, &[Trigger, Fail])];
     if condition.is_some() {
-        edges.push(edge(0, 0, On::Event(events.clone()), None, &[Trigger, Discharge]));
+        edges.push(edge(0, 0, MonitorTrigger::Event(events.clone()), None, &[Trigger, Discharge]));
     }
     Machine {
         states: vec![state("watch", false, None)],
         edges,
         signals: reader.read(),
-        margin: margin.map(|(value, unit)| Margin { value, unit, at: events }),
+        margin: margin.map(|(value, unit)| MonitorMargin { value, unit, at: events }),
     }
 }
 
 /// The first sample triggers; each time the condition ceases to hold is one failure.
-fn globally(condition: &model::Expr, signals: &mut Signals<'_>) -> Machine {
+fn globally(condition: &model::TypedExpr, signals: &mut Signals<'_>) -> Machine {
     let mut reader = Reader::new(signals);
     let holds = reader.expr(condition);
     let broken = not(holds.clone());
     let margin = margin(condition, true, &mut reader);
     let edges = vec![
-        edge(0, 2, On::Sample, Some(broken.clone()), &[Trigger, Fail]),
-        edge(0, 1, On::Sample, Some(holds.clone()), &[Trigger]),
-        edge(1, 2, On::Sample, Some(broken), &[Fail]),
-        edge(2, 1, On::Sample, Some(holds), &[]),
+        edge(0, 2, MonitorTrigger::Sample, Some(broken.clone()), &[Trigger, Fail]),
+        edge(0, 1, MonitorTrigger::Sample, Some(holds.clone()), &[Trigger]),
+        edge(1, 2, MonitorTrigger::Sample, Some(broken), &[Fail]),
+        edge(2, 1, MonitorTrigger::Sample, Some(holds), &[]),
     ];
     let states =
         vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
@@ -130,7 +148,7 @@ fn globally(condition: &model::Expr, signals: &mut Signals<'_>) -> Machine {
         states,
         edges,
         signals: reader.read(),
-        margin: margin.map(|(value, unit)| Margin { value, unit, at: Vec::new() }),
+        margin: margin.map(|(value, unit)| MonitorMargin { value, unit, at: Vec::new() }),
     }
 }
 
@@ -141,16 +159,16 @@ fn not(e: Expr) -> Expr {
 /// The robustness of a condition (of its negation, if not `positive`): `a < c` has c − a, a conjunction the least of its
 /// parts, a disjunction the greatest (Fainekos and Pappas, 2009). `None` if some part is not a comparison of numbers, or
 /// the parts' units differ.
-fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Option<(Expr, Unit)> {
+fn margin(e: &model::TypedExpr, positive: bool, reader: &mut Reader<'_, '_>) -> Option<(Expr, Unit)> {
     match &e.kind {
-        ExprKind::Unary(ast::UnaryOp::Not, a) => margin(a, !positive, reader),
-        ExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => {
+        TypedExprKind::Unary(ast::UnaryOp::Not, a) => margin(a, !positive, reader),
+        TypedExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => {
             let ((a, unit), (b, other)) = (margin(a, positive, reader)?, margin(b, positive, reader)?);
             let least = (*op == BinaryOp::And) == positive;
-            let pick = if least { Function::Min } else { Function::Max };
+            let pick = if least { NumberFunction::Min } else { NumberFunction::Max };
             (unit == other).then(|| (Expr::Call(pick, vec![a, b]), unit))
         }
-        ExprKind::Binary(op, a, b) => {
+        TypedExprKind::Binary(op, a, b) => {
             let smaller_first = match op {
                 BinaryOp::Lt | BinaryOp::Le => true,
                 BinaryOp::Gt | BinaryOp::Ge => false,
@@ -165,24 +183,27 @@ fn margin(e: &model::Expr, positive: bool, reader: &mut Reader<'_, '_>) -> Optio
                 | BinaryOp::Or => return None,
             };
             let unit = match a.ty {
-                Kind::Float(dim) => dim.unit(),
-                Kind::Int | Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
-                    Unit::None
-                }
+                InferredType::Float(dim) => dim.unit(),
+                InferredType::Int
+                | InferredType::Bool
+                | InferredType::Enum(_)
+                | InferredType::Text
+                | InferredType::List(_)
+                | InferredType::Unknown => Unit::None,
             };
             let (a, b) = (reader.expr(a), reader.expr(b));
             let (small, large) = if smaller_first == positive { (a, b) } else { (b, a) };
             Some((Expr::binary(BinaryOp::Sub, large, small), unit))
         }
-        ExprKind::Unary(ast::UnaryOp::Neg, _)
-        | ExprKind::Const(_)
-        | ExprKind::Leaf(_)
-        | ExprKind::Term(_)
-        | ExprKind::If(..)
-        | ExprKind::Call(..)
-        | ExprKind::List(..)
-        | ExprKind::Element(_)
-        | ExprKind::Apply(..)
-        | ExprKind::Error => None,
+        TypedExprKind::Unary(ast::UnaryOp::Neg, _)
+        | TypedExprKind::Const(_)
+        | TypedExprKind::Leaf(_)
+        | TypedExprKind::Term(_)
+        | TypedExprKind::If(..)
+        | TypedExprKind::Call(..)
+        | TypedExprKind::List(..)
+        | TypedExprKind::Element(_)
+        | TypedExprKind::Apply(..)
+        | TypedExprKind::Error => None,
     }
 }

@@ -4,8 +4,8 @@ use hrdsl_ir::{
     Expr, lowering,
     ta::{Automaton, Query},
 };
-use hrdsl_model::{self as model, Leaf, Scenario};
-use hrdsl_source::Files;
+use hrdsl_model::{self as model, Scenario, VariableRef};
+use hrdsl_source::SourceFiles;
 
 use super::{
     expr::{self, Source},
@@ -13,7 +13,12 @@ use super::{
 };
 
 /// `automata` are the scenario's, lowered: they may have more variables than were written.
-pub(crate) fn query(q: &model::Query, scenario: &Scenario, automata: &[Automaton], files: &Files) -> Query {
+pub(crate) fn query(
+    q: &model::TypedQuery,
+    scenario: &Scenario,
+    automata: &[Automaton],
+    files: &SourceFiles,
+) -> Query {
     let network = &scenario.networks[usize::from(q.network.0)];
     let (mut own, mut next) = (Vec::new(), slot(scenario.shared.len()));
     for id in &network.automata {
@@ -41,8 +46,8 @@ struct Slots {
     own: Vec<u16>,
 }
 
-impl lowering::Slots<model::Expr, Leaf> for Slots {
-    fn expr(&self, e: &model::Expr) -> Expr {
+impl lowering::VariableSlots<model::TypedExpr, VariableRef> for Slots {
+    fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
             Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
             // INVARIANT: the checker lets no measurement into a query.
@@ -50,12 +55,12 @@ impl lowering::Slots<model::Expr, Leaf> for Slots {
         })
     }
 
-    fn slot(&self, of: &Leaf) -> u16 {
+    fn slot(&self, of: &VariableRef) -> u16 {
         match of {
-            Leaf::Shared(i) => *i,
-            Leaf::Own(i) => self.own.get(usize::from(*i)).copied().unwrap_or(u16::MAX),
+            VariableRef::Shared(i) => *i,
+            VariableRef::Own(i) => self.own.get(usize::from(*i)).copied().unwrap_or(u16::MAX),
             // INVARIANT: the checker lets nothing else into a query.
-            Leaf::Local(_) | Leaf::Signal(_) => u16::MAX,
+            VariableRef::Local(_) | VariableRef::Signal(_) => u16::MAX,
         }
     }
 }

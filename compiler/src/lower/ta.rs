@@ -2,15 +2,18 @@
 
 use hrdsl_ir::{
     EventId, Expr, Span,
-    expr::Place,
-    lowering::{self, Slots as _},
-    ta::{Automaton, Edge, Function, Location, LocationId, LocationKind, Sync, Update, Var},
+    expr::Lvalue,
+    lowering::{self, VariableSlots as _},
+    ta::{
+        Automaton, AutomatonFunction, AutomatonVar, Edge, EdgeAssignment, Location, LocationId, LocationKind,
+        SyncLabel,
+    },
 };
-use hrdsl_model::{self as model, Leaf, StimulusStep};
+use hrdsl_model::{self as model, TypedStimulusStep, VariableRef};
 
 use super::expr::{self, Source};
 
-pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Automaton {
+pub(crate) fn automaton(a: &model::TypedAutomaton, scenario: &model::Scenario) -> Automaton {
     let shared = count(scenario.shared.len());
     // Nothing is bound in a location.
     let slots = Slots { shared, own: count(a.vars.len()) };
@@ -37,10 +40,14 @@ pub(crate) fn automaton(a: &model::Automaton, scenario: &model::Scenario) -> Aut
 }
 
 /// `automata` are lowered already: they may have variables that the source does not name.
-pub(crate) fn function(f: &model::Function, scenario: &model::Scenario, automata: &[Automaton]) -> Function {
+pub(crate) fn function(
+    f: &model::TypedFunction,
+    scenario: &model::Scenario,
+    automata: &[Automaton],
+) -> AutomatonFunction {
     let own = f.owner.and_then(|a| automata.get(usize::from(a.0))).map_or(0, |a| count(a.vars.len()));
     let slots = Slots { shared: count(scenario.shared.len()), own };
-    Function {
+    AutomatonFunction {
         name: f.name.clone(),
         owner: f.owner,
         params: f.params.clone(),
@@ -61,9 +68,9 @@ fn count(n: usize) -> u16 {
 /// An event that a stimulus emits, if the conditions around it hold.
 struct Emission<'a> {
     /// Each with whether it must hold.
-    conditions: Vec<(&'a model::Expr, bool)>,
+    conditions: Vec<(&'a model::TypedExpr, bool)>,
     event: EventId,
-    args: &'a [model::Expr],
+    args: &'a [model::TypedExpr],
 }
 
 /// The events that follow the stimulus of an edge, each on an edge of its own.
@@ -85,12 +92,12 @@ enum After {
 }
 
 fn chain<'a>(
-    edge: &'a model::Edge,
-    a: &model::Automaton,
+    edge: &'a model::TypedEdge,
+    a: &model::TypedAutomaton,
     scenario: &'a model::Scenario,
     lowered: &mut Automaton,
 ) -> Option<Chain<'a>> {
-    let model::Sync::Send { event, args } = &edge.sync else { return None };
+    let model::TypedSync::Send { event, args } = &edge.sync else { return None };
     let event = &scenario.events[usize::from(event.0)];
     let mut emissions = Vec::new();
     collect(&event.stimulus.as_ref()?.steps, &mut Vec::new(), &mut emissions);
@@ -106,7 +113,7 @@ fn chain<'a>(
             None if emissions.iter().any(|e| e.reads(count(i))) => {
                 let kept = format!("{stem}{}.{}", lowered.vars.len(), param.name);
                 // INVARIANT: what an automaton sends and does not know beforehand is of a finite type.
-                lowered.vars.extend(Var::of_type(&kept, param.ty));
+                lowered.vars.extend(AutomatonVar::of_type(&kept, param.ty));
                 After::Kept(count(lowered.vars.len() - 1))
             }
             None => After::Unused,
@@ -116,23 +123,23 @@ fn chain<'a>(
 }
 
 fn collect<'a>(
-    steps: &'a [StimulusStep],
-    conditions: &mut Vec<(&'a model::Expr, bool)>,
+    steps: &'a [TypedStimulusStep],
+    conditions: &mut Vec<(&'a model::TypedExpr, bool)>,
     emissions: &mut Vec<Emission<'a>>,
 ) {
     for step in steps {
         match step {
-            StimulusStep::Emit { event, args } => {
+            TypedStimulusStep::Emit { event, args } => {
                 emissions.push(Emission { conditions: conditions.clone(), event: *event, args });
             }
-            StimulusStep::If { condition, then, otherwise } => {
+            TypedStimulusStep::If { condition, then, otherwise } => {
                 for (steps, holds) in [(then, true), (otherwise, false)] {
                     conditions.push((condition, holds));
                     collect(steps, conditions, emissions);
                     conditions.pop();
                 }
             }
-            StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
+            TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => {}
         }
     }
 }
@@ -141,7 +148,7 @@ impl Emission<'_> {
     fn reads(&self, param: u16) -> bool {
         let mut found = false;
         for e in self.args.iter().chain(self.conditions.iter().map(|(c, _)| *c)) {
-            e.each(&mut |e| found |= e.kind == model::ExprKind::Leaf(Leaf::Local(param)));
+            e.each(&mut |e| found |= e.kind == model::TypedExprKind::Leaf(VariableRef::Local(param)));
         }
         found
     }
@@ -155,8 +162,8 @@ struct Slots {
     own: u16,
 }
 
-impl lowering::Slots<model::Expr, Leaf> for Slots {
-    fn expr(&self, e: &model::Expr) -> Expr {
+impl lowering::VariableSlots<model::TypedExpr, VariableRef> for Slots {
+    fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
             Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
             // INVARIANT: automata measure nothing.
@@ -164,29 +171,28 @@ impl lowering::Slots<model::Expr, Leaf> for Slots {
         })
     }
 
-    fn slot(&self, of: &Leaf) -> u16 {
+    fn slot(&self, of: &VariableRef) -> u16 {
         match of {
-            Leaf::Shared(i) => *i,
-            Leaf::Own(i) => self.shared + i,
-            Leaf::Local(i) => self.shared + self.own + i,
+            VariableRef::Shared(i) => *i,
+            VariableRef::Own(i) => self.shared + i,
+            VariableRef::Local(i) => self.shared + self.own + i,
             // INVARIANT: automata do not read signals.
-            Leaf::Signal(_) => u16::MAX,
+            VariableRef::Signal(_) => u16::MAX,
         }
     }
 }
 
 impl Slots {
     /// An expression of the stimulus, after its edge.
-    fn after(&self, e: &model::Expr, args: &[After]) -> Expr {
+    fn after(&self, e: &model::TypedExpr, args: &[After]) -> Expr {
         expr::expr(e, &mut |source| match source {
-            Source::Leaf(Leaf::Local(i)) => match args.get(usize::from(i)) {
+            Source::Leaf(VariableRef::Local(i)) => match args.get(usize::from(i)) {
                 Some(After::Const(v)) => Expr::Const(*v),
-                Some(After::Kept(own)) => Expr::Var(self.slot(&Leaf::Own(*own))),
+                Some(After::Kept(own)) => Expr::Var(self.slot(&VariableRef::Own(*own))),
                 Some(After::Unused) | None => Expr::bool(false),
             },
-            Source::Leaf(Leaf::Own(_) | Leaf::Shared(_) | Leaf::Signal(_)) | Source::Term(..) => {
-                Expr::bool(false)
-            }
+            Source::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
+            | Source::Term(..) => Expr::bool(false),
         })
     }
 
@@ -240,13 +246,13 @@ impl Slots {
                 selects: Vec::new(),
                 clock_guard: Vec::new(),
                 guard: guard.clone(),
-                sync: Sync::Send { event: emission.event, args },
+                sync: SyncLabel::Send { event: emission.event, args },
                 updates: if last { self.forget(chain, lowered) } else { Vec::new() },
                 origin,
             };
             let skip = guard.map(|g| Edge {
                 guard: Some(Expr::Unary(hrdsl_ir::expr::UnaryOp::Not, Box::new(g))),
-                sync: Sync::Internal,
+                sync: SyncLabel::Internal,
                 ..send.clone()
             });
             lowered.edges.push(send);
@@ -256,13 +262,13 @@ impl Slots {
 
     /// Keeps the stimulus's arguments for what it emits, before the updates change what they are made of.
     fn keep(&self, first: &mut Edge, chain: &Chain<'_>) {
-        let Sync::Send { args, .. } = &first.sync else { return };
-        let kept: Vec<Update> = args
+        let SyncLabel::Send { args, .. } = &first.sync else { return };
+        let kept: Vec<EdgeAssignment> = args
             .iter()
             .zip(&chain.args)
             .filter_map(|(arg, after)| match after {
-                After::Kept(own) => Some(Update::Assign {
-                    place: Place::slot(self.slot(&Leaf::Own(*own))),
+                After::Kept(own) => Some(EdgeAssignment::Assign {
+                    place: Lvalue::slot(self.slot(&VariableRef::Own(*own))),
                     value: arg.clone(),
                 }),
                 After::Const(_) | After::Unused => None,
@@ -272,11 +278,11 @@ impl Slots {
     }
 
     /// Sets the kept arguments back, so that they do not multiply the states.
-    fn forget(&self, chain: &Chain<'_>, lowered: &Automaton) -> Vec<Update> {
+    fn forget(&self, chain: &Chain<'_>, lowered: &Automaton) -> Vec<EdgeAssignment> {
         let back = |own: u16| {
             let var = &lowered.vars[usize::from(own)];
             let value = Expr::Const(var.value(var.init).unwrap_or(hrdsl_ir::Value::Int(var.init)));
-            Update::Assign { place: Place::slot(self.slot(&Leaf::Own(own))), value }
+            EdgeAssignment::Assign { place: Lvalue::slot(self.slot(&VariableRef::Own(own))), value }
         };
         let kept = |a: &After| if let After::Kept(own) = a { Some(*own) } else { None };
         chain.args.iter().filter_map(kept).map(back).collect()

@@ -5,18 +5,18 @@ use hrdsl_ir::{
     device::{Device, DeviceBody, DeviceKind},
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceId, DeviceKindId, Gripper, GripperId, Joint, Rule,
-        RuleOn, Signal, SignalId, Term, World,
+        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceId, DeviceKindId, Gripper, GripperId, Joint,
+        RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
-use hrdsl_model::{self as model, Leaf, world as from};
+use hrdsl_model::{self as model, VariableRef, world as from};
 
 use super::expr::{self, Source};
 
-pub(crate) fn world(w: &from::World, kinds: &[DeviceKind], signals: &mut Signals<'_>) -> World {
+pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Signals<'_>) -> World {
     let graspable: Vec<BodyId> =
         (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
-    let gripper = |g: &from::Gripper| Gripper {
+    let gripper = |g: &from::TypedGripper| Gripper {
         name: g.name.clone(),
         palm: g.palm,
         tool: g.tool,
@@ -24,7 +24,7 @@ pub(crate) fn world(w: &from::World, kinds: &[DeviceKind], signals: &mut Signals
         delay: nanos(g.delay),
         holds: graspable.clone(),
     };
-    let arm = |a: &from::Arm| Arm {
+    let arm = |a: &from::TypedArm| Arm {
         name: a.name.clone(),
         joints: a.joints.clone(),
         tip: a.tip,
@@ -48,7 +48,7 @@ pub(crate) fn world(w: &from::World, kinds: &[DeviceKind], signals: &mut Signals
 }
 
 /// The arms, then the grippers.
-fn devices(w: &from::World, kinds: &[DeviceKind]) -> Vec<Device> {
+fn devices(w: &from::TypedWorld, kinds: &[DeviceKind]) -> Vec<Device> {
     let arms = (0..).zip(&w.arms).map(|(i, a)| (&a.name, DeviceBody::Arm(ArmId(i))));
     let grippers = (0..).zip(&w.grippers).map(|(i, g)| (&g.name, DeviceBody::Gripper(GripperId(i))));
     let device = |(name, body): (&String, DeviceBody)| {
@@ -67,7 +67,7 @@ fn device_id(body: DeviceBody, arms: usize) -> DeviceId {
 }
 
 /// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.
-fn body(b: &from::Body) -> Body {
+fn body(b: &from::TypedBody) -> Body {
     let [roll, pitch, yaw] = b.rotation;
     Body {
         name: b.name.clone(),
@@ -80,7 +80,7 @@ fn body(b: &from::Body) -> Body {
     }
 }
 
-fn joint(j: &from::Joint) -> Joint {
+fn joint(j: &from::TypedJoint) -> Joint {
     let axis = j.frame.turn(j.axis);
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     Joint {
@@ -94,15 +94,15 @@ fn joint(j: &from::Joint) -> Joint {
     }
 }
 
-fn rule(r: &from::WorldRule, arms: usize, signals: &mut Signals<'_>) -> Rule {
+fn rule(r: &from::TypedWorldRule, arms: usize, signals: &mut Signals<'_>) -> WorldRule {
     let mut reader = Reader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
-    Rule {
+    WorldRule {
         on: match &r.on {
-            from::RuleOn::Event(p) => RuleOn::Event(p.clone()),
-            from::RuleOn::Commanded { device, command } => {
-                RuleOn::Commanded { device: device_id(*device, arms), command: *command }
+            from::TypedRuleTrigger::Event(p) => RuleTrigger::Event(p.clone()),
+            from::TypedRuleTrigger::Commanded { device, command } => {
+                RuleTrigger::Commanded { device: device_id(*device, arms), command: *command }
             }
         },
         guard,
@@ -113,29 +113,31 @@ fn rule(r: &from::WorldRule, arms: usize, signals: &mut Signals<'_>) -> Rule {
     }
 }
 
-fn type_of(t: Term) -> Type {
+fn type_of(t: SignalTerm) -> Type {
     match t {
-        Term::Distance(..) | Term::Range(..) | Term::Coordinate(..) => Type::Float(Unit::Metre),
-        Term::Angle(..) => Type::Float(Unit::Radian),
-        Term::Visible(..) | Term::Holds(..) | Term::HoldsAny(_) => Type::Bool,
-        Term::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
-        Term::Speed(_) => Type::Float(Unit::MetrePerSecond),
+        SignalTerm::Distance(..) | SignalTerm::Range(..) | SignalTerm::Coordinate(..) => {
+            Type::Float(Unit::Metre)
+        }
+        SignalTerm::Angle(..) => Type::Float(Unit::Radian),
+        SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => Type::Bool,
+        SignalTerm::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
+        SignalTerm::Speed(_) => Type::Float(Unit::MetrePerSecond),
     }
 }
 
 /// A term as it is written in the scenario, with the full names of what it measures.
-fn written(term: Term, world: &from::World) -> String {
+fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
     let body = |b: BodyRef| match b {
         BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),
         BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
     };
     let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
     match term {
-        Term::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
-        Term::Range(a, b) => format!("range({}, {})", body(a), body(b)),
-        Term::Angle(a, b) => format!("angle({}, {})", body(a), body(b)),
-        Term::Visible(a, b) => format!("visible({}, {})", body(a), body(b)),
-        Term::Coordinate(b, axis) => {
+        SignalTerm::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
+        SignalTerm::Range(a, b) => format!("range({}, {})", body(a), body(b)),
+        SignalTerm::Angle(a, b) => format!("angle({}, {})", body(a), body(b)),
+        SignalTerm::Visible(a, b) => format!("visible({}, {})", body(a), body(b)),
+        SignalTerm::Coordinate(b, axis) => {
             let axis = match axis {
                 Axis::X => "x",
                 Axis::Y => "y",
@@ -143,23 +145,23 @@ fn written(term: Term, world: &from::World) -> String {
             };
             format!("{}.{axis}", body(b))
         }
-        Term::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
-        Term::HoldsAny(g) => format!("holds({})", gripper(g)),
-        Term::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
-        Term::Speed(b) => format!("speed({})", body(b)),
+        SignalTerm::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
+        SignalTerm::HoldsAny(g) => format!("holds({})", gripper(g)),
+        SignalTerm::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
+        SignalTerm::Speed(b) => format!("speed({})", body(b)),
     }
 }
 
 /// All signals: those declared, with their ids, then one for each other term that a requirement or rule reads.
 pub(crate) struct Signals<'a> {
     list: Vec<Signal>,
-    world: Option<&'a from::World>,
+    world: Option<&'a from::TypedWorld>,
 }
 
 impl<'a> Signals<'a> {
     pub fn declared(scenario: &'a model::Scenario) -> Self {
         let declared = scenario.world.as_ref().map_or(&[][..], |w| w.signals.as_slice());
-        let signal = |s: &from::Signal| {
+        let signal = |s: &from::TypedSignal| {
             let mut terms = Vec::new();
             let value = measured(&s.value, declared, &mut terms);
             let to = s.to.clone();
@@ -174,7 +176,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The signal that measures just this term; a new one, named as the term is written, if there is none.
-    fn of_term(&mut self, term: Term, span: Span) -> usize {
+    fn of_term(&mut self, term: SignalTerm, span: Span) -> usize {
         let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
         if let Some(at) = self.list.iter().position(is) {
             return at;
@@ -194,7 +196,7 @@ impl<'a> Signals<'a> {
 }
 
 /// An expression over primitive terms; an earlier signal stands for its own expression.
-fn measured(e: &model::Expr, declared: &[from::Signal], terms: &mut Vec<Term>) -> Expr {
+fn measured(e: &model::TypedExpr, declared: &[from::TypedSignal], terms: &mut Vec<SignalTerm>) -> Expr {
     expr::expr(e, &mut |source| match source {
         Source::Term(t, _) => {
             let at = terms.iter().position(|known| *known == t).unwrap_or_else(|| {
@@ -203,9 +205,13 @@ fn measured(e: &model::Expr, declared: &[from::Signal], terms: &mut Vec<Term>) -
             });
             Expr::Var(u16::try_from(at).unwrap_or(u16::MAX))
         }
-        Source::Leaf(Leaf::Signal(id)) => measured(&declared[usize::from(id.0)].value, declared, terms),
+        Source::Leaf(VariableRef::Signal(id)) => {
+            measured(&declared[usize::from(id.0)].value, declared, terms)
+        }
         // INVARIANT: signals have no other variables.
-        Source::Leaf(Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_)) => Expr::bool(false),
+        Source::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
+            Expr::bool(false)
+        }
     })
 }
 
@@ -222,13 +228,15 @@ impl<'s, 'a> Reader<'s, 'a> {
         Self { signals, read: Vec::new(), recorded: true }
     }
 
-    pub fn expr(&mut self, e: &model::Expr) -> Expr {
+    pub fn expr(&mut self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| {
             let at = match source {
                 Source::Term(t, e) => self.signals.of_term(t, e.span),
-                Source::Leaf(Leaf::Signal(id)) => usize::from(id.0),
+                Source::Leaf(VariableRef::Signal(id)) => usize::from(id.0),
                 // INVARIANT: requirements and rules have no other variables.
-                Source::Leaf(Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_)) => return Expr::bool(false),
+                Source::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
+                    return Expr::bool(false);
+                }
             };
             self.signals.list[at].recorded |= self.recorded;
             let id = SignalId(u16::try_from(at).unwrap_or(u16::MAX));

@@ -1,6 +1,6 @@
 //! What the grammar's actions build nodes with: the text, the doc comments, and a place for diagnostics.
 
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::ast::{
     Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, Channel,
@@ -250,7 +250,7 @@ impl<'t> Context<'t> {
             },
             ExprKind::Error => TypeExpr::Error,
             _ => {
-                self.diagnostics.push(Diagnostic::error(Code::SYNTAX, expr.span, "expected a type").help(
+                self.diagnostics.push(Diagnostic::error(DiagnosticCode::SYNTAX, expr.span, "expected a type").help(
                     "a type is a name such as `bool` or `length`, a range `0..4`, an array `bool[4]`, or a list `[0..4]`",
                 ));
                 TypeExpr::Error
@@ -371,7 +371,7 @@ impl<'t> Context<'t> {
     fn once(&mut self, first: bool, what: &str, of: &str, span: Span) {
         if !first {
             self.diagnostics.push(
-                Diagnostic::error(Code::SYNTAX, span, format!("{of} has one {what} at most"))
+                Diagnostic::error(DiagnosticCode::SYNTAX, span, format!("{of} has one {what} at most"))
                     .here("the second")
                     .help("join the two, or take one away"),
             );

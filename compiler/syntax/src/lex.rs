@@ -1,6 +1,6 @@
 //! Text to tokens: comments go, doc comments are kept aside, a number takes the unit after it.
 
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use logos::Logos;
 
 use crate::token::{Class, Kind, Lexeme};
@@ -101,9 +101,13 @@ impl Scan<'_> {
         let end = start + string.trim_end().len();
         let span = Span::new(self.file, start, end.max(start + 1));
         self.diagnostics.push(
-            Diagnostic::error(Code::UNTERMINATED_STRING, span, "the string has no end on this line")
-                .here("starts here")
-                .help("put `\"` at its end; a line break within is written `\\n`"),
+            Diagnostic::error(
+                DiagnosticCode::UNTERMINATED_STRING,
+                span,
+                "the string has no end on this line",
+            )
+            .here("starts here")
+            .help("put `\"` at its end; a line break within is written `\\n`"),
         );
     }
 
@@ -117,8 +121,12 @@ impl Scan<'_> {
             if !matches!(escaped, '"' | '\\' | 'n') {
                 let span = Span::new(self.file, start + at, start + at + 1 + escaped.len_utf8());
                 self.diagnostics.push(
-                    Diagnostic::error(Code::BAD_CHARACTER, span, format!("there is no escape `\\{escaped}`"))
-                        .help("the escapes are `\\\"`, `\\\\` and `\\n`"),
+                    Diagnostic::error(
+                        DiagnosticCode::BAD_CHARACTER,
+                        span,
+                        format!("there is no escape `\\{escaped}`"),
+                    )
+                    .help("the escapes are `\\\"`, `\\\\` and `\\n`"),
                 );
             }
         }
@@ -142,7 +150,7 @@ impl Scan<'_> {
         };
         let span = Span::new(self.file, start, end);
         let mut diagnostic = Diagnostic::error(
-            Code::BAD_CHARACTER,
+            DiagnosticCode::BAD_CHARACTER,
             span,
             format!("the language does not use the character `{shown}`"),
         );
@@ -172,7 +180,7 @@ impl Scan<'_> {
         let marks = start + rest.len() - rest.trim_start_matches('#').len();
         let span = Span::new(self.file, start, marks);
         self.diagnostics.push(
-            Diagnostic::error(Code::BAD_CHARACTER, span, "comments begin with `//`, not with `#`")
+            Diagnostic::error(DiagnosticCode::BAD_CHARACTER, span, "comments begin with `//`, not with `#`")
                 .here("the rest of the line is read as a comment")
                 .help("write `//`")
                 .fix("replace `#` by `//`", span, "//", true),
@@ -197,7 +205,7 @@ impl Scan<'_> {
         let span = Span::new(self.file, start, end);
         self.diagnostics.push(
             Diagnostic::error(
-                Code::BAD_CHARACTER,
+                DiagnosticCode::BAD_CHARACTER,
                 span,
                 format!("`{word}` has letters that a name cannot have"),
             )
@@ -344,7 +352,7 @@ impl Join<'_> {
             } else {
                 "the number is too large to be represented"
             };
-            self.diagnostics.push(Diagnostic::error(Code::BAD_NUMBER, span, message));
+            self.diagnostics.push(Diagnostic::error(DiagnosticCode::BAD_NUMBER, span, message));
             token.kind = Kind::Error;
         }
         self.out.push(token);

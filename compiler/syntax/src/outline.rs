@@ -3,7 +3,7 @@
 //! Missing closing braces are put in where the next declaration or member shows that they are missing, so that the runs
 //! are balanced and a fault in one cannot reach the next.
 
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::heads::{has_its_rest, wants_a_name};
 use crate::report::{found, nearest};
@@ -245,7 +245,7 @@ impl Splitter<'_> {
                 Kind::RBrace => {
                     let span = self.span(token);
                     self.diagnostics.push(
-                        Diagnostic::error(Code::SYNTAX, span, "this `}` closes nothing")
+                        Diagnostic::error(DiagnosticCode::SYNTAX, span, "this `}` closes nothing")
                             .help("take it away, or look for a `{` that is missing before it")
                             .fix("take the `}` away", span, "", false),
                     );
@@ -281,10 +281,14 @@ impl Splitter<'_> {
         let kind = heads.into_iter().find(|k| k.word == near)?.kind;
         let span = self.span(token);
         self.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, format!("expected a declaration, found `{word}`"))
-                .here("no declaration starts with this word")
-                .help(format!("did you mean `{near}`?"))
-                .fix(format!("replace `{word}` by `{near}`"), span, near, false),
+            Diagnostic::error(
+                DiagnosticCode::SYNTAX,
+                span,
+                format!("expected a declaration, found `{word}`"),
+            )
+            .here("no declaration starts with this word")
+            .help(format!("did you mean `{near}`?"))
+            .fix(format!("replace `{word}` by `{near}`"), span, near, false),
         );
         Some(kind)
     }
@@ -296,7 +300,7 @@ impl Splitter<'_> {
         let what = found(token, self.text);
         let span = self.span(token);
         let message = format!("expected a declaration such as `event` or `agent`, found {what}");
-        self.diagnostics.push(Diagnostic::error(Code::SYNTAX, span, message));
+        self.diagnostics.push(Diagnostic::error(DiagnosticCode::SYNTAX, span, message));
     }
 
     fn span(&self, token: Lexeme) -> Span {
@@ -363,7 +367,7 @@ impl Splitter<'_> {
         let place = next.map_or("the end of the file".to_owned(), |t| found(t, self.text));
         let here = next.map_or(Span { file: self.file, start: end, end }, |t| self.span(t));
         let mut diagnostic =
-            Diagnostic::error(Code::SYNTAX, here, format!("{closing} missing before {place}"));
+            Diagnostic::error(DiagnosticCode::SYNTAX, here, format!("{closing} missing before {place}"));
         if let Some(opener) = opener {
             diagnostic = diagnostic.label(self.span(opener), "this `{` is not closed");
         }
@@ -434,7 +438,7 @@ impl Splitter<'_> {
         {
             current.sort = Sort::Unread;
             self.diagnostics.push(
-                Diagnostic::error(Code::TOO_DEEP, span, message)
+                Diagnostic::error(DiagnosticCode::TOO_DEEP, span, message)
                     .help("name parts of it with `const`, or divide it into several declarations"),
             );
         }

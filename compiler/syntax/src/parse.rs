@@ -1,6 +1,6 @@
 //! Text to AST: lexes, splits into declarations, reads each, and hands the broken ones to recovery.
 
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::ast::{File, Item, ItemKind};
 use crate::context::{Context, Unit};
@@ -26,7 +26,7 @@ pub fn parse(file: FileId, text: &str) -> (File, Vec<Diagnostic>) {
 pub(crate) fn read(file: FileId, text: &str) -> (File, Vec<Lexeme>, Vec<Diagnostic>) {
     if text.len() > MAX_BYTES {
         let message = format!("the file is larger than {} MiB", MAX_BYTES >> 20);
-        let diagnostic = Diagnostic::error(Code::TOO_DEEP, Span::new(file, 0, 0), message)
+        let diagnostic = Diagnostic::error(DiagnosticCode::TOO_DEEP, Span::new(file, 0, 0), message)
             .help("divide it into several files");
         return (File::default(), Vec::new(), vec![diagnostic]);
     }
@@ -87,7 +87,7 @@ fn scenario(cx: &mut Context<'_>, tokens: &[Lexeme], chunk: Chunk, result: &mut 
     if result.scenario.is_some() || !result.items.is_empty() {
         let span = cx.span_of(run[0]);
         cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, "`scenario` comes first, and once")
+            Diagnostic::error(DiagnosticCode::SYNTAX, span, "`scenario` comes first, and once")
                 .help("begin the file with this line, or take it away"),
         );
     }

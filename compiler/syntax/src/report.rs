@@ -1,6 +1,6 @@
 //! What did not fit, in words: what was found, what was expected there, and what to type.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use crate::context::Context;
 use crate::token::{Class, KEYWORDS, Keyword, Kind, Lexeme};
@@ -45,7 +45,7 @@ pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], nex
     } else {
         format!("expected {}, found {what}", any_of(&wanted))
     };
-    let mut diagnostic = Diagnostic::error(Code::SYNTAX, span, message);
+    let mut diagnostic = Diagnostic::error(DiagnosticCode::SYNTAX, span, message);
     if let Some(open) = unclosed(fault, tokens) {
         diagnostic = diagnostic.label(cx.span_of(open), "this `(` is not closed");
     }

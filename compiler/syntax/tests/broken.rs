@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use hrdsl_source::{FileId, Files};
+use hrdsl_source::{FileId, SourceFiles};
 use hrdsl_syntax::parse;
 
 fn said(text: &str) -> String {
-    let mut files = Files::default();
+    let mut files = SourceFiles::default();
     let id = files.add("t", text);
     let (_, diagnostics) = parse(FileId(0), text);
     assert!(!diagnostics.is_empty(), "no diagnostic: {text}");

@@ -1,8 +1,8 @@
 //! The belief base: ground facts by name, oldest first, each at most once, with their annotations.
 
 use hrdsl_ir::{
-    Param, Type, Value,
-    bdi::{Agent, Annotation, BeliefId, Fact, source_self},
+    Parameter, Type, Value,
+    bdi::{Agent, BeliefAnnotation, BeliefId, InitialFact, source_self},
     list::same,
 };
 use rustc_hash::FxHashMap;
@@ -12,7 +12,7 @@ use smallvec::{SmallVec, smallvec};
 pub(crate) type Ground = SmallVec<[Value; 4]>;
 
 /// What is said about a fact.
-pub type Annotations = SmallVec<[(Annotation, Value); 1]>;
+pub type Annotations = SmallVec<[(BeliefAnnotation, Value); 1]>;
 
 /// From this many rows on, those with a given first argument are found through a table.
 const INDEXED: usize = 32;
@@ -183,8 +183,10 @@ impl FactTable {
     /// Takes a source away from a row; the fact leaves when that was the last one.
     pub fn withdraw(&mut self, row: usize, source: Value) -> FactWithdrawal {
         let held = &mut self.annotations[row];
-        let is_it = |(what, value): &(Annotation, Value)| *what == Annotation::Source && same(*value, source);
-        let sources = held.iter().filter(|(what, _)| *what == Annotation::Source).count();
+        let is_it = |(what, value): &(BeliefAnnotation, Value)| {
+            *what == BeliefAnnotation::Source && same(*value, source)
+        };
+        let sources = held.iter().filter(|(what, _)| *what == BeliefAnnotation::Source).count();
         if !held.iter().any(is_it) {
             return FactWithdrawal::Nothing;
         }
@@ -292,9 +294,9 @@ impl BeliefBase {
     }
 
     /// All facts, by the order of their declarations, then oldest first.
-    pub fn facts(&self) -> impl Iterator<Item = Fact> {
+    pub fn facts(&self) -> impl Iterator<Item = InitialFact> {
         (0u16..).zip(&self.rows).flat_map(|(id, rows)| {
-            rows.iter().map(move |row| Fact {
+            rows.iter().map(move |row| InitialFact {
                 belief: BeliefId(id),
                 args: rows.row(row).to_vec(),
                 annotations: rows.annotations(row).to_vec(),
@@ -321,20 +323,20 @@ pub(crate) fn own() -> Annotations {
 
 /// `[source(S)]`
 pub(crate) fn from(source: Value) -> Annotations {
-    smallvec![(Annotation::Source, source)]
+    smallvec![(BeliefAnnotation::Source, source)]
 }
 
 /// With `source(self)`, if no source is among them.
 pub(crate) fn sourced(mut annotations: Annotations) -> Annotations {
-    if !annotations.iter().any(|(what, _)| *what == Annotation::Source) {
-        annotations.push((Annotation::Source, Value::Symbol(source_self())));
+    if !annotations.iter().any(|(what, _)| *what == BeliefAnnotation::Source) {
+        annotations.push((BeliefAnnotation::Source, Value::Symbol(source_self())));
     }
     annotations
 }
 
 /// The arguments as the parameters' types have them, an integer made a float where one is due; `None` if their number,
 /// a type or a range is wrong.
-pub(crate) fn typed(params: &[Param], mut args: Ground) -> Option<Ground> {
+pub(crate) fn typed(params: &[Parameter], mut args: Ground) -> Option<Ground> {
     if params.len() != args.len() {
         return None;
     }
@@ -412,8 +414,8 @@ mod tests {
     #[test]
     fn arguments_take_the_types_of_parameters() {
         let params = [
-            Param { name: "a".into(), ty: Type::Float(Unit::Metre) },
-            Param { name: "b".into(), ty: Type::Int { lo: 0, hi: 4 } },
+            Parameter { name: "a".into(), ty: Type::Float(Unit::Metre) },
+            Parameter { name: "b".into(), ty: Type::Int { lo: 0, hi: 4 } },
         ];
         let args = |a, b| Ground::from_slice(&[a, b]);
         assert_eq!(
@@ -424,7 +426,7 @@ mod tests {
         assert_eq!(typed(&params, args(Value::Bool(true), Value::Int(1))), None);
         assert_eq!(typed(&params, Ground::from_slice(&[Value::Int(1)])), None);
         let hand = Type::Enum(Enumeration::intern("Hand", &["left", "right"]));
-        let params = [Param { name: "hand".into(), ty: hand }];
+        let params = [Parameter { name: "hand".into(), ty: hand }];
         let arg = |name| Ground::from_slice(&[Value::Symbol(Symbol::intern(name))]);
         assert_eq!(typed(&params, arg("left")), Some(arg("left")));
         assert_eq!(typed(&params, arg("middle")), None);

@@ -1,6 +1,6 @@
 //! Steps with blocks: `if`, `while`, `for`, `fork`.
 
-use hrdsl_ir::bdi::Context;
+use hrdsl_ir::bdi::PlanContext;
 use smallvec::SmallVec;
 
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
 
 impl<'p> AgentMachine<'p> {
     /// The first answer's bindings become the plan's.
-    pub fn holds(&mut self, place: u32, condition: &'p Context) -> Result<bool, FailureCause> {
+    pub fn holds(&mut self, place: u32, condition: &'p PlanContext) -> Result<bool, FailureCause> {
         self.solver.with(self.mind.pool.see(place).vars());
         let holds = self.solver.solve(&self.mind, &mut self.dice, condition)?;
         if holds {
@@ -28,7 +28,7 @@ impl<'p> AgentMachine<'p> {
     pub fn branch(
         &mut self,
         here: StepLocation,
-        condition: &'p Context,
+        condition: &'p PlanContext,
         otherwise: u16,
     ) -> Result<StepFlow, FailureCause> {
         if !self.decide(here, condition)? {
@@ -38,7 +38,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The condition of a block; whether it holds is in the log.
-    fn decide(&mut self, here: StepLocation, condition: &'p Context) -> Result<bool, FailureCause> {
+    fn decide(&mut self, here: StepLocation, condition: &'p PlanContext) -> Result<bool, FailureCause> {
         let holds = self.holds(here.place, condition);
         self.done(here, holds.as_ref().map_or(StepOutcome::Faulty, |h| StepOutcome::Holds(*h)));
         holds
@@ -63,7 +63,7 @@ impl<'p> AgentMachine<'p> {
     pub fn again(
         &mut self,
         here: StepLocation,
-        condition: &'p Context,
+        condition: &'p PlanContext,
         end: u16,
     ) -> Result<StepFlow, FailureCause> {
         self.reopen(here.place);
@@ -77,7 +77,7 @@ impl<'p> AgentMachine<'p> {
     pub fn each_answer(
         &mut self,
         here: StepLocation,
-        condition: &'p Context,
+        condition: &'p PlanContext,
         variables: &[u16],
     ) -> Result<StepFlow, FailureCause> {
         self.solver.with(self.mind.pool.see(here.place).vars());
@@ -101,7 +101,7 @@ impl<'p> AgentMachine<'p> {
     /// How many answers there are, and the values of these variables in each.
     fn all_answers(
         &mut self,
-        condition: &'p Context,
+        condition: &'p PlanContext,
         open: &[u16],
     ) -> Result<(usize, Vec<Slot>), FailureCause> {
         let mut answers = Vec::new();
@@ -116,7 +116,7 @@ impl<'p> AgentMachine<'p> {
                 break;
             }
             // A condition that is only tested is answered without a search.
-            found = !matches!(condition, Context::True | Context::Test(_))
+            found = !matches!(condition, PlanContext::True | PlanContext::Test(_))
                 && self.solver.again(&self.mind, &mut self.dice)?;
         }
         Ok((count, answers))

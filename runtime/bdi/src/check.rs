@@ -6,8 +6,8 @@ use std::fmt;
 use hrdsl_ir::{
     EventId, Expr, Program,
     bdi::{
-        Agent, AgentId, Annotation, Assertion, BeliefId, ContentId, Context, GoalId, Internal, Literal, Plan,
-        Rule, Step, StepKind, Term, TriggerOn, each_step,
+        Agent, AgentId, AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, BeliefRule,
+        ContentId, GoalId, InternalAct, Plan, PlanContext, PlanStep, PlanStepKind, TriggerOn, each_step,
     },
 };
 
@@ -67,7 +67,7 @@ pub(crate) fn agent(program: &Program, id: AgentId) -> Result<&Agent, MalformedA
 }
 
 /// Whether a formula of the agent's, with so many variables, can be asked.
-pub(crate) fn formula(program: &Program, agent: &Agent, formula: &Context, vars: usize) -> bool {
+pub(crate) fn formula(program: &Program, agent: &Agent, formula: &PlanContext, vars: usize) -> bool {
     AgentCheck { program, agent }.context(formula, vars)
 }
 
@@ -110,12 +110,12 @@ impl AgentCheck<'_> {
         self.steps(&plan.body, vars)
     }
 
-    fn rule(&self, rule: &Rule) -> bool {
+    fn rule(&self, rule: &BeliefRule) -> bool {
         let vars = rule.vars.len();
         self.belief(rule.belief, rule.args.len()) && terms(&rule.args, vars) && self.context(&rule.body, vars)
     }
 
-    fn literal(&self, literal: &Literal, vars: usize) -> bool {
+    fn literal(&self, literal: &BeliefLiteral, vars: usize) -> bool {
         let annotations = literal.annotations.iter();
         self.belief(literal.belief, literal.args.len())
             && terms(&literal.args, vars)
@@ -124,10 +124,10 @@ impl AgentCheck<'_> {
                 .all(|(what, t)| self.annotation(literal.belief, *what) && term(t, vars))
     }
 
-    fn annotation(&self, belief: BeliefId, what: Annotation) -> bool {
+    fn annotation(&self, belief: BeliefId, what: BeliefAnnotation) -> bool {
         match what {
-            Annotation::Source => true,
-            Annotation::Declared(at) => {
+            BeliefAnnotation::Source => true,
+            BeliefAnnotation::Declared(at) => {
                 let declared = self.agent.beliefs.get(usize::from(belief.0)).map(|b| b.annotations.len());
                 declared.is_some_and(|n| usize::from(at) < n)
             }
@@ -141,68 +141,72 @@ impl AgentCheck<'_> {
             && annotations.all(|(what, e)| self.annotation(assertion.belief, *what) && variables(e, vars))
     }
 
-    fn context(&self, context: &Context, vars: usize) -> bool {
+    fn context(&self, context: &PlanContext, vars: usize) -> bool {
         match context {
-            Context::True => true,
-            Context::Belief(literal) => self.literal(literal, vars),
-            Context::Not(inner) => self.context(inner, vars),
-            Context::And(all) | Context::Or(all) => all.iter().all(|c| self.context(c, vars)),
-            Context::Test(expr) => variables(expr, vars),
-            Context::Unify(t, expr) => term(t, vars) && variables(expr, vars),
-            Context::Internal(internal, _) => self.internal(internal, vars),
+            PlanContext::True => true,
+            PlanContext::Belief(literal) => self.literal(literal, vars),
+            PlanContext::Not(inner) => self.context(inner, vars),
+            PlanContext::And(all) | PlanContext::Or(all) => all.iter().all(|c| self.context(c, vars)),
+            PlanContext::Test(expr) => variables(expr, vars),
+            PlanContext::Unify(t, expr) => term(t, vars) && variables(expr, vars),
+            PlanContext::Internal(internal, _) => self.internal(internal, vars),
         }
     }
 
-    fn internal(&self, internal: &Internal, vars: usize) -> bool {
+    fn internal(&self, internal: &InternalAct, vars: usize) -> bool {
         match internal {
-            Internal::FindAll { template, formula, out, .. } => {
+            InternalAct::FindAll { template, formula, out, .. } => {
                 variables(template, vars) && self.context(formula, vars) && term(out, vars)
             }
-            Internal::Count { formula, out } => self.context(formula, vars) && term(out, vars),
-            Internal::Member { element, list } => term(element, vars) && variables(list, vars),
-            Internal::Apply { args, out, .. } => exprs(args, vars) && term(out, vars),
-            Internal::Holds { args, .. } => exprs(args, vars),
-            Internal::Intend { goal, args }
-            | Internal::Desire { goal, args }
-            | Internal::Suspended { goal, args } => self.goal(*goal, args.len()) && terms(args, vars),
-            Internal::Random { from, out } => from.iter().all(|e| variables(e, vars)) && term(out, vars),
-            Internal::Shuffle { list, out } => variables(list, vars) && term(out, vars),
-            Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => term(out, vars),
+            InternalAct::Count { formula, out } => self.context(formula, vars) && term(out, vars),
+            InternalAct::Member { element, list } => term(element, vars) && variables(list, vars),
+            InternalAct::Apply { args, out, .. } => exprs(args, vars) && term(out, vars),
+            InternalAct::Holds { args, .. } => exprs(args, vars),
+            InternalAct::Intend { goal, args }
+            | InternalAct::Desire { goal, args }
+            | InternalAct::Suspended { goal, args } => self.goal(*goal, args.len()) && terms(args, vars),
+            InternalAct::Random { from, out } => from.iter().all(|e| variables(e, vars)) && term(out, vars),
+            InternalAct::Shuffle { list, out } => variables(list, vars) && term(out, vars),
+            InternalAct::Time { out } | InternalAct::MyName { out } | InternalAct::AllNames { out } => {
+                term(out, vars)
+            }
         }
     }
 
-    fn steps(&self, steps: &[Step], vars: usize) -> Result<(), &'static str> {
+    fn steps(&self, steps: &[PlanStep], vars: usize) -> Result<(), &'static str> {
         let mut all = true;
         each_step(steps, &mut |step| all = all && self.step(&step.kind, vars));
         sound(all, "step")
     }
 
     /// A step by itself; those in its blocks are seen to one by one.
-    fn step(&self, step: &StepKind, vars: usize) -> bool {
+    fn step(&self, step: &PlanStepKind, vars: usize) -> bool {
         let maybe = |e: &Option<Expr>| e.iter().all(|e| variables(e, vars));
         let content = |id: ContentId| usize::from(id.0) < self.program.contents.len();
         match step {
-            StepKind::Do { event, args } => self.event(*event, args.len()) && exprs(args, vars),
-            StepKind::Achieve { goal, args, within } => {
+            PlanStepKind::Do { event, args } => self.event(*event, args.len()) && exprs(args, vars),
+            PlanStepKind::Achieve { goal, args, within } => {
                 self.goal(*goal, args.len()) && exprs(args, vars) && maybe(within)
             }
-            StepKind::Spawn { goal, args } => self.goal(*goal, args.len()) && exprs(args, vars),
-            StepKind::Query(l) | StepKind::Remove(l) | StepKind::Abolish(l) => self.literal(l, vars),
-            StepKind::Add(a) | StepKind::Replace(a) => self.assertion(a, vars),
-            StepKind::Await { events, within } => {
+            PlanStepKind::Spawn { goal, args } => self.goal(*goal, args.len()) && exprs(args, vars),
+            PlanStepKind::Query(l) | PlanStepKind::Remove(l) | PlanStepKind::Abolish(l) => {
+                self.literal(l, vars)
+            }
+            PlanStepKind::Add(a) | PlanStepKind::Replace(a) => self.assertion(a, vars),
+            PlanStepKind::Await { events, within } => {
                 events.iter().all(|e| self.event(e.event, e.args.len())) && maybe(within)
             }
-            StepKind::Wait { seconds } => variables(seconds, vars),
-            StepKind::Test(condition)
-            | StepKind::If { condition, .. }
-            | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } => self.context(condition, vars),
-            StepKind::Fork { branches, .. } => !branches.is_empty(),
-            StepKind::Send { to, content: c, args, .. } => content(*c) && maybe(to) && terms(args, vars),
-            StepKind::Ask { to, content: c, args, within } => {
+            PlanStepKind::Wait { seconds } => variables(seconds, vars),
+            PlanStepKind::Test(condition)
+            | PlanStepKind::If { condition, .. }
+            | PlanStepKind::While { condition, .. }
+            | PlanStepKind::For { condition, .. } => self.context(condition, vars),
+            PlanStepKind::Fork { branches, .. } => !branches.is_empty(),
+            PlanStepKind::Send { to, content: c, args, .. } => content(*c) && maybe(to) && terms(args, vars),
+            PlanStepKind::Ask { to, content: c, args, within } => {
                 content(*c) && variables(to, vars) && terms(args, vars) && maybe(within)
             }
-            StepKind::AskAll { to, template, content: c, args, out, within } => {
+            PlanStepKind::AskAll { to, template, content: c, args, out, within } => {
                 content(*c)
                     && variables(to, vars)
                     && variables(template, vars)
@@ -210,11 +214,11 @@ impl AgentCheck<'_> {
                     && term(out, vars)
                     && maybe(within)
             }
-            StepKind::Print { args } => exprs(args, vars),
-            StepKind::Control { goal, .. } => {
+            PlanStepKind::Print { args } => exprs(args, vars),
+            PlanStepKind::Control { goal, .. } => {
                 goal.iter().all(|(g, args)| self.goal(*g, args.len()) && terms(args, vars))
             }
-            StepKind::Fail => true,
+            PlanStepKind::Fail => true,
         }
     }
 }
@@ -223,16 +227,16 @@ fn exprs(all: &[Expr], vars: usize) -> bool {
     all.iter().all(|e| variables(e, vars))
 }
 
-fn terms(terms: &[Term], vars: usize) -> bool {
+fn terms(terms: &[AgentTerm], vars: usize) -> bool {
     terms.iter().all(|t| term(t, vars))
 }
 
-fn term(of: &Term, vars: usize) -> bool {
+fn term(of: &AgentTerm, vars: usize) -> bool {
     match of {
-        Term::Any => true,
-        Term::Var(var) => usize::from(*var) < vars,
-        Term::Expr(expr) => variables(expr, vars),
-        Term::List(items, rest) => terms(items, vars) && rest.iter().all(|t| term(t, vars)),
+        AgentTerm::Any => true,
+        AgentTerm::Var(var) => usize::from(*var) < vars,
+        AgentTerm::Expr(expr) => variables(expr, vars),
+        AgentTerm::List(items, rest) => terms(items, vars) && rest.iter().all(|t| term(t, vars)),
     }
 }
 

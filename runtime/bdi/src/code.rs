@@ -2,17 +2,17 @@
 
 use hrdsl_ir::{
     Expr, Span,
-    bdi::{Context, Internal, Step, StepKind, Term},
+    bdi::{AgentTerm, InternalAct, PlanContext, PlanStep, PlanStepKind},
 };
 
 /// What one line does.
 #[derive(Clone, Debug)]
 pub(crate) enum PlanOp<'p> {
     /// A step without blocks.
-    Plain(&'p StepKind),
+    Plain(&'p PlanStepKind),
     /// `if`: to the line if the condition has no answer
     Branch {
-        condition: &'p Context,
+        condition: &'p PlanContext,
         otherwise: u16,
     },
     Jump(u16),
@@ -20,12 +20,12 @@ pub(crate) enum PlanOp<'p> {
     Enter(Box<[u16]>),
     /// `while`: to the line behind if the condition has no answer
     While {
-        condition: &'p Context,
+        condition: &'p PlanContext,
         end: u16,
     },
     /// `for`: all answers are taken
     For {
-        condition: &'p Context,
+        condition: &'p PlanContext,
         variables: Box<[u16]>,
     },
     /// The next answer, or to the line behind.
@@ -54,7 +54,7 @@ pub(crate) struct PlanLine<'p> {
 }
 
 /// The body as lines; `None` if there are more than can be counted.
-pub(crate) fn compile(body: &[Step]) -> Option<Vec<PlanLine<'_>>> {
+pub(crate) fn compile(body: &[PlanStep]) -> Option<Vec<PlanLine<'_>>> {
     let mut code = PlanCompiler { lines: Vec::new(), site: 0 };
     code.steps(body);
     let mut lines = code.lines;
@@ -82,15 +82,15 @@ impl<'p> PlanCompiler<'p> {
         self.lines.len() - 1
     }
 
-    fn steps(&mut self, steps: &'p [Step]) {
+    fn steps(&mut self, steps: &'p [PlanStep]) {
         steps.iter().for_each(|step| self.step(step));
     }
 
-    fn step(&mut self, step: &'p Step) {
+    fn step(&mut self, step: &'p PlanStep) {
         let (site, origin) = (self.site, step.origin);
         self.site = self.site.saturating_add(1);
         match &step.kind {
-            StepKind::If { condition, then, otherwise } => {
+            PlanStepKind::If { condition, then, otherwise } => {
                 let test = self.line(PlanOp::Branch { condition, otherwise: 0 }, site, origin);
                 self.steps(then);
                 let skip = (!otherwise.is_empty()).then(|| self.line(PlanOp::Jump(0), site, origin));
@@ -100,14 +100,14 @@ impl<'p> PlanCompiler<'p> {
                     self.lines[skip].op = PlanOp::Jump(self.here());
                 }
             }
-            StepKind::While { condition, body } => {
+            PlanStepKind::While { condition, body } => {
                 self.line(PlanOp::Enter(variables(condition, body)), site, origin);
                 let test = self.line(PlanOp::While { condition, end: 0 }, site, origin);
                 self.steps(body);
                 self.line(PlanOp::Jump(test as u16), site, origin);
                 self.lines[test].op = PlanOp::While { condition, end: self.here() };
             }
-            StepKind::For { condition, body } => {
+            PlanStepKind::For { condition, body } => {
                 let variables = variables(condition, body);
                 self.line(PlanOp::For { condition, variables }, site, origin);
                 let next = self.line(PlanOp::Next { end: 0 }, site, origin);
@@ -115,7 +115,7 @@ impl<'p> PlanCompiler<'p> {
                 self.line(PlanOp::Jump(next as u16), site, origin);
                 self.lines[next].op = PlanOp::Next { end: self.here() };
             }
-            StepKind::Fork { branches, all } => {
+            PlanStepKind::Fork { branches, all } => {
                 let fork = self.line(PlanOp::Join, site, origin);
                 let mut starts = Vec::new();
                 for branch in branches {
@@ -126,23 +126,23 @@ impl<'p> PlanCompiler<'p> {
                 let end = self.here();
                 self.lines[fork].op = PlanOp::Fork { branches: starts.into(), all: *all, end };
             }
-            StepKind::Do { .. }
-            | StepKind::Achieve { .. }
-            | StepKind::Spawn { .. }
-            | StepKind::Query(_)
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => {
+            PlanStepKind::Do { .. }
+            | PlanStepKind::Achieve { .. }
+            | PlanStepKind::Spawn { .. }
+            | PlanStepKind::Query(_)
+            | PlanStepKind::Test(_)
+            | PlanStepKind::Add(_)
+            | PlanStepKind::Remove(_)
+            | PlanStepKind::Replace(_)
+            | PlanStepKind::Abolish(_)
+            | PlanStepKind::Await { .. }
+            | PlanStepKind::Wait { .. }
+            | PlanStepKind::Send { .. }
+            | PlanStepKind::Ask { .. }
+            | PlanStepKind::AskAll { .. }
+            | PlanStepKind::Print { .. }
+            | PlanStepKind::Control { .. }
+            | PlanStepKind::Fail => {
                 self.line(PlanOp::Plain(&step.kind), site, origin);
             }
         }
@@ -158,7 +158,7 @@ pub(crate) fn settle(code: &[PlanLine], mut at: u16) -> u16 {
 }
 
 /// All variables that a loop's condition or body has.
-fn variables(condition: &Context, body: &[Step]) -> Box<[u16]> {
+fn variables(condition: &PlanContext, body: &[PlanStep]) -> Box<[u16]> {
     let mut found = Vec::new();
     let mut add = |v: u16| {
         if !found.contains(&v) {
@@ -171,17 +171,17 @@ fn variables(condition: &Context, body: &[Step]) -> Box<[u16]> {
     found.into()
 }
 
-fn each_in_terms(terms: &[Term], f: &mut dyn FnMut(u16)) {
+fn each_in_terms(terms: &[AgentTerm], f: &mut dyn FnMut(u16)) {
     terms.iter().for_each(|t| each_in_term(t, f));
 }
 
 /// Calls `f` with each variable of a term.
-pub(crate) fn each_in_term(term: &Term, f: &mut dyn FnMut(u16)) {
+pub(crate) fn each_in_term(term: &AgentTerm, f: &mut dyn FnMut(u16)) {
     match term {
-        Term::Any => {}
-        Term::Var(v) => f(*v),
-        Term::Expr(e) => e.each_var(f),
-        Term::List(items, rest) => {
+        AgentTerm::Any => {}
+        AgentTerm::Var(v) => f(*v),
+        AgentTerm::Expr(e) => e.each_var(f),
+        AgentTerm::List(items, rest) => {
             each_in_terms(items, f);
             rest.iter().for_each(|r| each_in_term(r, f));
         }
@@ -189,101 +189,105 @@ pub(crate) fn each_in_term(term: &Term, f: &mut dyn FnMut(u16)) {
 }
 
 /// Calls `f` with each variable of a formula, also of those that are open outside.
-pub(crate) fn each_in_context(context: &Context, f: &mut dyn FnMut(u16)) {
+pub(crate) fn each_in_context(context: &PlanContext, f: &mut dyn FnMut(u16)) {
     match context {
-        Context::True => {}
-        Context::Belief(literal) => {
+        PlanContext::True => {}
+        PlanContext::Belief(literal) => {
             each_in_terms(&literal.args, f);
             literal.annotations.iter().for_each(|(_, t)| each_in_term(t, f));
         }
-        Context::Not(inner) => each_in_context(inner, f),
-        Context::And(all) | Context::Or(all) => all.iter().for_each(|c| each_in_context(c, f)),
-        Context::Test(e) => e.each_var(f),
-        Context::Unify(term, e) => {
+        PlanContext::Not(inner) => each_in_context(inner, f),
+        PlanContext::And(all) | PlanContext::Or(all) => all.iter().for_each(|c| each_in_context(c, f)),
+        PlanContext::Test(e) => e.each_var(f),
+        PlanContext::Unify(term, e) => {
             each_in_term(term, f);
             e.each_var(f);
         }
-        Context::Internal(internal, _) => each_in_internal(internal, f),
+        PlanContext::Internal(internal, _) => each_in_internal(internal, f),
     }
 }
 
-fn each_in_internal(internal: &Internal, f: &mut dyn FnMut(u16)) {
+fn each_in_internal(internal: &InternalAct, f: &mut dyn FnMut(u16)) {
     match internal {
-        Internal::FindAll { template, formula, out, .. } => {
+        InternalAct::FindAll { template, formula, out, .. } => {
             template.each_var(f);
             each_in_context(formula, f);
             each_in_term(out, f);
         }
-        Internal::Count { formula, out } => {
+        InternalAct::Count { formula, out } => {
             each_in_context(formula, f);
             each_in_term(out, f);
         }
-        Internal::Member { element, list } => {
+        InternalAct::Member { element, list } => {
             each_in_term(element, f);
             list.each_var(f);
         }
-        Internal::Apply { args, out, .. } => {
+        InternalAct::Apply { args, out, .. } => {
             args.iter().for_each(|a| a.each_var(f));
             each_in_term(out, f);
         }
-        Internal::Holds { args, .. } => args.iter().for_each(|a| a.each_var(f)),
-        Internal::Intend { args, .. } | Internal::Desire { args, .. } | Internal::Suspended { args, .. } => {
+        InternalAct::Holds { args, .. } => args.iter().for_each(|a| a.each_var(f)),
+        InternalAct::Intend { args, .. }
+        | InternalAct::Desire { args, .. }
+        | InternalAct::Suspended { args, .. } => {
             each_in_terms(args, f);
         }
-        Internal::Random { from, out } => {
+        InternalAct::Random { from, out } => {
             from.iter().for_each(|e| e.each_var(f));
             each_in_term(out, f);
         }
-        Internal::Shuffle { list, out } => {
+        InternalAct::Shuffle { list, out } => {
             list.each_var(f);
             each_in_term(out, f);
         }
-        Internal::Time { out } | Internal::MyName { out } | Internal::AllNames { out } => {
+        InternalAct::Time { out } | InternalAct::MyName { out } | InternalAct::AllNames { out } => {
             each_in_term(out, f)
         }
     }
 }
 
 /// Calls `f` with each variable of a step, but not of the steps in its blocks.
-pub(crate) fn each_in_step(step: &StepKind, f: &mut dyn FnMut(u16)) {
+pub(crate) fn each_in_step(step: &PlanStepKind, f: &mut dyn FnMut(u16)) {
     let exprs = |all: &[Expr], f: &mut dyn FnMut(u16)| all.iter().for_each(|e| e.each_var(f));
     match step {
-        StepKind::Do { args, .. } | StepKind::Spawn { args, .. } | StepKind::Print { args } => exprs(args, f),
-        StepKind::Achieve { args, within, .. } => {
+        PlanStepKind::Do { args, .. } | PlanStepKind::Spawn { args, .. } | PlanStepKind::Print { args } => {
+            exprs(args, f)
+        }
+        PlanStepKind::Achieve { args, within, .. } => {
             exprs(args, f);
             within.iter().for_each(|e| e.each_var(f));
         }
-        StepKind::Query(literal) | StepKind::Remove(literal) | StepKind::Abolish(literal) => {
+        PlanStepKind::Query(literal) | PlanStepKind::Remove(literal) | PlanStepKind::Abolish(literal) => {
             each_in_terms(&literal.args, f);
             literal.annotations.iter().for_each(|(_, t)| each_in_term(t, f));
         }
-        StepKind::Add(assertion) | StepKind::Replace(assertion) => {
+        PlanStepKind::Add(assertion) | PlanStepKind::Replace(assertion) => {
             exprs(&assertion.args, f);
             assertion.annotations.iter().for_each(|(_, e)| e.each_var(f));
         }
-        StepKind::Test(condition)
-        | StepKind::If { condition, .. }
-        | StepKind::While { condition, .. }
-        | StepKind::For { condition, .. } => each_in_context(condition, f),
-        StepKind::Await { within, .. } => within.iter().for_each(|e| e.each_var(f)),
-        StepKind::Wait { seconds } => seconds.each_var(f),
-        StepKind::Send { to, args, .. } => {
+        PlanStepKind::Test(condition)
+        | PlanStepKind::If { condition, .. }
+        | PlanStepKind::While { condition, .. }
+        | PlanStepKind::For { condition, .. } => each_in_context(condition, f),
+        PlanStepKind::Await { within, .. } => within.iter().for_each(|e| e.each_var(f)),
+        PlanStepKind::Wait { seconds } => seconds.each_var(f),
+        PlanStepKind::Send { to, args, .. } => {
             to.iter().for_each(|e| e.each_var(f));
             each_in_terms(args, f);
         }
-        StepKind::Ask { to, args, within, .. } => {
+        PlanStepKind::Ask { to, args, within, .. } => {
             to.each_var(f);
             each_in_terms(args, f);
             within.iter().for_each(|e| e.each_var(f));
         }
-        StepKind::AskAll { to, template, args, out, within, .. } => {
+        PlanStepKind::AskAll { to, template, args, out, within, .. } => {
             to.each_var(f);
             template.each_var(f);
             each_in_terms(args, f);
             each_in_term(out, f);
             within.iter().for_each(|e| e.each_var(f));
         }
-        StepKind::Control { goal, .. } => goal.iter().for_each(|(_, args)| each_in_terms(args, f)),
-        StepKind::Fork { .. } | StepKind::Fail => {}
+        PlanStepKind::Control { goal, .. } => goal.iter().for_each(|(_, args)| each_in_terms(args, f)),
+        PlanStepKind::Fork { .. } | PlanStepKind::Fail => {}
     }
 }

@@ -1,6 +1,6 @@
 //! Internal actions that change what is intended: dropping, suspending, ending goals.
 
-use hrdsl_ir::bdi::{Control, GoalId, Term, TriggerOn};
+use hrdsl_ir::bdi::{AgentTerm, ControlAct, GoalId, TriggerOn};
 
 use crate::{
     cycle::AgentMachine,
@@ -17,8 +17,8 @@ impl AgentMachine<'_> {
     pub fn control(
         &mut self,
         place: u32,
-        what: Control,
-        goal: Option<&(GoalId, Vec<Term>)>,
+        what: ControlAct,
+        goal: Option<&(GoalId, Vec<AgentTerm>)>,
     ) -> Result<StepFlow, FailureCause> {
         let before = self.touched;
         match goal {
@@ -41,17 +41,17 @@ impl AgentMachine<'_> {
     }
 
     /// Without a goal: of all others, or of the intention itself.
-    fn control_all(&mut self, place: u32, what: Control) {
+    fn control_all(&mut self, place: u32, what: ControlAct) {
         match what {
-            Control::DropIntention => self.drop_others(place),
-            Control::DropDesire => {
+            ControlAct::DropIntention => self.drop_others(place),
+            ControlAct::DropDesire => {
                 self.drop_events(&|e| matches!(e.on, TriggerOn::GoalAdded(_)));
                 self.drop_others(place);
             }
-            Control::DropEvent => self.drop_events(&|_| true),
-            Control::Suspend => self.mind.pool.at(place).suspended = true,
+            ControlAct::DropEvent => self.drop_events(&|_| true),
+            ControlAct::Suspend => self.mind.pool.at(place).suspended = true,
             // The checker refuses these without a goal.
-            Control::SucceedGoal | Control::FailGoal | Control::Resume => {}
+            ControlAct::SucceedGoal | ControlAct::FailGoal | ControlAct::Resume => {}
         }
     }
 
@@ -68,16 +68,16 @@ impl AgentMachine<'_> {
         }
     }
 
-    pub fn control_goal(&mut self, what: Control, goal: GoalId, args: &[Slot]) {
+    pub fn control_goal(&mut self, what: ControlAct, goal: GoalId, args: &[Slot]) {
         let is_this = |e: &QueuedEvent| e.on == TriggerOn::GoalAdded(goal) && agree(&e.args, args);
         match what {
-            Control::DropEvent => return self.drop_events(&is_this),
-            Control::DropDesire => self.drop_events(&is_this),
-            Control::DropIntention
-            | Control::SucceedGoal
-            | Control::FailGoal
-            | Control::Suspend
-            | Control::Resume => {}
+            ControlAct::DropEvent => return self.drop_events(&is_this),
+            ControlAct::DropDesire => self.drop_events(&is_this),
+            ControlAct::DropIntention
+            | ControlAct::SucceedGoal
+            | ControlAct::FailGoal
+            | ControlAct::Suspend
+            | ControlAct::Resume => {}
         }
         let numbered = self.numbered();
         let has = numbered.into_iter().filter_map(|(place, number)| {
@@ -88,12 +88,12 @@ impl AgentMachine<'_> {
                 continue;
             }
             match what {
-                Control::DropIntention | Control::DropDesire => self.drop_one(place),
-                Control::SucceedGoal => self.succeed(place, frame),
-                Control::FailGoal => self.fail_goal(place, frame),
-                Control::Suspend => self.suspend(place),
-                Control::Resume => self.wake(place),
-                Control::DropEvent => {}
+                ControlAct::DropIntention | ControlAct::DropDesire => self.drop_one(place),
+                ControlAct::SucceedGoal => self.succeed(place, frame),
+                ControlAct::FailGoal => self.fail_goal(place, frame),
+                ControlAct::Suspend => self.suspend(place),
+                ControlAct::Resume => self.wake(place),
+                ControlAct::DropEvent => {}
             }
         }
     }

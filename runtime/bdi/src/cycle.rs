@@ -7,7 +7,7 @@ use std::{
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Span, Value,
-    bdi::{AgentId, BeliefId, Fact, TriggerOn, source_percept},
+    bdi::{AgentId, BeliefId, InitialFact, TriggerOn, source_percept},
     list::same,
 };
 
@@ -90,7 +90,7 @@ impl<'p> AgentMachine<'p> {
     pub fn new(
         program: &'p Program,
         id: AgentId,
-        chosen: &[Fact],
+        chosen: &[InitialFact],
         place: u16,
         peers: &Arc<PeerTable>,
         seed: u64,
@@ -130,7 +130,7 @@ impl<'p> AgentMachine<'p> {
         machine
     }
 
-    fn start(&mut self, chosen: &[Fact]) {
+    fn start(&mut self, chosen: &[InitialFact]) {
         let Some(agent) = self.mind.agent else { return };
         for fact in agent.initial_beliefs.iter().chain(chosen) {
             let declared = agent.beliefs.get(usize::from(fact.belief.0));

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program, Value,
-    bdi::{Agent, Annotation, BeliefId, ContentId, Context, GoalId, TriggerOn},
+    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, PlanContext, TriggerOn},
     expr::EvalError,
 };
 
@@ -151,9 +151,9 @@ impl LogNames<'_, '_> {
 
     fn annotations(&self, belief: BeliefId, all: &Annotations) -> String {
         let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
-        let one = |(what, value): &(Annotation, Value)| match what {
-            Annotation::Source => format!("source({value})"),
-            Annotation::Declared(at) => {
+        let one = |(what, value): &(BeliefAnnotation, Value)| match what {
+            BeliefAnnotation::Source => format!("source({value})"),
+            BeliefAnnotation::Declared(at) => {
                 format!("{}({value})", declared.get(usize::from(*at)).map_or("?", |p| &p.name))
             }
         };
@@ -181,7 +181,7 @@ impl LogNames<'_, '_> {
             ApplicabilityVerdict::Applicable => format!("{label} is applicable"),
             ApplicabilityVerdict::False { part } => {
                 let plan = &self.agent.plans[usize::from(plan)];
-                let parts = if let Context::And(all) = &plan.context { all.get(part) } else { None };
+                let parts = if let PlanContext::And(all) = &plan.context { all.get(part) } else { None };
                 let context = parts.unwrap_or(&plan.context);
                 // What the event says is known; what the parts before found is not, and need not be the same each time.
                 let mut slots = vec![None; plan.vars.len()];

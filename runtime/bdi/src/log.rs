@@ -4,7 +4,7 @@ use std::fmt;
 
 use hrdsl_ir::{
     EventId, Nanos, Span, Symbol, Value,
-    bdi::{Annotation, BeliefId, ContentId, Performative, TriggerOn},
+    bdi::{BeliefAnnotation, BeliefId, ContentId, Performative, TriggerOn},
     expr::EvalError,
 };
 
@@ -288,6 +288,6 @@ pub(crate) struct ReasoningLog {
 
 /// The sources among annotations.
 pub(crate) fn sources(annotations: &Annotations) -> Vec<Value> {
-    let sources = annotations.iter().filter(|(what, _)| *what == Annotation::Source);
+    let sources = annotations.iter().filter(|(what, _)| *what == BeliefAnnotation::Source);
     sources.map(|(_, value)| *value).collect()
 }

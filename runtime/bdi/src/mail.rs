@@ -3,8 +3,8 @@
 use hrdsl_ir::{
     Expr, List, Span, Symbol, Value,
     bdi::{
-        BeliefId, ContentId, Control, GoalId, Literal, Performative, StepKind, Subject, Term, TriggerOn,
-        source_self,
+        AgentTerm, BeliefId, BeliefLiteral, ContentId, ControlAct, GoalId, MessageSubject, Performative,
+        PlanStepKind, TriggerOn, source_self,
     },
     expr::EvalError,
     list::same,
@@ -35,7 +35,7 @@ fn is_of_goal(performative: Performative) -> bool {
 
 impl<'p> AgentMachine<'p> {
     /// What the content is to the agent at this place.
-    fn subject(&self, content: ContentId, place: u16) -> Option<Subject> {
+    fn subject(&self, content: ContentId, place: u16) -> Option<MessageSubject> {
         let (_, id) = self.mind.me.peers.agents.get(usize::from(place))?;
         let content = self.mind.program.contents.get(usize::from(content.0))?;
         content.of.get(usize::from(id.0)).copied().flatten()
@@ -43,15 +43,15 @@ impl<'p> AgentMachine<'p> {
 
     fn belief(&self, content: ContentId) -> Option<BeliefId> {
         match self.subject(content, self.mind.me.place)? {
-            Subject::Belief(belief) => Some(belief),
-            Subject::Goal(_) => None,
+            MessageSubject::Belief(belief) => Some(belief),
+            MessageSubject::Goal(_) => None,
         }
     }
 
     fn goal(&self, content: ContentId) -> Option<GoalId> {
         match self.subject(content, self.mind.me.place)? {
-            Subject::Goal(goal) => Some(goal),
-            Subject::Belief(_) => None,
+            MessageSubject::Goal(goal) => Some(goal),
+            MessageSubject::Belief(_) => None,
         }
     }
 
@@ -74,11 +74,11 @@ impl<'p> AgentMachine<'p> {
         to: Option<&Expr>,
         performative: Performative,
         content: ContentId,
-        args: &[Term],
+        args: &[AgentTerm],
     ) -> Result<StepFlow, FailureCause> {
-        let suits = |subject: Option<Subject>| match subject {
-            Some(Subject::Goal(_)) => is_of_goal(performative),
-            Some(Subject::Belief(_)) => !is_of_goal(performative),
+        let suits = |subject: Option<MessageSubject>| match subject {
+            Some(MessageSubject::Goal(_)) => is_of_goal(performative),
+            Some(MessageSubject::Belief(_)) => !is_of_goal(performative),
             None => false,
         };
         let receivers: SmallVec<[u16; 4]> = match to {
@@ -117,18 +117,18 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The values that are known; all must be, if it is `closed`.
-    fn content(&self, place: u32, terms: &[Term], closed: bool) -> Result<Args, FailureCause> {
+    fn content(&self, place: u32, terms: &[AgentTerm], closed: bool) -> Result<Args, FailureCause> {
         let slots = self.mind.pool.see(place).vars();
         crate::unify::well_bound(terms, slots)?;
         let mut args = Args::new();
         for term in terms {
-            let value = if closed && let Term::Expr(expr) = term {
+            let value = if closed && let AgentTerm::Expr(expr) = term {
                 Some(eval(expr, slots)?)
             } else {
                 known(term, slots)
             };
             if closed && value.is_none() {
-                let variable = if let Term::Var(v) = term { *v } else { u16::MAX };
+                let variable = if let AgentTerm::Var(v) = term { *v } else { u16::MAX };
                 return Err(FailureCause::NoValue(EvalError::Unbound(variable)));
             }
             args.push(value);
@@ -141,8 +141,8 @@ impl<'p> AgentMachine<'p> {
         let (_, id) = self.mind.me.peers.agents[usize::from(to)];
         let agent = &self.mind.program.agents[usize::from(id.0)];
         let params = match self.subject(content, to) {
-            Some(Subject::Belief(belief)) => Some(&agent.beliefs[usize::from(belief.0)].params),
-            Some(Subject::Goal(goal)) => agent.goals[usize::from(goal.0)].params.as_ref(),
+            Some(MessageSubject::Belief(belief)) => Some(&agent.beliefs[usize::from(belief.0)].params),
+            Some(MessageSubject::Goal(goal)) => agent.goals[usize::from(goal.0)].params.as_ref(),
             None => None,
         };
         let Some(params) = params else { return Ok(args.clone()) };
@@ -156,12 +156,12 @@ impl<'p> AgentMachine<'p> {
         here: StepLocation,
         to: &Expr,
         content: ContentId,
-        args: &[Term],
+        args: &[AgentTerm],
         within: Option<&Expr>,
         all: bool,
     ) -> Result<StepFlow, FailureCause> {
         let to = self.receiver(here.place, to)?;
-        if !matches!(self.subject(content, to), Some(Subject::Belief(_))) {
+        if !matches!(self.subject(content, to), Some(MessageSubject::Belief(_))) {
             return Err(FailureCause::NoSuchContent(self.name_of(to)));
         }
         let args = self.content(here.place, args, false)?;
@@ -224,7 +224,7 @@ impl<'p> AgentMachine<'p> {
             }
             Performative::Unachieve => {
                 if let Some(goal) = self.goal(content) {
-                    self.control_goal(Control::DropDesire, goal, &args);
+                    self.control_goal(ControlAct::DropDesire, goal, &args);
                 }
             }
             Performative::AskOne => self.reply(from, content, args, None, false),
@@ -282,7 +282,7 @@ impl<'p> AgentMachine<'p> {
     /// Tells who asked, if the answer suits its belief.
     fn tell_back(&mut self, reply: ReplyAddress, args: &Args) {
         let ReplyAddress { to, content, .. } = reply;
-        if let (Some(Subject::Belief(_)), Ok(args)) =
+        if let (Some(MessageSubject::Belief(_)), Ok(args)) =
             (self.subject(content, to), self.fitting(content, to, args))
         {
             self.say(to, SpeechAct::Say { performative: Performative::Tell, content, args });
@@ -315,8 +315,8 @@ impl<'p> AgentMachine<'p> {
         args: &Args,
         all: bool,
     ) -> Result<Vec<Args>, BeliefQueryError> {
-        let terms = (0..args.len() as u16).map(Term::Var).collect();
-        let literal = Literal { belief, args: terms, annotations: Vec::new(), origin: Span::default() };
+        let terms = (0..args.len() as u16).map(AgentTerm::Var).collect();
+        let literal = BeliefLiteral { belief, args: terms, annotations: Vec::new(), origin: Span::default() };
         let mut solver = QuerySolver::default();
         solver.with(args);
         let mut found = Vec::new();
@@ -343,12 +343,12 @@ impl<'p> AgentMachine<'p> {
         let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(()) };
         let line = self.mind.library.code(top.plan).get(usize::from(top.at));
         let Some(PlanOp::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
-        let step: &'p StepKind = step;
-        let fits = if let StepKind::Ask { args, .. } = step {
+        let step: &'p PlanStepKind = step;
+        let fits = if let PlanStepKind::Ask { args, .. } = step {
             let answer = answers.first().ok_or(FailureCause::NoAnswer)?;
             let vars = self.mind.pool.at(place).vars_mut();
             unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?
-        } else if let StepKind::AskAll { template, args, out, .. } = step {
+        } else if let PlanStepKind::AskAll { template, args, out, .. } = step {
             let vars = self.mind.pool.see(place).vars();
             let mut all = Vec::new();
             for answer in answers {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_ir::bdi::{Agent, ContentId, Context, Performative, TriggerOn};
+use hrdsl_ir::bdi::{Agent, ContentId, Performative, PlanContext, TriggerOn};
 
 use crate::intention::NO_PLAN;
 
@@ -39,7 +39,7 @@ impl AgentCounts {
     #[must_use]
     pub fn new(agent: &Agent) -> Self {
         let plans = agent.plans.len();
-        let parts = |context: &Context| if let Context::And(all) = context { all.len() } else { 1 };
+        let parts = |context: &PlanContext| if let PlanContext::And(all) = context { all.len() } else { 1 };
         Self {
             selected: vec![0; plans],
             completed: vec![0; plans],

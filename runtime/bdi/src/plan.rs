@@ -3,8 +3,8 @@
 use hrdsl_ir::{
     EventId, Program,
     bdi::{
-        Agent, AgentId, BeliefId, Context, GoalId, Internal, Performative, Plan, Rule, StepKind, Subject,
-        Term, TriggerOn, each_step,
+        Agent, AgentId, AgentTerm, BeliefId, BeliefRule, GoalId, InternalAct, MessageSubject, Performative,
+        Plan, PlanContext, PlanStepKind, TriggerOn, each_step,
     },
 };
 use smallvec::SmallVec;
@@ -25,7 +25,7 @@ pub(crate) struct PlanLibrary<'p> {
     /// Whether the plan's frame may be dropped as soon as its body is finished, even below a sub-goal.
     leaves_early: Vec<bool>,
     /// By belief.
-    rules: Vec<Vec<&'p Rule>>,
+    rules: Vec<Vec<&'p BeliefRule>>,
     /// The beliefs that hold the arguments of an event, by event.
     percepts: Vec<SmallVec<[BeliefId; 1]>>,
 }
@@ -110,7 +110,7 @@ impl<'p> PlanLibrary<'p> {
         self.leaves_early[usize::from(index)]
     }
 
-    pub fn rules(&self, belief: BeliefId) -> &[&'p Rule] {
+    pub fn rules(&self, belief: BeliefId) -> &[&'p BeliefRule] {
         &self.rules[usize::from(belief.0)]
     }
 
@@ -120,7 +120,7 @@ impl<'p> PlanLibrary<'p> {
 }
 
 fn is_plain(plan: &Plan) -> bool {
-    let variable = |term: &Term| if let Term::Var(v) = term { Some(*v) } else { None };
+    let variable = |term: &AgentTerm| if let AgentTerm::Var(v) = term { Some(*v) } else { None };
     let vars: Option<Vec<u16>> = plan.trigger.args.iter().map(variable).collect();
     let different = |v: Vec<u16>| v.iter().enumerate().all(|(i, a)| !v[..i].contains(a));
     plan.trigger.annotations.is_empty() && vars.is_some_and(different)
@@ -132,12 +132,12 @@ fn named_goals(program: &Program, id: AgentId, agent: &Agent) -> Vec<bool> {
     for plan in &agent.plans {
         in_context(&plan.context, &mut named);
         each_step(&plan.body, &mut |step| {
-            if let StepKind::Control { goal: Some((goal, _)), .. } = &step.kind {
+            if let PlanStepKind::Control { goal: Some((goal, _)), .. } = &step.kind {
                 name(*goal, &mut named);
-            } else if let StepKind::Test(condition)
-            | StepKind::If { condition, .. }
-            | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } = &step.kind
+            } else if let PlanStepKind::Test(condition)
+            | PlanStepKind::If { condition, .. }
+            | PlanStepKind::While { condition, .. }
+            | PlanStepKind::For { condition, .. } = &step.kind
             {
                 in_context(condition, &mut named);
             }
@@ -147,9 +147,9 @@ fn named_goals(program: &Program, id: AgentId, agent: &Agent) -> Vec<bool> {
     let all = program.agents.iter().flat_map(|a| &a.plans);
     for plan in all {
         each_step(&plan.body, &mut |step| {
-            if let StepKind::Send { performative: Performative::Unachieve, content, .. } = &step.kind
+            if let PlanStepKind::Send { performative: Performative::Unachieve, content, .. } = &step.kind
                 && let Some(content) = program.contents.get(usize::from(content.0))
-                && let Some(Some(Subject::Goal(goal))) = content.of.get(usize::from(id.0))
+                && let Some(Some(MessageSubject::Goal(goal))) = content.of.get(usize::from(id.0))
             {
                 name(*goal, &mut named);
             }
@@ -164,24 +164,26 @@ fn name(goal: GoalId, named: &mut [bool]) {
     }
 }
 
-fn in_context(context: &Context, named: &mut [bool]) {
+fn in_context(context: &PlanContext, named: &mut [bool]) {
     match context {
-        Context::True | Context::Belief(_) | Context::Test(_) | Context::Unify(..) => {}
-        Context::Not(inner) => in_context(inner, named),
-        Context::And(all) | Context::Or(all) => all.iter().for_each(|c| in_context(c, named)),
-        Context::Internal(internal, _) => match &**internal {
-            Internal::Intend { goal, .. }
-            | Internal::Desire { goal, .. }
-            | Internal::Suspended { goal, .. } => name(*goal, named),
-            Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => in_context(formula, named),
-            Internal::Member { .. }
-            | Internal::Apply { .. }
-            | Internal::Holds { .. }
-            | Internal::Random { .. }
-            | Internal::Shuffle { .. }
-            | Internal::Time { .. }
-            | Internal::MyName { .. }
-            | Internal::AllNames { .. } => {}
+        PlanContext::True | PlanContext::Belief(_) | PlanContext::Test(_) | PlanContext::Unify(..) => {}
+        PlanContext::Not(inner) => in_context(inner, named),
+        PlanContext::And(all) | PlanContext::Or(all) => all.iter().for_each(|c| in_context(c, named)),
+        PlanContext::Internal(internal, _) => match &**internal {
+            InternalAct::Intend { goal, .. }
+            | InternalAct::Desire { goal, .. }
+            | InternalAct::Suspended { goal, .. } => name(*goal, named),
+            InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => {
+                in_context(formula, named)
+            }
+            InternalAct::Member { .. }
+            | InternalAct::Apply { .. }
+            | InternalAct::Holds { .. }
+            | InternalAct::Random { .. }
+            | InternalAct::Shuffle { .. }
+            | InternalAct::Time { .. }
+            | InternalAct::MyName { .. }
+            | InternalAct::AllNames { .. } => {}
         },
     }
 }

@@ -10,7 +10,7 @@ use std::fmt;
 
 use hrdsl_ir::{
     List, Value,
-    bdi::{Context, Internal, Literal, Rule, Term},
+    bdi::{AgentTerm, BeliefLiteral, BeliefRule, InternalAct, PlanContext},
     expr::EvalError,
 };
 
@@ -67,9 +67,9 @@ struct FormulaPosition {
 #[derive(Clone, Copy, Debug)]
 enum SolverContinuation<'p> {
     /// All of these are to be answered.
-    Goals(&'p [Context]),
+    Goals(&'p [PlanContext]),
     /// A rule's body has an answer: the head is matched with what called it, whose variables start at `caller`.
-    Return { rule: &'p Rule, literal: &'p Literal, caller: u32 },
+    Return { rule: &'p BeliefRule, literal: &'p BeliefLiteral, caller: u32 },
     /// What is negated has an answer; the choice at this height is the negation's.
     Refuted(u32),
     /// One more answer of `.findall`, `.count`
@@ -79,22 +79,22 @@ enum SolverContinuation<'p> {
 #[derive(Clone, Copy, Debug)]
 enum AnswerSource<'p> {
     Facts {
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
         cursor: FactCursor,
         row: Option<(usize, usize)>,
     },
     Rules {
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
         from: usize,
     },
-    Or(&'p [Context]),
+    Or(&'p [PlanContext]),
     Member {
-        element: &'p Term,
+        element: &'p AgentTerm,
         rest: List,
     },
     /// The goals that are had, from this one on, with their arguments.
     Goals {
-        args: &'p [Term],
+        args: &'p [AgentTerm],
         from: u32,
         to: u32,
     },
@@ -103,7 +103,7 @@ enum AnswerSource<'p> {
     /// There are no more answers; those from `start` on are collected.
     Collection {
         start: usize,
-        what: &'p Internal,
+        what: &'p InternalAct,
     },
 }
 
@@ -130,7 +130,7 @@ pub(crate) struct QuerySolver<'p> {
     had: Vec<Slot>,
     steps: u64,
     /// The parts of the formula, if it is a conjunction, and the last of them that was begun.
-    parts: &'p [Context],
+    parts: &'p [PlanContext],
     pub farthest: usize,
 }
 
@@ -155,19 +155,19 @@ impl<'p> QuerySolver<'p> {
         &mut self,
         mind: &MentalState<'p>,
         dice: &mut AgentRng,
-        formula: &'p Context,
+        formula: &'p PlanContext,
     ) -> Result<bool, BeliefQueryError> {
         match formula {
-            Context::True => return Ok(true),
-            Context::Test(expr) => return Ok(truth(eval(expr, &self.slots)?)?),
-            Context::And(_)
-            | Context::Or(_)
-            | Context::Not(_)
-            | Context::Belief(_)
-            | Context::Unify(..)
-            | Context::Internal(_, _) => {}
+            PlanContext::True => return Ok(true),
+            PlanContext::Test(expr) => return Ok(truth(eval(expr, &self.slots)?)?),
+            PlanContext::And(_)
+            | PlanContext::Or(_)
+            | PlanContext::Not(_)
+            | PlanContext::Belief(_)
+            | PlanContext::Unify(..)
+            | PlanContext::Internal(_, _) => {}
         }
-        self.begin(if let Context::And(parts) = formula { parts } else { &[] });
+        self.begin(if let PlanContext::And(parts) = formula { parts } else { &[] });
         let mark = self.trail.len();
         let at = FormulaPosition { base: 0, depth: 0, next: DONE };
         let first = self.push(SolverContinuation::Goals(std::slice::from_ref(formula)), at);
@@ -183,7 +183,7 @@ impl<'p> QuerySolver<'p> {
         &mut self,
         mind: &MentalState<'p>,
         dice: &mut AgentRng,
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
     ) -> Result<bool, BeliefQueryError> {
         self.begin(&[]);
         let mark = self.trail.len();
@@ -197,7 +197,7 @@ impl<'p> QuerySolver<'p> {
         found
     }
 
-    fn begin(&mut self, parts: &'p [Context]) {
+    fn begin(&mut self, parts: &'p [PlanContext]) {
         self.conts.clear();
         self.choices.clear();
         self.collected.clear();
@@ -209,7 +209,7 @@ impl<'p> QuerySolver<'p> {
     fn literal(
         &mut self,
         mind: &MentalState<'p>,
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let slots = &self.slots[at.base as usize..];
@@ -302,20 +302,20 @@ impl<'p> QuerySolver<'p> {
         &mut self,
         mind: &MentalState<'p>,
         dice: &mut AgentRng,
-        goal: &'p Context,
+        goal: &'p PlanContext,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let yes = |holds: bool| Ok(holds.then_some(at.next));
         match goal {
-            Context::True => yes(true),
-            Context::Test(expr) => yes(truth(eval(expr, &self.slots[at.base as usize..])?)?),
-            Context::Unify(term, expr) => {
+            PlanContext::True => yes(true),
+            PlanContext::Test(expr) => yes(truth(eval(expr, &self.slots[at.base as usize..])?)?),
+            PlanContext::Unify(term, expr) => {
                 let value = eval(expr, &self.slots[at.base as usize..])?;
                 yes(self.matches(term, value, at)?)
             }
-            Context::And(all) => Ok(Some(self.push(SolverContinuation::Goals(all), at))),
-            Context::Or(any) => Ok(self.either(any, at)),
-            Context::Not(inner) => {
+            PlanContext::And(all) => Ok(Some(self.push(SolverContinuation::Goals(all), at))),
+            PlanContext::Or(any) => Ok(self.either(any, at)),
+            PlanContext::Not(inner) => {
                 let height = self.choices.len() as u32;
                 self.choose(AnswerSource::Negation, at);
                 let end = self.push(SolverContinuation::Refuted(height), at);
@@ -324,16 +324,16 @@ impl<'p> QuerySolver<'p> {
                     FormulaPosition { next: end, ..at },
                 )))
             }
-            Context::Belief(literal) => self.literal(mind, literal, at),
-            Context::Internal(internal, _) => self.internal(mind, dice, internal, at),
+            PlanContext::Belief(literal) => self.literal(mind, literal, at),
+            PlanContext::Internal(internal, _) => self.internal(mind, dice, internal, at),
         }
     }
 
-    fn matches(&mut self, term: &Term, value: Value, at: FormulaPosition) -> Result<bool, EvalError> {
+    fn matches(&mut self, term: &AgentTerm, value: Value, at: FormulaPosition) -> Result<bool, EvalError> {
         unify(term, value, at.base as usize, &mut self.slots, &mut self.trail)
     }
 
-    fn either(&mut self, any: &'p [Context], at: FormulaPosition) -> Option<u32> {
+    fn either(&mut self, any: &'p [PlanContext], at: FormulaPosition) -> Option<u32> {
         let (first, rest) = any.split_first()?;
         if !rest.is_empty() {
             self.choose(AnswerSource::Or(rest), at);
@@ -346,7 +346,7 @@ impl<'p> QuerySolver<'p> {
     fn facts(
         &mut self,
         mind: &MentalState<'p>,
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
         mut cursor: FactCursor,
         mut row: Option<(usize, usize)>,
         at: FormulaPosition,
@@ -386,7 +386,7 @@ impl<'p> QuerySolver<'p> {
     /// Whether each annotation of the literal matches that of the fact which the choice of this number picks: the last changes fastest.
     fn annotated(
         &mut self,
-        literal: &Literal,
+        literal: &BeliefLiteral,
         of: &Annotations,
         choice_no: usize,
         at: FormulaPosition,
@@ -405,7 +405,7 @@ impl<'p> QuerySolver<'p> {
     fn rules(
         &mut self,
         mind: &MentalState<'p>,
-        literal: &'p Literal,
+        literal: &'p BeliefLiteral,
         from: usize,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
@@ -443,17 +443,17 @@ impl<'p> QuerySolver<'p> {
     /// Gives a rule what its caller knows; an argument that the head computes is compared when the rule has an answer.
     fn call(
         &mut self,
-        rule: &Rule,
-        literal: &Literal,
+        rule: &BeliefRule,
+        literal: &BeliefLiteral,
         caller: usize,
         base: usize,
     ) -> Result<bool, BeliefQueryError> {
         for (head, arg) in rule.args.iter().zip(&literal.args) {
-            if let Term::Expr(expr) = arg {
+            if let AgentTerm::Expr(expr) = arg {
                 eval(expr, &self.slots[caller..base])?;
             }
             let Some(value) = known(arg, &self.slots[caller..base]) else { continue };
-            if matches!(head, Term::Expr(_)) && known(head, &self.slots[base..]).is_none() {
+            if matches!(head, AgentTerm::Expr(_)) && known(head, &self.slots[base..]).is_none() {
                 continue;
             }
             if !unify(head, value, base, &mut self.slots, &mut self.trail)? {
@@ -465,25 +465,25 @@ impl<'p> QuerySolver<'p> {
 
     fn give_back(
         &mut self,
-        rule: &Rule,
-        literal: &Literal,
+        rule: &BeliefRule,
+        literal: &BeliefLiteral,
         caller: u32,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         for (head, arg) in rule.args.iter().zip(&literal.args) {
-            if matches!((head, arg), (_, Term::Any)) {
+            if matches!((head, arg), (_, AgentTerm::Any)) {
                 continue;
             }
             let own = &self.slots[at.base as usize..];
             let value = match head {
-                Term::Expr(expr) => Some(eval(expr, own)?),
-                Term::Any | Term::Var(_) | Term::List(..) => known(head, own),
+                AgentTerm::Expr(expr) => Some(eval(expr, own)?),
+                AgentTerm::Any | AgentTerm::Var(_) | AgentTerm::List(..) => known(head, own),
             };
             let Some(value) = value else {
                 if known(arg, &self.slots[caller as usize..]).is_some() {
                     continue;
                 }
-                let variable = if let Term::Var(v) = head { *v } else { 0 };
+                let variable = if let AgentTerm::Var(v) = head { *v } else { 0 };
                 return Err(BeliefQueryError::NoValue(EvalError::Unbound(variable)));
             };
             if !unify(arg, value, caller as usize, &mut self.slots, &mut self.trail)? {

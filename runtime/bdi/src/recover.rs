@@ -1,6 +1,6 @@
 //! The end of plans, good or bad: finished plans leave their intention, failures look for a failure plan.
 
-use hrdsl_ir::bdi::{Literal, StepKind, TriggerOn};
+use hrdsl_ir::bdi::{BeliefLiteral, PlanStepKind, TriggerOn};
 
 use crate::{
     code::{PlanOp, settle},
@@ -153,7 +153,8 @@ impl<'p> AgentMachine<'p> {
         if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut Trail::new())? {
             return Err(FailureCause::NoAnswer);
         }
-        let open = literal.args.iter().any(|t| *t != hrdsl_ir::bdi::Term::Any && known(t, vars).is_none());
+        let open =
+            literal.args.iter().any(|t| *t != hrdsl_ir::bdi::AgentTerm::Any && known(t, vars).is_none());
         if open {
             self.solver.with(self.mind.pool.see(place).vars());
             if !self.solver.answer(&self.mind, &mut self.dice, literal)? {
@@ -166,9 +167,9 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The literal of the query that a frame is at.
-    fn asked_by(&self, frame: PlanFrame) -> Option<&'p Literal> {
+    fn asked_by(&self, frame: PlanFrame) -> Option<&'p BeliefLiteral> {
         match self.mind.library.code(frame.plan).get(usize::from(frame.at)).map(|l| &l.op) {
-            Some(PlanOp::Plain(StepKind::Query(literal))) => Some(literal),
+            Some(PlanOp::Plain(PlanStepKind::Query(literal))) => Some(literal),
             // INVARIANT: only a query asks.
             _ => None,
         }

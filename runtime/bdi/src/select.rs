@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Value,
-    bdi::{Context, Plan, Term, TriggerOn},
+    bdi::{AgentTerm, Plan, PlanContext, TriggerOn},
     expr::EvalError,
 };
 
@@ -78,7 +78,7 @@ impl<'p> AgentMachine<'p> {
         let QuerySolver { slots, trail, .. } = &mut self.solver;
         if self.mind.library.is_plain(index) {
             for (term, value) in plan.trigger.args.iter().zip(&event.args) {
-                if let Term::Var(var) = term {
+                if let AgentTerm::Var(var) = term {
                     slots[usize::from(*var)] = *value;
                 }
             }
@@ -99,7 +99,7 @@ impl<'p> AgentMachine<'p> {
 
     #[inline]
     fn verdict(&mut self, plan: &'p Plan) -> ApplicabilityVerdict {
-        if let Context::Test(expr) = &plan.context {
+        if let PlanContext::Test(expr) = &plan.context {
             return match eval(expr, &self.solver.slots) {
                 Ok(Value::Bool(true)) => ApplicabilityVerdict::Applicable,
                 Ok(Value::Bool(false)) => ApplicabilityVerdict::False { part: 0 },

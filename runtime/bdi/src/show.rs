@@ -5,10 +5,10 @@ use std::fmt::Display;
 use hrdsl_ir::{
     ArgPattern, EventPattern, Expr, Nanos, Program, Value,
     bdi::{
-        Agent, Annotation, Assertion, BeliefId, ContentId, Context, Control, GoalId, Internal, Literal,
-        Performative, StepKind, Term,
+        Agent, AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, ContentId, ControlAct,
+        GoalId, InternalAct, Performative, PlanContext, PlanStepKind,
     },
-    expr::{BinaryOp, Function, UnaryOp},
+    expr::{BinaryOp, NumberFunction, UnaryOp},
     list::ListFunction,
     value::seconds,
 };
@@ -63,13 +63,13 @@ pub(crate) struct FormulaPrinter<'a> {
 
 /// A formula as it is written in the language.
 #[must_use]
-pub fn context(program: &Program, agent: &Agent, names: &[String], of: &Context) -> String {
+pub fn context(program: &Program, agent: &Agent, names: &[String], of: &PlanContext) -> String {
     FormulaPrinter { program, agent, names, slots: &[] }.context(of)
 }
 
 /// A step as it is written in the language; of a block its head.
 #[must_use]
-pub fn step(program: &Program, agent: &Agent, names: &[String], of: &StepKind) -> String {
+pub fn step(program: &Program, agent: &Agent, names: &[String], of: &PlanStepKind) -> String {
     FormulaPrinter { program, agent, names, slots: &[] }.step(of)
 }
 
@@ -86,72 +86,72 @@ impl FormulaPrinter<'_> {
         call(self.program.events.get(usize::from(id.0)).map_or("?", |e| &e.name), args)
     }
 
-    fn content(&self, id: ContentId, args: &[Term]) -> String {
+    fn content(&self, id: ContentId, args: &[AgentTerm]) -> String {
         let name = self.program.contents.get(usize::from(id.0)).map_or("?", |c| c.name.as_str());
         call(name, args.iter().map(|t| self.term(t)))
     }
 
-    pub fn step(&self, step: &StepKind) -> String {
+    pub fn step(&self, step: &PlanStepKind) -> String {
         let exprs = |all: &[Expr]| all.iter().map(|e| self.expr(e)).collect::<Vec<_>>();
-        let terms = |all: &[Term]| all.iter().map(|t| self.term(t)).collect::<Vec<_>>();
+        let terms = |all: &[AgentTerm]| all.iter().map(|t| self.term(t)).collect::<Vec<_>>();
         let time = |e: &Expr| self.seconds(e);
         let within = |e: &Option<Expr>| e.as_ref().map_or(String::new(), |e| format!(" within {}", time(e)));
         let comma = |e: &Option<Expr>| e.as_ref().map_or(String::new(), |e| format!(", {}", time(e)));
         match step {
-            StepKind::Do { event, args } => self.event(*event, exprs(args)),
-            StepKind::Achieve { goal, args, within: d } => {
+            PlanStepKind::Do { event, args } => self.event(*event, exprs(args)),
+            PlanStepKind::Achieve { goal, args, within: d } => {
                 format!("!{}{}", self.goal(*goal, exprs(args)), within(d))
             }
-            StepKind::Spawn { goal, args } => format!("!!{}", self.goal(*goal, exprs(args))),
-            StepKind::Query(literal) => format!("?{}", self.literal(literal)),
-            StepKind::Test(condition @ (Context::Unify(..) | Context::Internal(_, _))) => {
+            PlanStepKind::Spawn { goal, args } => format!("!!{}", self.goal(*goal, exprs(args))),
+            PlanStepKind::Query(literal) => format!("?{}", self.literal(literal)),
+            PlanStepKind::Test(condition @ (PlanContext::Unify(..) | PlanContext::Internal(_, _))) => {
                 self.context(condition)
             }
-            StepKind::Test(condition) => format!("?({})", self.context(condition)),
-            StepKind::Add(a) => format!("+{}", self.assertion(a)),
-            StepKind::Remove(literal) => format!("-{}", self.literal(literal)),
-            StepKind::Replace(a) => format!("-+{}", self.assertion(a)),
-            StepKind::Abolish(literal) => format!(".abolish({})", self.literal(literal)),
-            StepKind::Await { events, within: d } => {
+            PlanStepKind::Test(condition) => format!("?({})", self.context(condition)),
+            PlanStepKind::Add(a) => format!("+{}", self.assertion(a)),
+            PlanStepKind::Remove(literal) => format!("-{}", self.literal(literal)),
+            PlanStepKind::Replace(a) => format!("-+{}", self.assertion(a)),
+            PlanStepKind::Abolish(literal) => format!(".abolish({})", self.literal(literal)),
+            PlanStepKind::Await { events, within: d } => {
                 let events: Vec<String> = events.iter().map(|e| self.pattern(e)).collect();
                 format!("await {}{}", events.join(" | "), within(d))
             }
-            StepKind::Wait { seconds } => format!("wait {}", time(seconds)),
-            StepKind::If { condition, .. } => format!("if {}", self.context(condition)),
-            StepKind::While { condition, .. } => format!("while {}", self.context(condition)),
-            StepKind::For { condition, .. } => format!("for {}", self.context(condition)),
-            StepKind::Fork { .. } => "fork".to_owned(),
-            StepKind::Send { to: Some(to), performative: p, content, args } => {
+            PlanStepKind::Wait { seconds } => format!("wait {}", time(seconds)),
+            PlanStepKind::If { condition, .. } => format!("if {}", self.context(condition)),
+            PlanStepKind::While { condition, .. } => format!("while {}", self.context(condition)),
+            PlanStepKind::For { condition, .. } => format!("for {}", self.context(condition)),
+            PlanStepKind::Fork { .. } => "fork".to_owned(),
+            PlanStepKind::Send { to: Some(to), performative: p, content, args } => {
                 format!(".send({}, {}, {})", self.expr(to), performative(*p), self.content(*content, args))
             }
-            StepKind::Send { to: None, performative: p, content, args } => {
+            PlanStepKind::Send { to: None, performative: p, content, args } => {
                 format!(".broadcast({}, {})", performative(*p), self.content(*content, args))
             }
-            StepKind::Ask { to, content, args, within } => {
+            PlanStepKind::Ask { to, content, args, within } => {
                 format!(".ask({}, {}{})", self.expr(to), self.content(*content, args), comma(within))
             }
-            StepKind::AskAll { to, template, content, args, out, within } => {
+            PlanStepKind::AskAll { to, template, content, args, out, within } => {
                 let (to, template) = (self.expr(to), self.expr(template));
                 let content = self.content(*content, args);
                 format!(".ask_all({to}, {template}, {content}, {}{})", self.term(out), comma(within))
             }
-            StepKind::Print { args } => call(".print", exprs(args)),
-            StepKind::Control { what, goal } => {
+            PlanStepKind::Print { args } => call(".print", exprs(args)),
+            PlanStepKind::Control { what, goal } => {
                 let name = control(*what, goal.is_some());
                 call(name, goal.iter().map(|(g, args)| self.goal(*g, terms(args))))
             }
-            StepKind::Fail => ".fail".to_owned(),
+            PlanStepKind::Fail => ".fail".to_owned(),
         }
     }
 
-    fn annotated(&self, belief: BeliefId, of: Vec<(Annotation, String)>) -> String {
+    fn annotated(&self, belief: BeliefId, of: Vec<(BeliefAnnotation, String)>) -> String {
         if of.is_empty() {
             return String::new();
         }
         let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
-        let one = |(what, text): (Annotation, String)| match what {
-            Annotation::Source => format!("source({text})"),
-            Annotation::Declared(at) => {
+        let one = |(what, text): (BeliefAnnotation, String)| match what {
+            BeliefAnnotation::Source => format!("source({text})"),
+            BeliefAnnotation::Declared(at) => {
                 format!("{}({text})", declared.get(usize::from(at)).map_or("?", |p| &p.name))
             }
         };
@@ -159,7 +159,7 @@ impl FormulaPrinter<'_> {
         format!("[{}]", all.join(", "))
     }
 
-    fn literal(&self, l: &Literal) -> String {
+    fn literal(&self, l: &BeliefLiteral) -> String {
         let fact = call(self.belief(l.belief), l.args.iter().map(|t| self.term(t)));
         let annotations = l.annotations.iter().map(|(what, t)| (*what, self.term(t))).collect();
         fact + &self.annotated(l.belief, annotations)
@@ -193,20 +193,20 @@ impl FormulaPrinter<'_> {
         self.names.get(usize::from(var)).cloned().unwrap_or_else(|| format!("V{var}"))
     }
 
-    fn term(&self, term: &Term) -> String {
+    fn term(&self, term: &AgentTerm) -> String {
         let known = match term {
-            Term::Any => None,
-            Term::Var(v) => self.slots.get(usize::from(*v)).copied().flatten(),
-            Term::Expr(e) => eval(e, self.slots).ok(),
-            Term::List(..) if self.slots.is_empty() => None,
-            Term::List(..) => known(term, self.slots),
+            AgentTerm::Any => None,
+            AgentTerm::Var(v) => self.slots.get(usize::from(*v)).copied().flatten(),
+            AgentTerm::Expr(e) => eval(e, self.slots).ok(),
+            AgentTerm::List(..) if self.slots.is_empty() => None,
+            AgentTerm::List(..) => known(term, self.slots),
         };
         match (known, term) {
             (Some(v), _) => v.to_string(),
-            (None, Term::Any) => "_".to_owned(),
-            (None, Term::Var(v)) => self.name(*v),
-            (None, Term::Expr(e)) => self.expr(e),
-            (None, Term::List(items, rest)) => {
+            (None, AgentTerm::Any) => "_".to_owned(),
+            (None, AgentTerm::Var(v)) => self.name(*v),
+            (None, AgentTerm::Expr(e)) => self.expr(e),
+            (None, AgentTerm::List(items, rest)) => {
                 let items: Vec<String> = items.iter().map(|t| self.term(t)).collect();
                 let rest = rest.as_ref().map_or(String::new(), |r| format!(" | {}", self.term(r)));
                 format!("[{}{rest}]", items.join(", "))
@@ -265,81 +265,83 @@ impl FormulaPrinter<'_> {
         if parenthesised { format!("({text})") } else { text }
     }
 
-    pub fn context(&self, context: &Context) -> String {
+    pub fn context(&self, context: &PlanContext) -> String {
         self.formula(context, false)
     }
 
-    fn formula(&self, context: &Context, inner: bool) -> String {
-        let joined = |all: &[Context], by: &str| {
+    fn formula(&self, context: &PlanContext, inner: bool) -> String {
+        let joined = |all: &[PlanContext], by: &str| {
             let text = all.iter().map(|c| self.formula(c, true)).collect::<Vec<_>>().join(by);
             if inner && all.len() > 1 { format!("({text})") } else { text }
         };
         match context {
-            Context::True => "true".to_owned(),
-            Context::Belief(literal) => self.literal(literal),
-            Context::Not(inner) => format!("not {}", self.formula(inner, true)),
-            Context::And(all) => joined(all, " && "),
-            Context::Or(all) => joined(all, " || "),
-            Context::Test(e) => {
+            PlanContext::True => "true".to_owned(),
+            PlanContext::Belief(literal) => self.literal(literal),
+            PlanContext::Not(inner) => format!("not {}", self.formula(inner, true)),
+            PlanContext::And(all) => joined(all, " && "),
+            PlanContext::Or(all) => joined(all, " || "),
+            PlanContext::Test(e) => {
                 self.expression(e, if inner { ParenContext::Logical } else { ParenContext::Nothing })
             }
-            Context::Unify(term, e) => format!("{} = {}", self.term(term), self.expr(e)),
-            Context::Internal(internal, _) => self.internal(internal),
+            PlanContext::Unify(term, e) => format!("{} = {}", self.term(term), self.expr(e)),
+            PlanContext::Internal(internal, _) => self.internal(internal),
         }
     }
 
-    fn internal(&self, internal: &Internal) -> String {
-        let args = |all: &[Expr], out: Option<&Term>| -> Vec<String> {
+    fn internal(&self, internal: &InternalAct) -> String {
+        let args = |all: &[Expr], out: Option<&AgentTerm>| -> Vec<String> {
             let all = all.iter().map(|e| self.expr(e));
             all.chain(out.map(|t| self.term(t))).collect()
         };
         let goal =
-            |g: &GoalId, a: &[Term]| [self.goal(*g, a.iter().map(|t| self.term(t)).collect::<Vec<_>>())];
+            |g: &GoalId, a: &[AgentTerm]| [self.goal(*g, a.iter().map(|t| self.term(t)).collect::<Vec<_>>())];
         match internal {
-            Internal::FindAll { template, formula, set, out } => {
+            InternalAct::FindAll { template, formula, set, out } => {
                 let name = if *set { ".setof" } else { ".findall" };
                 call(name, [self.expr(template), self.context(formula), self.term(out)])
             }
-            Internal::Count { formula, out } => call(".count", [self.context(formula), self.term(out)]),
-            Internal::Member { element, list } => call(".member", [self.term(element), self.expr(list)]),
-            Internal::Apply { function, args: a, out } => call(list_function(*function), args(a, Some(out))),
-            Internal::Holds { function, args: a } => call(list_function(*function), args(a, None)),
-            Internal::Intend { goal: g, args } => call(".intend", goal(g, args)),
-            Internal::Desire { goal: g, args } => call(".desire", goal(g, args)),
-            Internal::Suspended { goal: g, args } => call(".suspended", goal(g, args)),
-            Internal::Random { from, out } => {
+            InternalAct::Count { formula, out } => call(".count", [self.context(formula), self.term(out)]),
+            InternalAct::Member { element, list } => call(".member", [self.term(element), self.expr(list)]),
+            InternalAct::Apply { function, args: a, out } => {
+                call(list_function(*function), args(a, Some(out)))
+            }
+            InternalAct::Holds { function, args: a } => call(list_function(*function), args(a, None)),
+            InternalAct::Intend { goal: g, args } => call(".intend", goal(g, args)),
+            InternalAct::Desire { goal: g, args } => call(".desire", goal(g, args)),
+            InternalAct::Suspended { goal: g, args } => call(".suspended", goal(g, args)),
+            InternalAct::Random { from, out } => {
                 let from: Vec<String> = from.iter().map(|e| self.expr(e)).collect();
                 call(".random", from.into_iter().chain([self.term(out)]))
             }
-            Internal::Shuffle { list, out } => call(".shuffle", [self.expr(list), self.term(out)]),
-            Internal::Time { out } => call(".time", [self.term(out)]),
-            Internal::MyName { out } => call(".my_name", [self.term(out)]),
-            Internal::AllNames { out } => call(".all_names", [self.term(out)]),
+            InternalAct::Shuffle { list, out } => call(".shuffle", [self.expr(list), self.term(out)]),
+            InternalAct::Time { out } => call(".time", [self.term(out)]),
+            InternalAct::MyName { out } => call(".my_name", [self.term(out)]),
+            InternalAct::AllNames { out } => call(".all_names", [self.term(out)]),
         }
     }
 }
 
-fn control(what: Control, one: bool) -> &'static str {
+fn control(what: ControlAct, one: bool) -> &'static str {
     match (what, one) {
-        (Control::DropIntention, true) => ".drop_intention",
-        (Control::DropIntention, false) => ".drop_all_intentions",
-        (Control::DropDesire, true) => ".drop_desire",
-        (Control::DropDesire, false) => ".drop_all_desires",
-        (Control::DropEvent, true) => ".drop_event",
-        (Control::DropEvent, false) => ".drop_all_events",
-        (Control::SucceedGoal, _) => ".succeed_goal",
-        (Control::FailGoal, _) => ".fail_goal",
-        (Control::Suspend, _) => ".suspend",
-        (Control::Resume, _) => ".resume",
+        (ControlAct::DropIntention, true) => ".drop_intention",
+        (ControlAct::DropIntention, false) => ".drop_all_intentions",
+        (ControlAct::DropDesire, true) => ".drop_desire",
+        (ControlAct::DropDesire, false) => ".drop_all_desires",
+        (ControlAct::DropEvent, true) => ".drop_event",
+        (ControlAct::DropEvent, false) => ".drop_all_events",
+        (ControlAct::SucceedGoal, _) => ".succeed_goal",
+        (ControlAct::FailGoal, _) => ".fail_goal",
+        (ControlAct::Suspend, _) => ".suspend",
+        (ControlAct::Resume, _) => ".resume",
     }
 }
 
-fn function(f: Function) -> &'static str {
+fn function(f: NumberFunction) -> &'static str {
     match f {
-        Function::Abs => "abs",
-        Function::Min => "min",
-        Function::Max => "max",
-        Function::Norm => "norm",
+        NumberFunction::Abs => "abs",
+        NumberFunction::Min => "min",
+        NumberFunction::Max => "max",
+        NumberFunction::Norm => "norm",
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use hrdsl_ir::{
     ActorId, EventId, Nanos, Program, Value,
-    bdi::{AgentId, Fact},
+    bdi::{AgentId, InitialFact},
 };
 use rayon::prelude::*;
 
@@ -49,7 +49,7 @@ pub struct Society<'p> {
 impl<'p> Society<'p> {
     /// The agents at time 0, each with its initial beliefs and the facts chosen for it. `seed` is that of `.random`.
     #[must_use]
-    pub fn new(program: &'p Program, agents: &[(AgentId, Vec<Fact>)], seed: u64) -> Self {
+    pub fn new(program: &'p Program, agents: &[(AgentId, Vec<InitialFact>)], seed: u64) -> Self {
         Self::with_detail(program, agents, seed, LogDetail::default())
     }
 
@@ -57,16 +57,17 @@ impl<'p> Society<'p> {
     #[must_use]
     pub fn with_detail(
         program: &'p Program,
-        agents: &[(AgentId, Vec<Fact>)],
+        agents: &[(AgentId, Vec<InitialFact>)],
         seed: u64,
         detail: LogDetail,
     ) -> Self {
         let peers = Arc::new(PeerTable::new(program, agents.iter().map(|(id, _)| *id)));
-        let machine = |(place, (id, chosen)): (u16, &(AgentId, Vec<Fact>))| {
+        let machine = |(place, (id, chosen)): (u16, &(AgentId, Vec<InitialFact>))| {
             AgentMachine::new(program, *id, chosen, place, &peers, seed, detail)
         };
         let machines: Vec<AgentMachine> = (0u16..).zip(agents).map(machine).collect();
-        let actor = |(id, _): &(AgentId, Vec<Fact>)| program.agents.get(usize::from(id.0)).map(|a| a.actor);
+        let actor =
+            |(id, _): &(AgentId, Vec<InitialFact>)| program.agents.get(usize::from(id.0)).map(|a| a.actor);
         Self {
             machines,
             actors: agents.iter().map(actor).collect(),
@@ -402,7 +403,7 @@ impl<'p> Society<'p> {
     }
 
     /// All that an agent believes now: by the order of declarations, then oldest first.
-    pub fn beliefs(&self, agent: usize) -> impl Iterator<Item = Fact> {
+    pub fn beliefs(&self, agent: usize) -> impl Iterator<Item = InitialFact> {
         self.machines.get(agent).into_iter().flat_map(|m| m.mind.beliefs.facts())
     }
 

@@ -96,7 +96,7 @@ impl AgentMachine<'_> {
     /// What it believes, in the order of declarations, then oldest first: `wants(2)[source(self)]`.
     pub fn believed(&self) -> Vec<String> {
         let Some(names) = self.names() else { return Vec::new() };
-        let text = |fact: hrdsl_ir::bdi::Fact| {
+        let text = |fact: hrdsl_ir::bdi::InitialFact| {
             let args: Args = fact.args.iter().map(|v| Some(*v)).collect();
             names.fact(fact.belief, &args, &Annotations::from_slice(&fact.annotations))
         };

@@ -1,6 +1,6 @@
 //! The whole state of an agent as words, to compare one with another.
 
-use hrdsl_ir::{Value, bdi::Annotation};
+use hrdsl_ir::{Value, bdi::BeliefAnnotation};
 
 use crate::{
     belief::Annotations,
@@ -130,8 +130,8 @@ fn annotations(out: &mut Vec<u64>, all: &Annotations) {
     out.push(all.len() as u64);
     for (what, v) in all {
         out.push(match what {
-            Annotation::Source => 0,
-            Annotation::Declared(at) => u64::from(*at) + 1,
+            BeliefAnnotation::Source => 0,
+            BeliefAnnotation::Declared(at) => u64::from(*at) + 1,
         });
         value(out, *v);
     }

@@ -12,7 +12,10 @@ use crate::{
 };
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Value,
-    bdi::{Annotation, Assertion, BeliefId, GoalId, Literal, StepKind, Term, TriggerOn, source_self},
+    bdi::{
+        AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, GoalId, PlanStepKind, TriggerOn,
+        source_self,
+    },
     expr::EvalError,
     value::nanos,
 };
@@ -138,74 +141,75 @@ impl<'p> AgentMachine<'p> {
     // ── Plain steps ──
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn plain(&mut self, here: StepLocation, step: &'p StepKind) -> Result<StepFlow, FailureCause> {
+    fn plain(&mut self, here: StepLocation, step: &'p PlanStepKind) -> Result<StepFlow, FailureCause> {
         self.done(here, StepOutcome::Done);
         let StepLocation { place, .. } = here;
         let slots = self.mind.pool.see(place).vars();
         match step {
-            StepKind::Do { event, args } => {
+            PlanStepKind::Do { event, args } => {
                 let args = values(args, slots, |v| v)?;
                 self.act(place, *event, args)?;
                 Ok(StepFlow::Suspended)
             }
-            StepKind::Achieve { goal, args, within: None } => {
+            PlanStepKind::Achieve { goal, args, within: None } => {
                 self.post_goal(here, *goal, args, Some(place))?;
                 Ok(StepFlow::Suspended)
             }
-            StepKind::Achieve { goal, args, within: Some(within) } => {
+            PlanStepKind::Achieve { goal, args, within: Some(within) } => {
                 let event = self.goal_event(here, *goal, args, Some(place))?;
                 self.set_deadline(place, within)?;
                 self.post(event);
                 Ok(StepFlow::Suspended)
             }
-            StepKind::Spawn { goal, args } => {
+            PlanStepKind::Spawn { goal, args } => {
                 self.post_goal(here, *goal, args, None)?;
                 Ok(StepFlow::Next)
             }
-            StepKind::Query(literal) => self.query(here, literal),
-            StepKind::Test(condition) => {
+            PlanStepKind::Query(literal) => self.query(here, literal),
+            PlanStepKind::Test(condition) => {
                 if self.holds(place, condition)? {
                     Ok(StepFlow::Next)
                 } else {
                     Err(FailureCause::NoAnswer)
                 }
             }
-            StepKind::Add(assertion) => {
+            PlanStepKind::Add(assertion) => {
                 let (args, annotations) = self.asserted(place, assertion)?;
                 self.believe(assertion.belief, &args, annotations);
                 Ok(StepFlow::Next)
             }
-            StepKind::Remove(literal) => self.forget(place, literal),
-            StepKind::Replace(assertion) => self.replace(place, assertion),
-            StepKind::Abolish(literal) => self.abolish(place, literal),
-            StepKind::Await { events, within } => self.start_await(place, events, within.as_ref()),
-            StepKind::Wait { seconds } => {
+            PlanStepKind::Remove(literal) => self.forget(place, literal),
+            PlanStepKind::Replace(assertion) => self.replace(place, assertion),
+            PlanStepKind::Abolish(literal) => self.abolish(place, literal),
+            PlanStepKind::Await { events, within } => self.start_await(place, events, within.as_ref()),
+            PlanStepKind::Wait { seconds } => {
                 let time = self.time(place, seconds)?;
                 let timer = self.set_timer(place, time);
                 self.mind.pool.at(place).state = IntentionState::Sleeping(timer);
                 Ok(StepFlow::Suspended)
             }
-            StepKind::Send { to, performative, content, args } => {
+            PlanStepKind::Send { to, performative, content, args } => {
                 self.send(here, to.as_ref(), *performative, *content, args)
             }
-            StepKind::Ask { to, content, args, within } => {
+            PlanStepKind::Ask { to, content, args, within } => {
                 self.ask(here, to, *content, args, within.as_ref(), false)
             }
-            StepKind::AskAll { to, content, args, within, .. } => {
+            PlanStepKind::AskAll { to, content, args, within, .. } => {
                 self.ask(here, to, *content, args, within.as_ref(), true)
             }
-            StepKind::Print { args } => {
+            PlanStepKind::Print { args } => {
                 let args: Vec<Value> = values(args, slots, |v| v)?;
                 let text: String = args.iter().map(|v| plain(*v)).collect();
                 self.entry(0, || LogItem::Printed(text));
                 Ok(StepFlow::Next)
             }
-            StepKind::Control { what, goal } => self.control(place, *what, goal.as_ref()),
-            StepKind::Fail => Err(FailureCause::Fail),
+            PlanStepKind::Control { what, goal } => self.control(place, *what, goal.as_ref()),
+            PlanStepKind::Fail => Err(FailureCause::Fail),
             // INVARIANT: blocks are lines of their own.
-            StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
-                Ok(StepFlow::Next)
-            }
+            PlanStepKind::If { .. }
+            | PlanStepKind::While { .. }
+            | PlanStepKind::For { .. }
+            | PlanStepKind::Fork { .. } => Ok(StepFlow::Next),
         }
     }
 
@@ -299,7 +303,7 @@ impl<'p> AgentMachine<'p> {
         let declared = self.mind.agent.map(|a| &a.beliefs[usize::from(assertion.belief.0)].annotations);
         for (what, value) in &assertion.annotations {
             let mut value = eval(value, slots)?;
-            if let Annotation::Declared(at) = what {
+            if let BeliefAnnotation::Declared(at) = what {
                 let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(FailureCause::OutOfRange)?;
                 let one = typed(std::slice::from_ref(param), Ground::from_slice(&[value]));
                 value = one.ok_or(FailureCause::OutOfRange)?[0];
@@ -310,7 +314,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Asks the belief base, and the plans for the test goal if it has no answer.
-    fn query(&mut self, here: StepLocation, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
+    fn query(&mut self, here: StepLocation, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
         let StepLocation { place, .. } = here;
         self.solver.with(self.mind.pool.see(place).vars());
         if self.solver.answer(&self.mind, &mut self.dice, literal)? {
@@ -337,14 +341,14 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Takes one source away from the first fact that has it.
-    fn forget(&mut self, place: u32, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
-        let own = Term::Expr(Expr::Const(Value::Symbol(source_self())));
-        let wanted = literal.annotations.iter().position(|(what, _)| *what == Annotation::Source);
+    fn forget(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
+        let own = AgentTerm::Expr(Expr::Const(Value::Symbol(source_self())));
+        let wanted = literal.annotations.iter().position(|(what, _)| *what == BeliefAnnotation::Source);
         let source = wanted.map_or(&own, |at| &literal.annotations[at].1);
         let others = literal.annotations.iter().enumerate().filter(|(at, _)| Some(*at) != wanted);
-        let others: Vec<&(Annotation, Term)> = others.map(|(_, a)| a).collect();
-        let plain: Vec<&(Annotation, Term)> =
-            literal.annotations.iter().filter(|(what, _)| *what != Annotation::Source).collect();
+        let others: Vec<&(BeliefAnnotation, AgentTerm)> = others.map(|(_, a)| a).collect();
+        let plain: Vec<&(BeliefAnnotation, AgentTerm)> =
+            literal.annotations.iter().filter(|(what, _)| *what != BeliefAnnotation::Source).collect();
         self.solver.with(self.mind.pool.see(place).vars());
         well_bound(&literal.args, &self.solver.slots)?;
         let belief = literal.belief;
@@ -371,10 +375,10 @@ impl<'p> AgentMachine<'p> {
     /// The fact's first source that the term means, if the fact matches with it.
     fn source_of(
         &mut self,
-        literal: &Literal,
+        literal: &BeliefLiteral,
         row: usize,
-        source: &Term,
-        others: &[&(Annotation, Term)],
+        source: &AgentTerm,
+        others: &[&(BeliefAnnotation, AgentTerm)],
     ) -> Result<Option<Value>, FailureCause> {
         let facts = self.mind.beliefs.of(literal.belief);
         let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
@@ -400,9 +404,9 @@ impl<'p> AgentMachine<'p> {
     /// Whether the fact matches, with these annotations; nothing is bound.
     fn agrees(
         &mut self,
-        literal: &Literal,
+        literal: &BeliefLiteral,
         row: usize,
-        annotations: &[&(Annotation, Term)],
+        annotations: &[&(BeliefAnnotation, AgentTerm)],
     ) -> Result<bool, FailureCause> {
         let facts = self.mind.beliefs.of(literal.belief);
         let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
@@ -424,10 +428,10 @@ impl<'p> AgentMachine<'p> {
         Ok(StepFlow::Next)
     }
 
-    fn abolish(&mut self, place: u32, literal: &'p Literal) -> Result<StepFlow, FailureCause> {
+    fn abolish(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
         self.solver.with(self.mind.pool.see(place).vars());
         well_bound(&literal.args, &self.solver.slots)?;
-        let annotations: Vec<&(Annotation, Term)> = literal.annotations.iter().collect();
+        let annotations: Vec<&(BeliefAnnotation, AgentTerm)> = literal.annotations.iter().collect();
         for row in self.mind.beliefs.of(literal.belief).iter().collect::<Vec<_>>() {
             if self.agrees(literal, row, &annotations)? {
                 self.remove(literal.belief, row);
@@ -475,7 +479,7 @@ impl<'p> AgentMachine<'p> {
 
 /// Whether each term matches one of the annotations, in some way; what that binds is on the trail.
 pub(crate) fn annotated(
-    terms: &[&(Annotation, Term)],
+    terms: &[&(BeliefAnnotation, AgentTerm)],
     held: &Annotations,
     slots: &mut [Slot],
     trail: &mut Trail,
@@ -502,10 +506,10 @@ fn plain(value: Value) -> String {
 }
 
 /// The slots that the terms of a test goal's plan stand for at its end, for the query that asked.
-pub(crate) fn answers(trigger: &[Term], asked: &[Slot], slots: &[Slot]) -> Args {
-    let answer = |(term, asked): (&Term, &Slot)| match term {
-        Term::Any => *asked,
-        Term::Var(_) | Term::Expr(_) | Term::List(..) => known(term, slots).or(*asked),
+pub(crate) fn answers(trigger: &[AgentTerm], asked: &[Slot], slots: &[Slot]) -> Args {
+    let answer = |(term, asked): (&AgentTerm, &Slot)| match term {
+        AgentTerm::Any => *asked,
+        AgentTerm::Var(_) | AgentTerm::Expr(_) | AgentTerm::List(..) => known(term, slots).or(*asked),
     };
     trigger.iter().zip(asked).map(answer).collect()
 }

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Expr, List, Value,
-    bdi::Term,
+    bdi::AgentTerm,
     expr::{BinaryOp, EvalError, binary},
     list::same,
 };
@@ -76,15 +76,15 @@ pub(crate) fn undo(slots: &mut [Slot], trail: &mut Trail, mark: usize) {
 
 /// Matches one term, whose variables start at `base` on the stack; what it binds is on the trail.
 pub(crate) fn unify(
-    term: &Term,
+    term: &AgentTerm,
     value: Value,
     base: usize,
     slots: &mut [Slot],
     trail: &mut Trail,
 ) -> Result<bool, EvalError> {
     match term {
-        Term::Any => Ok(true),
-        Term::Var(var) => {
+        AgentTerm::Any => Ok(true),
+        AgentTerm::Var(var) => {
             let at = base + usize::from(*var);
             match slots[at] {
                 Some(bound) => Ok(same(bound, value)),
@@ -95,8 +95,8 @@ pub(crate) fn unify(
                 }
             }
         }
-        Term::Expr(expr) => Ok(same(eval(expr, &slots[base..])?, value)),
-        Term::List(items, rest) => {
+        AgentTerm::Expr(expr) => Ok(same(eval(expr, &slots[base..])?, value)),
+        AgentTerm::List(items, rest) => {
             let Value::List(mut list) = value else { return Ok(false) };
             for item in items {
                 let Some((head, tail)) = list.split() else { return Ok(false) };
@@ -116,7 +116,7 @@ pub(crate) fn unify(
 /// Matches terms with as many values, from the left; an open value matches anything and binds nothing. Without a match
 /// nothing is bound.
 pub(crate) fn unify_all(
-    terms: &[Term],
+    terms: &[AgentTerm],
     values: impl ExactSizeIterator<Item = Slot>,
     base: usize,
     slots: &mut [Slot],
@@ -138,12 +138,12 @@ pub(crate) fn unify_all(
 }
 
 /// The value of a term, if all its variables have one: `None` for `_` and what is open.
-pub(crate) fn known(term: &Term, slots: &[Slot]) -> Slot {
+pub(crate) fn known(term: &AgentTerm, slots: &[Slot]) -> Slot {
     match term {
-        Term::Any => None,
-        Term::Var(var) => slots[usize::from(*var)],
-        Term::Expr(expr) => eval(expr, slots).ok(),
-        Term::List(items, rest) => {
+        AgentTerm::Any => None,
+        AgentTerm::Var(var) => slots[usize::from(*var)],
+        AgentTerm::Expr(expr) => eval(expr, slots).ok(),
+        AgentTerm::List(items, rest) => {
             let items: Option<Vec<Value>> = items.iter().map(|i| known(i, slots)).collect();
             let rest = match rest {
                 None => List::EMPTY,
@@ -156,9 +156,9 @@ pub(crate) fn known(term: &Term, slots: &[Slot]) -> Slot {
 
 /// Refuses a literal that computes with a variable which is neither bound nor bound by an earlier term of the literal:
 /// such a fault must not depend on whether the belief base happens to reach it.
-pub(crate) fn well_bound(terms: &[Term], slots: &[Slot]) -> Result<(), EvalError> {
+pub(crate) fn well_bound(terms: &[AgentTerm], slots: &[Slot]) -> Result<(), EvalError> {
     for (at, term) in terms.iter().enumerate() {
-        let Term::Expr(expr) = term else { continue };
+        let AgentTerm::Expr(expr) = term else { continue };
         let mut fault = None;
         expr.each_var(&mut |var| {
             let bound = slots.get(var as usize).is_some_and(Option::is_some);
@@ -174,13 +174,13 @@ pub(crate) fn well_bound(terms: &[Term], slots: &[Slot]) -> Result<(), EvalError
 }
 
 /// Whether matching the term gives the variable a value.
-fn binds(term: &Term, var: u16) -> bool {
+fn binds(term: &AgentTerm, var: u16) -> bool {
     match term {
-        Term::Var(v) => *v == var,
-        Term::List(items, rest) => {
+        AgentTerm::Var(v) => *v == var,
+        AgentTerm::List(items, rest) => {
             items.iter().any(|t| binds(t, var)) || rest.as_ref().is_some_and(|t| binds(t, var))
         }
-        Term::Any | Term::Expr(_) => false,
+        AgentTerm::Any | AgentTerm::Expr(_) => false,
     }
 }
 
@@ -204,31 +204,31 @@ mod tests {
         })
     }
 
-    fn term() -> impl Strategy<Value = Term> {
+    fn term() -> impl Strategy<Value = AgentTerm> {
         let leaf = prop_oneof![
-            Just(Term::Any),
-            (0u16..3).prop_map(Term::Var),
-            value().prop_map(|v| Term::Expr(Expr::Const(v))),
+            Just(AgentTerm::Any),
+            (0u16..3).prop_map(AgentTerm::Var),
+            value().prop_map(|v| AgentTerm::Expr(Expr::Const(v))),
         ];
         leaf.prop_recursive(2, 6, 3, |inner| {
             (prop::collection::vec(inner.clone(), 0..3), prop::option::of(inner))
-                .prop_map(|(items, rest)| Term::List(items, rest.map(Box::new)))
+                .prop_map(|(items, rest)| AgentTerm::List(items, rest.map(Box::new)))
         })
     }
 
     /// The meaning of a match, without a trail: a substitution is extended or there is none.
-    fn matches(term: &Term, value: Value, mut theta: Vec<Slot>) -> Option<Vec<Slot>> {
+    fn matches(term: &AgentTerm, value: Value, mut theta: Vec<Slot>) -> Option<Vec<Slot>> {
         match term {
-            Term::Any => Some(theta),
-            Term::Var(v) => match theta[usize::from(*v)] {
+            AgentTerm::Any => Some(theta),
+            AgentTerm::Var(v) => match theta[usize::from(*v)] {
                 Some(known) => same(known, value).then_some(theta),
                 None => {
                     theta[usize::from(*v)] = Some(value);
                     Some(theta)
                 }
             },
-            Term::Expr(e) => same(e.eval(&|_| None).ok()?, value).then_some(theta),
-            Term::List(items, rest) => {
+            AgentTerm::Expr(e) => same(e.eval(&|_| None).ok()?, value).then_some(theta),
+            AgentTerm::List(items, rest) => {
                 let all: Vec<Value> = value.as_list()?.iter().collect();
                 if all.len() < items.len() || (rest.is_none() && all.len() > items.len()) {
                     return None;

@@ -17,7 +17,7 @@ use hrdsl_harness::{
     Harness, HarnessError, HarnessRun, Player, RunTermination, ScriptPlayer, SystemFault, SystemFaultKind,
     SystemPlayer, WorldStage,
 };
-use hrdsl_ir::{Program, system::System, test::Test, value::seconds};
+use hrdsl_ir::{Program, system::SystemUnderTest, test::Test, value::seconds};
 use hrdsl_judge::TraceJudge;
 use hrdsl_results::{CoverageRatios, Judgement, OutputSummary, RunEnd, RunMark, TestName, TestResult};
 use hrdsl_sim::SimWorld;
@@ -183,7 +183,7 @@ impl Campaign<'_> {
     }
 
     /// Runs a test once more that wall time has ended.
-    fn run_again(&self, system: &System, test: &Test, first: TestAttempt) -> TestAttempt {
+    fn run_again(&self, system: &SystemUnderTest, test: &Test, first: TestAttempt) -> TestAttempt {
         if self.stop.is_set() {
             return first;
         }
@@ -199,7 +199,7 @@ impl Campaign<'_> {
     }
 
     /// Runs and judges one test.
-    fn run_one(&self, system: &System, test: &Test) -> TestAttempt {
+    fn run_one(&self, system: &SystemUnderTest, test: &Test) -> TestAttempt {
         let (run, finished) = self.execute(system, test);
         let header = RecordingHeader {
             test: Some(test.name.clone()),
@@ -220,7 +220,7 @@ impl Campaign<'_> {
         TestAttempt { finished, recording, output, fault }
     }
 
-    fn execute(&self, system: &System, test: &Test) -> (HarnessRun, Option<Finished>) {
+    fn execute(&self, system: &SystemUnderTest, test: &Test) -> (HarnessRun, Option<Finished>) {
         let failed =
             |fault| (HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }, None);
         let stage = match SimWorld::new(self.program) {
@@ -243,7 +243,7 @@ impl Campaign<'_> {
         (run, Some(process.finish(GRACE)))
     }
 
-    fn launch(&self, system: &System, test: &Test) -> Launch {
+    fn launch(&self, system: &SystemUnderTest, test: &Test) -> Launch {
         Launch {
             command: system.run.clone(),
             dir: self.dir.clone(),

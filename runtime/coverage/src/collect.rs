@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     EventId, Program, Value,
-    coverage::{self as ir, BinName, PointId},
+    coverage::{self as ir, BinName, CoverpointId},
 };
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 use serde::{Deserialize, Serialize};
@@ -89,12 +89,12 @@ impl TraceObserver for CoverageCollector {
 /// Sorts a test's numbers into bins. Points without a number count as 0.
 #[must_use]
 pub fn hits_from_numbers(declared: &ir::Coverage, numbers: &[i64]) -> TestCoverage {
-    let number = |point: PointId| numbers.get(usize::from(point.0)).copied().unwrap_or(0);
-    let of_point = |(index, point): (usize, &ir::Point)| {
+    let number = |point: CoverpointId| numbers.get(usize::from(point.0)).copied().unwrap_or(0);
+    let of_point = |(index, point): (usize, &ir::Coverpoint)| {
         let n = numbers.get(index).copied().unwrap_or(0);
         indices(&point.bins, |bin| bin.holds(n))
     };
-    let of_cross = |cross: &ir::Cross| {
+    let of_cross = |cross: &ir::CoverCross| {
         if cross.ignore.iter().any(|c| c.holds(declared, &number)) {
             return Vec::new();
         }

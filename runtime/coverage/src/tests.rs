@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Symbol, Value,
-    coverage::{self as ir, Bin, BinName, Condition, Cross, CrossBin, Point, PointId},
+    coverage::{self as ir, BinCondition, BinName, CoverBin, CoverCross, Coverpoint, CoverpointId, CrossBin},
     monitor::Assumption,
     world::SignalId,
 };
@@ -21,20 +21,20 @@ fn pattern(event: u16, args: &[ArgPattern]) -> EventPattern {
     EventPattern { event: EventId(event), args: args.to_vec() }
 }
 
-fn bin(name: &str, lo: i64, hi: Option<i64>) -> Bin {
-    Bin { name: name.to_owned(), lo, hi }
+fn bin(name: &str, lo: i64, hi: Option<i64>) -> CoverBin {
+    CoverBin { name: name.to_owned(), lo, hi }
 }
 
-fn point(name: &str, count: Vec<EventPattern>, bins: Vec<Bin>) -> Point {
-    Point { name: name.to_owned(), count, bins, origin: Span::default() }
+fn point(name: &str, count: Vec<EventPattern>, bins: Vec<CoverBin>) -> Coverpoint {
+    Coverpoint { name: name.to_owned(), count, bins, origin: Span::default() }
 }
 
-fn cross_bin(name: &str, when: Condition) -> CrossBin {
+fn cross_bin(name: &str, when: BinCondition) -> CrossBin {
     CrossBin { name: name.to_owned(), when, origin: Span::default() }
 }
 
-fn is(point: u16, bin: u16) -> Condition {
-    Condition::In { point: PointId(point), bin }
+fn is(point: u16, bin: u16) -> BinCondition {
+    BinCondition::In { point: CoverpointId(point), bin }
 }
 
 /// Points `legs` and `ready`, and their cross.
@@ -47,15 +47,15 @@ fn declared() -> ir::Coverage {
             point("legs", vec![pattern(ASK, &[])], legs),
             point("ready", vec![pattern(DECIDED, &[yes]), pattern(DECIDED, &[ArgPattern::Any])], ready),
         ],
-        crosses: vec![Cross {
+        crosses: vec![CoverCross {
             name: "human_robot".to_owned(),
-            points: vec![PointId(0), PointId(1)],
+            points: vec![CoverpointId(0), CoverpointId(1)],
             bins: vec![
-                cross_bin("4 legs, ready at least once", Condition::And(vec![is(0, 2), is(1, 1)])),
-                cross_bin("idle", Condition::Not(Box::new(Condition::Or(vec![is(0, 1), is(1, 1)])))),
+                cross_bin("4 legs, ready at least once", BinCondition::And(vec![is(0, 2), is(1, 1)])),
+                cross_bin("idle", BinCondition::Not(Box::new(BinCondition::Or(vec![is(0, 1), is(1, 1)])))),
                 cross_bin("some", is(0, 1)),
             ],
-            ignore: vec![Condition::And(vec![is(0, 0), is(1, 1)])],
+            ignore: vec![BinCondition::And(vec![is(0, 0), is(1, 1)])],
             origin: Span::default(),
         }],
     }

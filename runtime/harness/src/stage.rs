@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
     expr::Expr,
-    world::{Rule, RuleOn, SignalId, WorldAction},
+    world::{RuleTrigger, SignalId, WorldAction, WorldRule},
 };
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
@@ -18,7 +18,7 @@ pub struct WorldStage<'p> {
     world: Box<dyn WorldBackend + 'p>,
     /// What it has, as it was declared.
     declared: Option<&'p hrdsl_ir::world::World>,
-    rules: &'p [Rule],
+    rules: &'p [WorldRule],
     /// The signals that are recorded, with what was last recorded of each.
     recorded: Vec<(SignalId, Option<Value>)>,
     sample: Nanos,
@@ -99,7 +99,7 @@ impl<'p> WorldStage<'p> {
     pub fn command(&mut self, request: &CommandRequest) -> Result<CommandId, NotBegun> {
         let checked = request.checked(self.declared)?;
         let id = self.world.command(&checked).map_err(NotBegun::Failed)?;
-        let told = RuleOn::Commanded { device: checked.device_id, command: checked.command_id };
+        let told = RuleTrigger::Commanded { device: checked.device_id, command: checked.command_id };
         let answers = self.fire(&|on| *on == told);
         self.answers.extend(answers);
         Ok(id)
@@ -119,8 +119,8 @@ impl<'p> WorldStage<'p> {
     /// What the world answers to an event.
     pub fn hear(&mut self, event: EventId, args: &[Value]) -> Vec<PlayerMessage> {
         self.fire(&|on| match on {
-            RuleOn::Event(pattern) => EventPattern::matches(pattern, event, args),
-            RuleOn::Commanded { .. } => false,
+            RuleTrigger::Event(pattern) => EventPattern::matches(pattern, event, args),
+            RuleTrigger::Commanded { .. } => false,
         })
     }
 
@@ -129,7 +129,7 @@ impl<'p> WorldStage<'p> {
         std::mem::take(&mut self.answers)
     }
 
-    fn fire(&mut self, is_set_off: &dyn Fn(&RuleOn) -> bool) -> Vec<PlayerMessage> {
+    fn fire(&mut self, is_set_off: &dyn Fn(&RuleTrigger) -> bool) -> Vec<PlayerMessage> {
         let mut out = Vec::new();
         for rule in self.rules {
             if !is_set_off(&rule.on) {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use hrdsl_ir::{
-    ActorId, Event, EventId, Nanos, Param, Program, Type, Value,
+    ActorId, Event, EventId, Nanos, Parameter, Program, Type, Value,
     value::seconds,
     world::{Signal, SignalId},
 };
@@ -251,7 +251,7 @@ fn list<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Option<String> 
     (!names.is_empty()).then(|| format!("{what} it can use: {}", names.join(", ")))
 }
 
-fn argument(event: &str, param: &Param, given: Option<&SystemArgument>) -> Result<Value, SystemAnswer> {
+fn argument(event: &str, param: &Parameter, given: Option<&SystemArgument>) -> Result<Value, SystemAnswer> {
     let Some(given) = given else {
         return Err(refuse(format!("`{event}` needs the argument `{}`", param.name), None));
     };
@@ -351,7 +351,7 @@ mod tests {
     use super::*;
 
     fn given(ty: Type, arg: SystemArgument) -> Result<Value, String> {
-        let param = Param { name: "p".into(), ty };
+        let param = Parameter { name: "p".into(), ty };
         argument("e", &param, Some(&arg)).map_err(|answer| match answer {
             SystemAnswer::Refused { error, .. } => error,
             other => panic!("{other:?}"),

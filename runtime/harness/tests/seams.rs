@@ -8,16 +8,18 @@ use hrdsl_harness::{
     doubles::{ToldClock, ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span, Type, Unit, Value,
+    Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span, Type, Unit,
+    Value,
     device::{
         CommandParam, CommandType, Device, DeviceBody, DeviceCommand, DeviceKind, DevicePrimitive,
         DeviceSort, NumberCount,
     },
     event::{Stimulus, StimulusStep},
-    test::{Provenance, Test, TestStep},
+    test::{Test, TestProvenance, TestStep},
     value::SECOND,
     world::{
-        ArmId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, Rule, RuleOn, Signal, SignalId, World,
+        ArmId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, RuleTrigger, Signal, SignalId, World,
+        WorldRule,
     },
 };
 use hrdsl_trace::{RunEnd, TraceStepKind, print};
@@ -30,7 +32,10 @@ const ROBOT: ActorId = ActorId(1);
 fn program() -> Program {
     let event = |name: &str, from, params: &[&str], stimulus| Event {
         name: name.into(),
-        params: params.iter().map(|p| Param { name: (*p).into(), ty: Type::Int { lo: 0, hi: 9 } }).collect(),
+        params: params
+            .iter()
+            .map(|p| Parameter { name: (*p).into(), ty: Type::Int { lo: 0, hi: 9 } })
+            .collect(),
         from,
         to: Vec::new(),
         stimulus,
@@ -48,8 +53,8 @@ fn program() -> Program {
         recorded: true,
         origin: Span::default(),
     };
-    let rule = Rule {
-        on: RuleOn::Commanded { device: DeviceId(1), command: DeviceCommandId(0) },
+    let rule = WorldRule {
+        on: RuleTrigger::Commanded { device: DeviceId(1), command: DeviceCommandId(0) },
         guard: Some(Expr::Var(0)),
         event: EventId(3),
         args: Vec::new(),
@@ -116,7 +121,7 @@ fn kinds() -> Vec<DeviceKind> {
 }
 
 fn test(steps: Vec<TestStep>) -> Test {
-    Test { name: "t".into(), seed: 1, provenance: Provenance::default(), steps, origin: Span::default() }
+    Test { name: "t".into(), seed: 1, provenance: TestProvenance::default(), steps, origin: Span::default() }
 }
 
 fn ask(n: i64) -> TestStep {

@@ -17,7 +17,7 @@ mod latest;
 mod machine;
 mod verdict;
 
-use hrdsl_ir::{EventPattern, Nanos, Program, monitor::On};
+use hrdsl_ir::{EventPattern, Nanos, Program, monitor::MonitorTrigger};
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
 use latest::{LatestSamples, SampleReading};
@@ -51,8 +51,8 @@ impl MonitorRunner {
         let mut by_signal = vec![Vec::new(); program.signals.len()];
         for (index, monitor) in program.monitors.iter().enumerate() {
             let on_edges = monitor.edges.iter().flat_map(|edge| match &edge.on {
-                On::Event(patterns) => patterns.as_slice(),
-                On::Sample | On::Deadline => &[],
+                MonitorTrigger::Event(patterns) => patterns.as_slice(),
+                MonitorTrigger::Sample | MonitorTrigger::Deadline => &[],
             });
             let at_margin = monitor.margin.iter().flat_map(|margin| &margin.at);
             for pattern in on_edges.chain(at_margin) {

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     EventId, Expr, Nanos, Value,
-    monitor::{Edge, Effect, Monitor, On},
+    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorTrigger},
 };
 
 use hrdsl_trace::{TraceStep, TraceStepKind};
@@ -61,15 +61,17 @@ enum EdgeCause<'a> {
 }
 
 impl EdgeCause<'_> {
-    fn starts(self, on: &On) -> bool {
+    fn starts(self, on: &MonitorTrigger) -> bool {
         match (self, on) {
-            (EdgeCause::Event(event, args), On::Event(patterns)) => {
+            (EdgeCause::Event(event, args), MonitorTrigger::Event(patterns)) => {
                 patterns.iter().any(|p| p.matches(event, args))
             }
-            (EdgeCause::Sample, On::Sample) | (EdgeCause::Deadline, On::Deadline) => true,
+            (EdgeCause::Sample, MonitorTrigger::Sample) | (EdgeCause::Deadline, MonitorTrigger::Deadline) => {
+                true
+            }
             (
                 EdgeCause::Event(..) | EdgeCause::Sample | EdgeCause::Deadline,
-                On::Event(_) | On::Sample | On::Deadline,
+                MonitorTrigger::Event(_) | MonitorTrigger::Sample | MonitorTrigger::Deadline,
             ) => false,
         }
     }
@@ -83,10 +85,10 @@ impl MonitorMachine {
                 edges.push(index);
             }
         }
-        let triggers = monitor.edges.iter().any(|e| e.effects.contains(&Effect::Trigger));
+        let triggers = monitor.edges.iter().any(|e| e.effects.contains(&MonitorEffect::Trigger));
         let mut machine = Self {
             leaving,
-            watches: !triggers && monitor.edges.iter().any(|e| e.on == On::Sample),
+            watches: !triggers && monitor.edges.iter().any(|e| e.on == MonitorTrigger::Sample),
             state: usize::from(monitor.initial.0),
             entered: 0,
             zero: 0,
@@ -146,7 +148,7 @@ impl MonitorMachine {
 
     /// Takes the first edge that the cause starts and whose guard holds.
     fn react(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
-        let enabled = |edge: &Edge| {
+        let enabled = |edge: &MonitorEdge| {
             cause.starts(&edge.on)
                 && edge.guard.as_ref().is_none_or(|g| self.value(g, signals) == Some(Value::Bool(true)))
         };
@@ -160,11 +162,11 @@ impl MonitorMachine {
         let to = usize::from(self.monitor.edges[edge].to.0);
         let moves = to != self.state;
         let has = |effect| self.monitor.edges[edge].effects.contains(&effect);
-        let (resets, fails) = (has(Effect::ResetClock), has(Effect::Fail));
+        let (resets, fails) = (has(MonitorEffect::ResetClock), has(MonitorEffect::Fail));
         for index in 0..self.monitor.edges[edge].effects.len() {
             match self.monitor.edges[edge].effects[index] {
-                Effect::ResetClock => self.zero = at.time,
-                Effect::Trigger => {
+                MonitorEffect::ResetClock => self.zero = at.time,
+                MonitorEffect::Trigger => {
                     self.triggered = self.triggered.saturating_add(1);
                     // A further trigger of an obligation whose time goes on joins it: the first stays in the counterexample.
                     let joins = !moves && !resets && !fails && self.obligation.is_some();
@@ -172,11 +174,11 @@ impl MonitorMachine {
                         self.obligation = Some(obligation(cause, at, signals));
                     }
                 }
-                Effect::Discharge => {
+                MonitorEffect::Discharge => {
                     self.discharged = self.discharged.saturating_add(1);
                     self.obligation = None;
                 }
-                Effect::Fail => self.fail(cause, at, signals),
+                MonitorEffect::Fail => self.fail(cause, at, signals),
             }
         }
         if moves {

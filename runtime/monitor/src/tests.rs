@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     ActorId, ArgPattern, Event, EventId, Expr, Span, Symbol, Type, Unit, Value,
     expr::BinaryOp,
-    monitor::{Edge, Effect, Margin, Monitor, RequirementKind, State, StateId},
+    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorMargin, MonitorState, RequirementKind, StateId},
     world::{Signal, SignalId},
 };
 use hrdsl_trace::Trace;
@@ -40,9 +40,12 @@ fn indices(counterexample: &[SeenStep]) -> Vec<usize> {
     counterexample.iter().map(|seen| seen.index).collect()
 }
 
-fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<Edge>) -> Monitor {
-    let state =
-        |&(pending, deadline): &(bool, Option<Nanos>)| State { name: String::new(), pending, deadline };
+fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<MonitorEdge>) -> Monitor {
+    let state = |&(pending, deadline): &(bool, Option<Nanos>)| MonitorState {
+        name: String::new(),
+        pending,
+        deadline,
+    };
     Monitor {
         name: "R".to_owned(),
         kind: RequirementKind::Functional,
@@ -57,12 +60,12 @@ fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<Edge>) -> Monitor {
     }
 }
 
-fn edge(from: u16, to: u16, on: On, effects: &[Effect]) -> Edge {
-    Edge { from: StateId(from), to: StateId(to), on, guard: None, effects: effects.to_vec() }
+fn edge(from: u16, to: u16, on: MonitorTrigger, effects: &[MonitorEffect]) -> MonitorEdge {
+    MonitorEdge { from: StateId(from), to: StateId(to), on, guard: None, effects: effects.to_vec() }
 }
 
-fn on(event: u16) -> On {
-    On::Event(vec![EventPattern { event: EventId(event), args: Vec::new() }])
+fn on(event: u16) -> MonitorTrigger {
+    MonitorTrigger::Event(vec![EventPattern { event: EventId(event), args: Vec::new() }])
 }
 
 fn happens(time: Nanos, event: u16) -> TraceStep {
@@ -81,13 +84,13 @@ fn check(monitor: Monitor, steps: Vec<TraceStep>, end: Nanos) -> MonitorVerdict 
 
 /// `ask` is followed by `answer` within 10 ns.
 fn response() -> Monitor {
-    use Effect::{Discharge, Fail, ResetClock, Trigger};
+    use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
     monitor(
         &[(false, None), (true, Some(10))],
         vec![
             edge(0, 1, on(0), &[Trigger, ResetClock]),
             edge(1, 0, on(1), &[Discharge]),
-            edge(1, 0, On::Deadline, &[Fail]),
+            edge(1, 0, MonitorTrigger::Deadline, &[Fail]),
             edge(1, 1, on(0), &[Trigger]),
         ],
     )
@@ -134,7 +137,10 @@ fn a_failed_requirement_may_have_an_open_obligation_too() {
 
 #[test]
 fn a_run_may_begin_with_an_obligation() {
-    let first = monitor(&[(true, Some(10)), (false, None)], vec![edge(0, 1, On::Deadline, &[Effect::Fail])]);
+    let first = monitor(
+        &[(true, Some(10)), (false, None)],
+        vec![edge(0, 1, MonitorTrigger::Deadline, &[MonitorEffect::Fail])],
+    );
     let violation = check(first.clone(), vec![happens(10, 2)], 20).first_failure.unwrap();
     assert_eq!((violation.time, violation.trigger_time), (10, 10));
     assert_eq!(check(first, Vec::new(), 9).pending_since, Some(0));
@@ -142,14 +148,19 @@ fn a_run_may_begin_with_an_obligation() {
 
 #[test]
 fn deadlines_follow_each_other_at_their_exact_times() {
-    use Effect::{Fail, ResetClock};
+    use MonitorEffect::{Fail, ResetClock};
     // Without a reset the second state's deadline counts from the same zero; one already past is due on entry.
     let chain = monitor(
         &[(false, Some(10)), (false, Some(25)), (false, Some(5)), (false, None)],
-        vec![edge(0, 1, On::Deadline, &[]), edge(1, 2, On::Deadline, &[]), edge(2, 3, On::Deadline, &[Fail])],
+        vec![
+            edge(0, 1, MonitorTrigger::Deadline, &[]),
+            edge(1, 2, MonitorTrigger::Deadline, &[]),
+            edge(2, 3, MonitorTrigger::Deadline, &[Fail]),
+        ],
     );
     assert_eq!(check(chain, Vec::new(), 100).first_failure.unwrap().time, 25);
-    let periodic = monitor(&[(false, Some(10))], vec![edge(0, 0, On::Deadline, &[Fail, ResetClock])]);
+    let periodic =
+        monitor(&[(false, Some(10))], vec![edge(0, 0, MonitorTrigger::Deadline, &[Fail, ResetClock])]);
     assert_eq!(check(periodic.clone(), vec![happens(95, 2)], 100).failures, 10);
     // Without the reset the clock reaches the deadline only once.
     let mut once = periodic;
@@ -159,10 +170,13 @@ fn deadlines_follow_each_other_at_their_exact_times() {
 
 #[test]
 fn deadlines_that_take_no_time_cannot_stop_time() {
-    use Effect::{Fail, ResetClock};
+    use MonitorEffect::{Fail, ResetClock};
     let round = monitor(
         &[(false, Some(0)), (false, Some(0))],
-        vec![edge(0, 1, On::Deadline, &[Fail, ResetClock]), edge(1, 0, On::Deadline, &[Fail, ResetClock])],
+        vec![
+            edge(0, 1, MonitorTrigger::Deadline, &[Fail, ResetClock]),
+            edge(1, 0, MonitorTrigger::Deadline, &[Fail, ResetClock]),
+        ],
     );
     assert_eq!(check(round, vec![happens(1, 0)], 100).failures, 2);
 }
@@ -173,10 +187,10 @@ fn below(limit: f64) -> Expr {
 }
 
 fn never_close() -> Monitor {
-    let mut close = edge(0, 0, on(0), &[Effect::Trigger, Effect::Fail]);
+    let mut close = edge(0, 0, on(0), &[MonitorEffect::Trigger, MonitorEffect::Fail]);
     close.guard = Some(below(0.05));
-    let mut never = monitor(&[(false, None)], vec![close, edge(0, 0, on(0), &[Effect::Trigger])]);
-    never.margin = Some(Margin {
+    let mut never = monitor(&[(false, None)], vec![close, edge(0, 0, on(0), &[MonitorEffect::Trigger])]);
+    never.margin = Some(MonitorMargin {
         value: Expr::binary(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05)),
         unit: Unit::Metre,
         at: vec![EventPattern { event: EventId(0), args: Vec::new() }],
@@ -213,7 +227,7 @@ fn a_guard_without_samples_does_not_hold() {
     let positive = Expr::binary(BinaryOp::Gt, reciprocal, Expr::float(0.0));
     let negative = Expr::Unary(hrdsl_ir::expr::UnaryOp::Not, Box::new(positive.clone()));
     for guard in [positive, negative] {
-        let mut fails = edge(0, 0, On::Sample, &[Effect::Trigger, Effect::Fail]);
+        let mut fails = edge(0, 0, MonitorTrigger::Sample, &[MonitorEffect::Trigger, MonitorEffect::Fail]);
         fails.guard = Some(guard);
         let verdict =
             check(monitor(&[(false, None)], vec![fails]), vec![reads(0, 1, 1.0), reads(1, 0, 0.0)], 10);
@@ -223,7 +237,7 @@ fn a_guard_without_samples_does_not_hold() {
 
 #[test]
 fn a_monitor_that_only_watches_is_triggered_by_its_first_complete_sample() {
-    let mut fails = edge(0, 0, On::Sample, &[Effect::Fail]);
+    let mut fails = edge(0, 0, MonitorTrigger::Sample, &[MonitorEffect::Fail]);
     fails.guard = Some(below(0.05));
     let watch = monitor(&[(false, None)], vec![fails]);
     let verdict = check(watch.clone(), vec![reads(0, 0, 1.0)], 10);
@@ -234,13 +248,13 @@ fn a_monitor_that_only_watches_is_triggered_by_its_first_complete_sample() {
 
 #[test]
 fn the_first_enabled_edge_is_taken_and_only_that() {
-    let mut guarded = edge(0, 1, on(0), &[Effect::Trigger]);
+    let mut guarded = edge(0, 1, on(0), &[MonitorEffect::Trigger]);
     guarded.guard = Some(Expr::bool(false));
     let edges = vec![
         guarded,
-        edge(0, 2, on(0), &[Effect::Trigger]),
-        edge(0, 1, on(0), &[Effect::Trigger, Effect::Fail]),
-        edge(2, 1, on(0), &[Effect::Fail]),
+        edge(0, 2, on(0), &[MonitorEffect::Trigger]),
+        edge(0, 1, on(0), &[MonitorEffect::Trigger, MonitorEffect::Fail]),
+        edge(2, 1, on(0), &[MonitorEffect::Fail]),
     ];
     let states = [(false, None), (false, None), (true, None)];
     let verdict = check(monitor(&states, edges), vec![happens(3, 0)], 10);
@@ -252,7 +266,7 @@ fn the_first_enabled_edge_is_taken_and_only_that() {
 
 #[test]
 fn an_obligation_ends_when_it_is_met_or_lost() {
-    use Effect::{Discharge, Fail, Trigger};
+    use MonitorEffect::{Discharge, Fail, Trigger};
     // All in one state: each answer ends what the triggers before it began.
     let edges =
         vec![edge(0, 0, on(0), &[Trigger]), edge(0, 0, on(1), &[Discharge]), edge(0, 0, on(2), &[Fail])];
@@ -269,7 +283,7 @@ fn an_obligation_ends_when_it_is_met_or_lost() {
 #[test]
 fn arguments_are_matched() {
     let pattern = EventPattern { event: EventId(0), args: vec![ArgPattern::Is(Value::Bool(true))] };
-    let edges = vec![edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger])];
+    let edges = vec![edge(0, 0, MonitorTrigger::Event(vec![pattern]), &[MonitorEffect::Trigger])];
     let yes_no = |b| TraceStep {
         time: 0,
         what: TraceStepKind::Event { event: EventId(0), args: vec![Value::Bool(b)] },
@@ -283,7 +297,10 @@ fn symbols_are_matched_and_guard() {
     let symbol = |name: &str| Value::Symbol(Symbol::intern(name));
     let pattern = EventPattern { event: EventId(0), args: vec![ArgPattern::Is(symbol("go"))] };
     let is_fast = Expr::binary(BinaryOp::Eq, Expr::Var(0), Expr::Const(symbol("fast")));
-    let trigger = Edge { guard: Some(is_fast), ..edge(0, 0, On::Event(vec![pattern]), &[Effect::Trigger]) };
+    let trigger = MonitorEdge {
+        guard: Some(is_fast),
+        ..edge(0, 0, MonitorTrigger::Event(vec![pattern]), &[MonitorEffect::Trigger])
+    };
     let said = |time, name| TraceStep {
         time,
         what: TraceStepKind::Event { event: EventId(0), args: vec![symbol(name)] },
@@ -302,7 +319,7 @@ fn symbols_are_matched_and_guard() {
 #[test]
 fn bad_input_is_borne() {
     let mut odd = response();
-    odd.edges.push(edge(9, 0, on(7), &[Effect::Fail]));
+    odd.edges.push(edge(9, 0, on(7), &[MonitorEffect::Fail]));
     odd.edges.push(edge(0, 9, on(2), &[]));
     odd.signals.push(SignalId(77));
     // Unknown events and signals, time that goes backwards, steps after the end.

@@ -3,14 +3,17 @@
 use hrdsl_ir::{
     ActorId, Event, EventId, EventPattern, Expr, Nanos, Program, Span, Type, Unit, Value,
     expr::{BinaryOp, UnaryOp},
-    monitor::{Edge, Effect, Margin, Monitor, On, RequirementKind, State, StateId},
+    monitor::{
+        Monitor, MonitorEdge, MonitorEffect, MonitorMargin, MonitorState, MonitorTrigger, RequirementKind,
+        StateId,
+    },
     world::{Signal, SignalId},
 };
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 use proptest::prelude::*;
 
-use Effect::{Discharge, Fail, ResetClock, Trigger};
+use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
 
 const E: u16 = 0;
 const F: u16 = 1;
@@ -21,18 +24,28 @@ fn pattern(event: u16) -> EventPattern {
     EventPattern { event: EventId(event), args: Vec::new() }
 }
 
-fn on(event: u16) -> On {
-    On::Event(vec![pattern(event)])
+fn on(event: u16) -> MonitorTrigger {
+    MonitorTrigger::Event(vec![pattern(event)])
 }
 
-fn edge(from: u16, to: u16, on: On, guard: Option<Expr>, effects: &[Effect]) -> Edge {
-    Edge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
+fn edge(
+    from: u16,
+    to: u16,
+    on: MonitorTrigger,
+    guard: Option<Expr>,
+    effects: &[MonitorEffect],
+) -> MonitorEdge {
+    MonitorEdge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
 }
 
-fn monitor(states: &[(&str, bool, Option<Nanos>)], edges: Vec<Edge>, signals: Vec<SignalId>) -> Monitor {
+fn monitor(
+    states: &[(&str, bool, Option<Nanos>)],
+    edges: Vec<MonitorEdge>,
+    signals: Vec<SignalId>,
+) -> Monitor {
     let states = states
         .iter()
-        .map(|&(name, pending, deadline)| State { name: name.to_owned(), pending, deadline })
+        .map(|&(name, pending, deadline)| MonitorState { name: name.to_owned(), pending, deadline })
         .collect();
     Monitor {
         name: "R".to_owned(),
@@ -55,7 +68,7 @@ fn causes(within: Option<Nanos>) -> Monitor {
         vec![
             edge(0, 1, on(E), None, &[Trigger, ResetClock]),
             edge(1, 0, on(F), None, &[Discharge]),
-            edge(1, 0, On::Deadline, None, &[Fail]),
+            edge(1, 0, MonitorTrigger::Deadline, None, &[Fail]),
             edge(1, 1, on(E), None, &[Trigger]),
         ],
         Vec::new(),
@@ -91,7 +104,7 @@ fn never() -> Monitor {
         vec![SignalId(0)],
     );
     let value = Expr::binary(BinaryOp::Sub, Expr::Var(0), Expr::float(LIMIT));
-    never.margin = Some(Margin { value, unit: Unit::Metre, at: vec![pattern(E)] });
+    never.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: vec![pattern(E)] });
     never
 }
 
@@ -101,15 +114,15 @@ fn globally() -> Monitor {
     let mut globally = monitor(
         &[("unseen", false, None), ("holds", false, None), ("broken", false, None)],
         vec![
-            edge(0, 1, On::Sample, Some(below()), &[Trigger]),
-            edge(0, 2, On::Sample, above(), &[Trigger, Fail]),
-            edge(1, 2, On::Sample, above(), &[Fail]),
-            edge(2, 1, On::Sample, Some(below()), &[]),
+            edge(0, 1, MonitorTrigger::Sample, Some(below()), &[Trigger]),
+            edge(0, 2, MonitorTrigger::Sample, above(), &[Trigger, Fail]),
+            edge(1, 2, MonitorTrigger::Sample, above(), &[Fail]),
+            edge(2, 1, MonitorTrigger::Sample, Some(below()), &[]),
         ],
         vec![SignalId(0)],
     );
     let value = Expr::binary(BinaryOp::Sub, Expr::float(LIMIT), Expr::Var(0));
-    globally.margin = Some(Margin { value, unit: Unit::Metre, at: Vec::new() });
+    globally.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: Vec::new() });
     globally
 }
 
@@ -370,8 +383,8 @@ fn samples_of_one_instant_are_one() {
     let equal = monitor(
         &[("watch", false, None)],
         vec![
-            edge(0, 0, On::Sample, Some(differ), &[Trigger, Fail]),
-            edge(0, 0, On::Sample, None, &[Trigger]),
+            edge(0, 0, MonitorTrigger::Sample, Some(differ), &[Trigger, Fail]),
+            edge(0, 0, MonitorTrigger::Sample, None, &[Trigger]),
         ],
         vec![SignalId(0), SignalId(1)],
     );

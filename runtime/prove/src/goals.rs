@@ -1,6 +1,6 @@
 //! Goals decided under the assumptions of a program, by up to three searches.
 
-use hrdsl_ir::{Program, ta::Formula};
+use hrdsl_ir::{Program, ta::QueryFormula};
 use hrdsl_ta::{
     EventCounter, EventLimit, GoalKind, GoalOutcome, ReachabilityGoal, SearchCutoff, SearchError,
     SearchReport,
@@ -47,7 +47,7 @@ enum WindowTreatment {
 
 /// The goal that a formula holds.
 #[must_use]
-pub fn of_formula(formula: &Formula) -> ReachabilityGoal {
+pub fn of_formula(formula: &QueryFormula) -> ReachabilityGoal {
     ReachabilityGoal { what: GoalKind::Formula(formula.clone()), settled: false }
 }
 

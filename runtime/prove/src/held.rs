@@ -10,7 +10,7 @@ use hrdsl_ir::{
     EventId, Program,
     event::StimulusStep,
     expr::Expr,
-    ta::{Automaton, Edge, Location, LocationId, LocationKind, Network, Sync},
+    ta::{Automaton, Edge, Location, LocationId, LocationKind, Network, SyncLabel},
 };
 use hrdsl_ta::WitnessRun;
 
@@ -39,7 +39,7 @@ impl TimedHolds {
             let automaton = held.program.automata.get_mut(usize::from(id.0))?;
             held.members.push((automaton.name.clone(), automaton.initial));
             for first in 0..automaton.edges.len() {
-                let Sync::Send { event: stimulus, .. } = automaton.edges[first].sync else { continue };
+                let SyncLabel::Send { event: stimulus, .. } = automaton.edges[first].sync else { continue };
                 let Some(body) = &program.events.get(usize::from(stimulus.0))?.stimulus else { continue };
                 let locations = let_pass(automaton, first, &HoldSites::of(&body.steps));
                 held.places.extend(locations.into_iter().map(|location| HoldLocation {
@@ -157,12 +157,12 @@ fn let_pass(automaton: &mut Automaton, first: usize, holds: &HoldSites) -> Vec<L
         let out = |e: &usize| automaton.edges[*e].from == here;
         ends = (0..automaton.edges.len()).filter(out).collect();
         let waits = ends.iter().any(|e| match &automaton.edges[*e].sync {
-            Sync::Send { event, .. } => holds.before.contains(event),
-            Sync::Internal
-            | Sync::Receive { .. }
-            | Sync::Offer { .. }
-            | Sync::Accept { .. }
-            | Sync::Join { .. } => false,
+            SyncLabel::Send { event, .. } => holds.before.contains(event),
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Offer { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => false,
         });
         if waits {
             automaton.locations[usize::from(here.0)].kind = LocationKind::Normal;
@@ -198,7 +198,7 @@ fn stop_before(automaton: &mut Automaton, ends: &[usize], target: LocationId) ->
         selects: Vec::new(),
         clock_guard: Vec::new(),
         guard: None,
-        sync: Sync::Internal,
+        sync: SyncLabel::Internal,
         updates: Vec::new(),
         origin,
     });

@@ -12,11 +12,11 @@
 
 use hrdsl_ir::{
     ActorId, EventPattern, Expr, Nanos, Program,
-    expr::Place,
-    monitor::{Effect, Monitor, On},
+    expr::Lvalue,
+    monitor::{Monitor, MonitorEffect, MonitorTrigger},
     ta::{
-        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Formula, Location, LocationId,
-        LocationKind, Network, Sync, Time, Update, Var,
+        Automaton, AutomatonId, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment,
+        Location, LocationId, LocationKind, Network, QueryFormula, SyncLabel, TimeSum,
     },
 };
 
@@ -34,9 +34,9 @@ pub struct ObservedNetwork {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObserverFormulas {
     /// The requirement is violated. `None`: it cannot be, whatever happens.
-    pub violated: Option<Formula>,
+    pub violated: Option<QueryFormula>,
     /// It was triggered.
-    pub triggered: Formula,
+    pub triggered: QueryFormula,
 }
 
 impl ObservedNetwork {
@@ -91,13 +91,16 @@ struct ObserverPlan<'m> {
 
 impl<'m> ObserverPlan<'m> {
     fn of(monitor: &'m Monitor) -> Result<Self, String> {
-        let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == On::Sample);
+        let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == MonitorTrigger::Sample);
         if samples || !monitor.signals.is_empty() {
             return Err("it reads signals of the world, which a network does not have".to_owned());
         }
         let deadlines =
             (0..monitor.states.len()).map(|s| deadline(monitor, s)).collect::<Result<Vec<_>, _>>()?;
-        let fails = monitor.edges.iter().any(|e| e.effects.contains(&Effect::Fail) && e.on != On::Deadline)
+        let fails = monitor
+            .edges
+            .iter()
+            .any(|e| e.effects.contains(&MonitorEffect::Fail) && e.on != MonitorTrigger::Deadline)
             || deadlines.iter().any(Option::is_some);
         let mut plan = Self { monitor, deadlines, fails, telling: None };
         plan.telling = plan.telling_locations();
@@ -109,21 +112,21 @@ impl<'m> ObserverPlan<'m> {
         number(self.monitor.states.len())
     }
 
-    fn target(&self, edge: &hrdsl_ir::monitor::Edge) -> u16 {
-        if edge.effects.contains(&Effect::Fail) { self.violated() } else { edge.to.0 }
+    fn target(&self, edge: &hrdsl_ir::monitor::MonitorEdge) -> u16 {
+        if edge.effects.contains(&MonitorEffect::Fail) { self.violated() } else { edge.to.0 }
     }
 
-    fn on_events(&self) -> impl Iterator<Item = (&'m hrdsl_ir::monitor::Edge, &'m [EventPattern])> {
+    fn on_events(&self) -> impl Iterator<Item = (&'m hrdsl_ir::monitor::MonitorEdge, &'m [EventPattern])> {
         self.monitor.edges.iter().filter_map(|e| match &e.on {
-            On::Event(patterns) => Some((e, patterns.as_slice())),
-            On::Sample | On::Deadline => None,
+            MonitorTrigger::Event(patterns) => Some((e, patterns.as_slice())),
+            MonitorTrigger::Sample | MonitorTrigger::Deadline => None,
         })
     }
 
     /// The targets of the edges that trigger, if to be in one of them means that it was triggered: each edge that leads there
     /// from elsewhere triggers.
     fn telling_locations(&self) -> Option<Vec<u16>> {
-        let triggers = |e: &hrdsl_ir::monitor::Edge| e.effects.contains(&Effect::Trigger);
+        let triggers = |e: &hrdsl_ir::monitor::MonitorEdge| e.effects.contains(&MonitorEffect::Trigger);
         let mut targets: Vec<u16> =
             self.on_events().filter(|(e, _)| triggers(e)).map(|(e, _)| self.target(e)).collect();
         targets.sort_unstable();
@@ -145,8 +148,14 @@ impl<'m> ObserverPlan<'m> {
         };
         let mut locations: Vec<Location> = monitor.states.iter().map(|s| location(&s.name)).collect();
         locations.push(location("violated"));
-        let flag =
-            Var { name: "triggered".to_owned(), lo: 0, hi: 1, init: 0, is_bool: true, enumeration: None };
+        let flag = AutomatonVar {
+            name: "triggered".to_owned(),
+            lo: 0,
+            hi: 1,
+            init: 0,
+            is_bool: true,
+            enumeration: None,
+        };
         let vars = if self.telling.is_none() { vec![flag] } else { Vec::new() };
         let timed = self.deadlines.iter().any(Option::is_some);
         let mut edges = Vec::new();
@@ -177,17 +186,17 @@ impl<'m> ObserverPlan<'m> {
         let patterns: Vec<&[EventPattern]> = rules.iter().map(|(_, p)| *p).collect();
         let clock = ClockId(number(program.clocks.len()));
         let in_time =
-            |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: Time::constant(d) };
+            |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: TimeSum::constant(d) };
         for reception in receptions(program, &patterns, binders)? {
             let edge = rules[reception.rule].0;
             let to = self.target(edge);
             let mut updates = Vec::new();
-            if timed && edge.effects.contains(&Effect::ResetClock) {
-                updates.push(Update::zero(clock));
+            if timed && edge.effects.contains(&MonitorEffect::ResetClock) {
+                updates.push(EdgeAssignment::zero(clock));
             }
-            if self.telling.is_none() && edge.effects.contains(&Effect::Trigger) {
-                let place = Place::slot(number(program.shared.len()));
-                updates.push(Update::Assign { place, value: Expr::bool(true) });
+            if self.telling.is_none() && edge.effects.contains(&MonitorEffect::Trigger) {
+                let place = Lvalue::slot(number(program.shared.len()));
+                updates.push(EdgeAssignment::Assign { place, value: Expr::bool(true) });
             }
             if to == edge.from.0 && updates.is_empty() {
                 // Nothing comes of it.
@@ -199,7 +208,7 @@ impl<'m> ObserverPlan<'m> {
                 selects: Vec::new(),
                 clock_guard: self.deadlines[state].map(in_time).into_iter().collect(),
                 guard: reception.guard,
-                sync: Sync::Receive { event: reception.event, args: reception.args },
+                sync: SyncLabel::Receive { event: reception.event, args: reception.args },
                 updates,
                 origin: self.monitor.origin,
             });
@@ -209,15 +218,16 @@ impl<'m> ObserverPlan<'m> {
 
     /// The formulas over the network in which the observer has this place, and its clock and variable these numbers.
     fn verdicts(&self, automaton: u16, clock: ClockId, flag: u16) -> ObserverFormulas {
-        let at = |location: u16| Formula::At { automaton, location: LocationId(location) };
+        let at = |location: u16| QueryFormula::At { automaton, location: LocationId(location) };
         let late = self.deadlines.iter().zip(0u16..).filter_map(|(d, state)| {
-            let past = ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: Time::constant((*d)?) };
-            Some(Formula::And(vec![at(state), Formula::Clock(past)]))
+            let past =
+                ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: TimeSum::constant((*d)?) };
+            Some(QueryFormula::And(vec![at(state), QueryFormula::Clock(past)]))
         });
-        let violated = Formula::Or(std::iter::once(at(self.violated())).chain(late).collect());
+        let violated = QueryFormula::Or(std::iter::once(at(self.violated())).chain(late).collect());
         let triggered = match &self.telling {
-            Some(locations) => Formula::Or(locations.iter().map(|l| at(*l)).collect()),
-            None => Formula::Data(Expr::Var(flag)),
+            Some(locations) => QueryFormula::Or(locations.iter().map(|l| at(*l)).collect()),
+            None => QueryFormula::Data(Expr::Var(flag)),
         };
         ObserverFormulas { violated: self.fails.then_some(violated), triggered }
     }
@@ -226,17 +236,19 @@ impl<'m> ObserverPlan<'m> {
 /// When a state fails if nothing happens.
 fn deadline(monitor: &Monitor, state: usize) -> Result<Option<Nanos>, String> {
     let Some(after) = monitor.states[state].deadline else { return Ok(None) };
-    let here = |e: &&hrdsl_ir::monitor::Edge| usize::from(e.from.0) == state && e.on == On::Deadline;
+    let here = |e: &&hrdsl_ir::monitor::MonitorEdge| {
+        usize::from(e.from.0) == state && e.on == MonitorTrigger::Deadline
+    };
     let Some(edge) = monitor.edges.iter().find(here) else { return Ok(None) };
-    if !edge.effects.contains(&Effect::Fail) {
+    if !edge.effects.contains(&MonitorEffect::Fail) {
         return Err("a deadline of its monitor passes without a violation".to_owned());
     }
     // INVARIANT: the clock counts from when the state is entered, so that at the entry it is not past the deadline.
     let entered_late = monitor.edges.iter().any(|e| {
         usize::from(e.to.0) == state
             && e.from != e.to
-            && !e.effects.contains(&Effect::ResetClock)
-            && e.on != On::Deadline
+            && !e.effects.contains(&MonitorEffect::ResetClock)
+            && e.on != MonitorTrigger::Deadline
     });
     if entered_late {
         return Err("a deadline of its monitor does not count from the trigger".to_owned());

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program,
-    ta::{Ask, Formula, Network, Query},
+    ta::{Network, Query, QueryFormula, QueryKind},
 };
 use hrdsl_ta::{
     Extremum, ExtremumLimit, ExtremumValue, GoalOutcome, QueryAnswer, QueryOptions, QueryVerdict,
@@ -110,40 +110,40 @@ pub fn answers(
 
 /// What a search looks for, and what it means to find it.
 struct SoughtFormula {
-    formula: Formula,
+    formula: QueryFormula,
     reached: QueryFinding,
     not: QueryFinding,
 }
 
 /// For what reachability decides.
-fn reachability(ask: &Ask) -> Option<SoughtFormula> {
+fn reachability(ask: &QueryKind) -> Option<SoughtFormula> {
     let sought = match ask {
-        Ask::Possibly(f) => SoughtFormula {
+        QueryKind::Possibly(f) => SoughtFormula {
             formula: f.clone(),
             reached: QueryFinding::Satisfied,
             not: QueryFinding::NotSatisfied,
         },
-        Ask::Invariantly(f) => SoughtFormula {
-            formula: Formula::Not(Box::new(f.clone())),
+        QueryKind::Invariantly(f) => SoughtFormula {
+            formula: QueryFormula::Not(Box::new(f.clone())),
             reached: QueryFinding::NotSatisfied,
             not: QueryFinding::Satisfied,
         },
-        Ask::PotentiallyAlways(_)
-        | Ask::Eventually(_)
-        | Ask::LeadsTo(..)
-        | Ask::Sup { .. }
-        | Ask::Inf { .. } => return None,
+        QueryKind::PotentiallyAlways(_)
+        | QueryKind::Eventually(_)
+        | QueryKind::LeadsTo(..)
+        | QueryKind::Sup { .. }
+        | QueryKind::Inf { .. } => return None,
     };
     (!asks_deadlock(&sought.formula)).then_some(sought)
 }
 
 /// Deadlocks need zones that tell more apart than the search for many goals keeps.
-fn asks_deadlock(formula: &Formula) -> bool {
+fn asks_deadlock(formula: &QueryFormula) -> bool {
     match formula {
-        Formula::Deadlock => true,
-        Formula::Not(f) => asks_deadlock(f),
-        Formula::And(fs) | Formula::Or(fs) => fs.iter().any(asks_deadlock),
-        Formula::At { .. } | Formula::Data(_) | Formula::Clock(_) => false,
+        QueryFormula::Deadlock => true,
+        QueryFormula::Not(f) => asks_deadlock(f),
+        QueryFormula::And(fs) | QueryFormula::Or(fs) => fs.iter().any(asks_deadlock),
+        QueryFormula::At { .. } | QueryFormula::Data(_) | QueryFormula::Clock(_) => false,
     }
 }
 
@@ -188,7 +188,7 @@ fn note_holds(
     let impossible = |i: &usize| {
         let query = plain.program.queries.get(answered[*i].query);
         answered[*i].found == QueryFinding::NotSatisfied
-            && query.is_some_and(|q| matches!(q.ask, Ask::Possibly(_)))
+            && query.is_some_and(|q| matches!(q.ask, QueryKind::Possibly(_)))
     };
     let open: Vec<usize> = (0..answered.len()).filter(impossible).collect();
     if open.is_empty() {
@@ -223,8 +223,8 @@ fn in_general(
     hrdsl_ta::answer(program, network, query, &options)
 }
 
-fn told(plain: &ObservedNetwork, query: usize, ask: &Ask, answer: QueryAnswer) -> QueryResult {
-    let bounds = matches!(ask, Ask::Sup { .. } | Ask::Inf { .. });
+fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAnswer) -> QueryResult {
+    let bounds = matches!(ask, QueryKind::Sup { .. } | QueryKind::Inf { .. });
     let run = answer.run.or_else(|| answer.extrema.iter().find_map(|e| e.run.clone()));
     let found = match answer.verdict {
         QueryVerdict::Inconclusive => QueryFinding::Inconclusive(answer.why.clone()),

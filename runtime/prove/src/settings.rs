@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use hrdsl_ir::{
-    suite::{Delays, WitnessKind},
-    ta::Formula,
+    suite::{DelayChoice, WitnessKind},
+    ta::QueryFormula,
 };
 pub use hrdsl_ta::SearchOrder;
 use hrdsl_ta::{
@@ -28,7 +28,7 @@ pub struct ProofOptions {
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
     pub witness: WitnessKind,
-    pub delays: Delays,
+    pub delays: DelayChoice,
     /// Of what is drawn: sampled delays, a random order.
     pub seed: u64,
     /// First look for what keeps windowed assumptions for certain: better for tests. Otherwise first for what cannot be
@@ -67,7 +67,7 @@ impl ProofOptions {
     }
 }
 
-fn formula(goal: &ReachabilityGoal) -> Option<Formula> {
+fn formula(goal: &ReachabilityGoal) -> Option<QueryFormula> {
     match &goal.what {
         GoalKind::Formula(f) => Some(f.clone()),
         GoalKind::Edge { .. }
@@ -124,7 +124,7 @@ fn chosen(
     {
         return Ok(Some(run));
     }
-    if settings.delays == Delays::Earliest {
+    if settings.delays == DelayChoice::Earliest {
         return Ok(None);
     }
     hrdsl_ta::retimed(model, found, goal, settings.timing()).map(|run| Some(Box::new(run)))

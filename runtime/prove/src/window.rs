@@ -5,11 +5,11 @@
 
 use hrdsl_ir::{
     ActorId, EventPattern, Expr, Nanos, Span,
-    expr::{BinaryOp, Place},
+    expr::{BinaryOp, Lvalue},
     monitor::Assumption,
     ta::{
-        Automaton, ClockConstraint, ClockId, ClockOp, Edge, Location, LocationId, LocationKind, Sync, Time,
-        Update, Var,
+        Automaton, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, Location,
+        LocationId, LocationKind, SyncLabel, TimeSum,
     },
 };
 
@@ -70,7 +70,8 @@ impl AssumptionWindow {
         let mut broken = location("broken", Vec::new());
         broken.holds = Some(Expr::bool(false));
         let hi = i64::from(self.kept);
-        let seen = Var { name: "seen".to_owned(), lo: 0, hi, init: 0, is_bool: false, enumeration: None };
+        let seen =
+            AutomatonVar { name: "seen".to_owned(), lo: 0, hi, init: 0, is_bool: false, enumeration: None };
         Automaton {
             name: assumption.text.clone(),
             actor,
@@ -86,8 +87,8 @@ impl AssumptionWindow {
     fn edges(&self, reception: &ReceptionHalf, out: &mut Vec<Edge>) {
         let seen = Expr::Var(self.shared);
         let full = |op| Expr::binary(op, seen.clone(), Expr::int(i64::from(self.kept)));
-        let seen_one = Update::Assign {
-            place: Place::slot(self.shared),
+        let seen_one = EdgeAssignment::Assign {
+            place: Lvalue::slot(self.shared),
             value: Expr::binary(BinaryOp::Add, seen.clone(), Expr::int(1)),
         };
         if self.kept > 0 {
@@ -106,13 +107,13 @@ impl AssumptionWindow {
     }
 
     /// Each time takes the place of the next older one.
-    fn shifted(&self) -> Vec<Update> {
-        let older = (1..self.kept).rev().map(|i| Update::Reset {
+    fn shifted(&self) -> Vec<EdgeAssignment> {
+        let older = (1..self.kept).rev().map(|i| EdgeAssignment::Reset {
             clock: self.clock(i),
             from: Some(self.clock(i - 1)),
-            to: Time::ZERO,
+            to: TimeSum::ZERO,
         });
-        older.chain(std::iter::once(Update::zero(self.clock(0)))).collect()
+        older.chain(std::iter::once(EdgeAssignment::zero(self.clock(0)))).collect()
     }
 
     /// `oldest`: how the time since the oldest event compares with the window.
@@ -122,13 +123,13 @@ impl AssumptionWindow {
         seen: Expr,
         oldest: Option<ClockOp>,
         to: u16,
-        updates: Vec<Update>,
+        updates: Vec<EdgeAssignment>,
     ) -> Edge {
         let bound = |op| ClockConstraint {
             clock: self.clock(self.kept - 1),
             minus: None,
             op,
-            bound: Time::constant(self.within),
+            bound: TimeSum::constant(self.within),
         };
         let guard = match &reception.guard {
             Some(guard) => Expr::binary(BinaryOp::And, seen, guard.clone()),
@@ -140,7 +141,7 @@ impl AssumptionWindow {
             selects: Vec::new(),
             clock_guard: oldest.map(bound).into_iter().collect(),
             guard: Some(guard),
-            sync: Sync::Receive { event: reception.event, args: reception.args.clone() },
+            sync: SyncLabel::Receive { event: reception.event, args: reception.args.clone() },
             updates,
             origin: self.origin,
         }

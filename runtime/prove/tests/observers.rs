@@ -3,12 +3,15 @@
 
 use hrdsl_coverage::assume::Assumptions;
 use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Param, Program, Role, Span, Type,
-    Value,
-    monitor::{Assumption, Edge as Rule, Effect, Monitor, On, RequirementKind, State, StateId},
+    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span,
+    Type, Value,
+    monitor::{
+        Assumption, Monitor, MonitorEdge as Rule, MonitorEffect, MonitorState, MonitorTrigger,
+        RequirementKind, StateId,
+    },
     ta::{
-        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, Formula, Location, LocationId,
-        LocationKind, Network, Sync, Time, Update,
+        Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, Location,
+        LocationId, LocationKind, Network, QueryFormula, SyncLabel, TimeSum,
     },
     value::SECOND,
 };
@@ -37,7 +40,7 @@ fn program() -> Program {
     let params = [vec![Type::Int { lo: 0, hi: 2 }], vec![Type::Bool], vec![]];
     let event = |(name, params): (&&str, &Vec<Type>)| Event {
         name: (*name).into(),
-        params: params.iter().map(|ty| Param { name: "p".into(), ty: *ty }).collect(),
+        params: params.iter().map(|ty| Parameter { name: "p".into(), ty: *ty }).collect(),
         from: ActorId(0),
         to: Vec::new(),
         stimulus: None,
@@ -75,7 +78,7 @@ fn script(dice: &mut Dice) -> Script {
 /// An automaton that does this and nothing else, and then stays until the end.
 fn actor_of(script: &Script, end: Nanos) -> Automaton {
     let clock =
-        |op, time| ClockConstraint { clock: ClockId(0), minus: None, op, bound: Time::constant(time) };
+        |op, time| ClockConstraint { clock: ClockId(0), minus: None, op, bound: TimeSum::constant(time) };
     let times = script.iter().map(|s| s.0).chain([end]);
     let location = |(n, time): (usize, Nanos)| Location {
         name: format!("l{n}"),
@@ -90,8 +93,8 @@ fn actor_of(script: &Script, end: Nanos) -> Automaton {
         selects: vec![],
         clock_guard: vec![clock(ClockOp::Ge, *time)],
         guard: None,
-        sync: Sync::Send { event: *event, args: args.iter().map(|v| Expr::Const(*v)).collect() },
-        updates: Vec::<Update>::new(),
+        sync: SyncLabel::Send { event: *event, args: args.iter().map(|v| Expr::Const(*v)).collect() },
+        updates: Vec::<EdgeAssignment>::new(),
         origin: Span::default(),
     };
     Automaton {
@@ -128,8 +131,8 @@ fn patterns(dice: &mut Dice) -> Vec<EventPattern> {
 fn monitor(dice: &mut Dice) -> Monitor {
     let count = 1 + dice.roll(4) as usize;
     let deadline = |dice: &mut Dice| (dice.one_in(2)).then(|| (1 + dice.roll(4) as i64) * SECOND);
-    let states: Vec<State> = (0..count)
-        .map(|n| State { name: format!("s{n}"), pending: dice.one_in(2), deadline: deadline(dice) })
+    let states: Vec<MonitorState> = (0..count)
+        .map(|n| MonitorState { name: format!("s{n}"), pending: dice.one_in(2), deadline: deadline(dice) })
         .collect();
     let mut edges = Vec::new();
     for _ in 0..dice.roll(10) {
@@ -137,25 +140,31 @@ fn monitor(dice: &mut Dice) -> Monitor {
         let mut effects = Vec::new();
         let timed = states[to].deadline.is_some() && from != to;
         if timed || dice.one_in(3) {
-            effects.push(Effect::ResetClock);
+            effects.push(MonitorEffect::ResetClock);
         }
         if dice.one_in(3) {
-            effects.push(Effect::Trigger);
+            effects.push(MonitorEffect::Trigger);
         }
         if dice.one_in(4) {
-            effects.push(Effect::Discharge);
+            effects.push(MonitorEffect::Discharge);
         }
         if dice.one_in(5) {
-            effects.push(Effect::Fail);
+            effects.push(MonitorEffect::Fail);
         }
-        let on = On::Event(patterns(dice));
+        let on = MonitorTrigger::Event(patterns(dice));
         edges.push(Rule { from: StateId(from as u16), to: StateId(to as u16), on, guard: None, effects });
     }
     for (n, state) in states.iter().enumerate() {
         if state.deadline.is_some() && !dice.one_in(4) {
             let to = StateId(dice.roll(count as u64) as u16);
             let from = StateId(n as u16);
-            edges.push(Rule { from, to, on: On::Deadline, guard: None, effects: vec![Effect::Fail] });
+            edges.push(Rule {
+                from,
+                to,
+                on: MonitorTrigger::Deadline,
+                guard: None,
+                effects: vec![MonitorEffect::Fail],
+            });
         }
     }
     Monitor {
@@ -172,7 +181,7 @@ fn monitor(dice: &mut Dice) -> Monitor {
     }
 }
 
-fn is_reached(program: &Program, observed: &ObservedNetwork, formula: &Formula) -> bool {
+fn is_reached(program: &Program, observed: &ObservedNetwork, formula: &QueryFormula) -> bool {
     let goals = [of_formula(formula)];
     let decided =
         decide(program, observed, &goals, &[], &ProofOptions::default(), &SearchWatch::default()).unwrap();
@@ -231,7 +240,7 @@ fn a_window_lets_happen_what_the_assumption_allows() {
             within: Some((1 + dice.roll(6) as i64) * SECOND),
             origin: Span::default(),
         });
-        let last = Formula::At { automaton: 0, location: LocationId(script.len() as u16) };
+        let last = QueryFormula::At { automaton: 0, location: LocationId(script.len() as u16) };
         let allows = Assumptions::allows(&program, &script);
         let observed = ObservedNetwork::new(&program, &network);
         assert_eq!(is_reached(&program, &observed, &last), allows, "seed {seed}: {script:?} {program:#?}");

@@ -1,8 +1,8 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
 use hrdsl_results::{
-    AgentCoverage, BinName, BinResult, CodeFile, CoverageRatios, FORMAT, FirstFailure, GoalReport,
-    GoalStatus, ItemKind, Judgement, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
+    AgentCoverage, BinName, BinResult, CodeFile, CoverItemKind, CoverageRatios, FORMAT, FirstFailure,
+    GoalReport, GoalStatus, Judgement, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
     RequirementResult, Results, RunEnd, RunMark, SmallestMargin, SuiteExplanation, SuiteInfo,
     TestExplanation, TestMethod, TestResult, UncoveredGoal, UnreachedItem, VERSION,
     VerdictOutcome as Outcome, VerdictResult, VerdictTally, WitnessStep,
@@ -443,7 +443,7 @@ fn suite(s: usize, tests: &[&Made]) -> SuiteInfo {
 pub(crate) fn model() -> (ModelCoverage, SuiteExplanation) {
     let reached = [2, 1, 0, 0, 0, 0, 0, 1, 0];
     let all = [3, 2, 0, 0, 0, 0, 0, 2, 0];
-    let kinds = ItemKind::ALL.into_iter().zip(reached).zip(all);
+    let kinds = CoverItemKind::ALL.into_iter().zip(reached).zip(all);
     let unreached =
         |kind, item: &str, reason: &str| UnreachedItem { kind, item: item.into(), reason: reason.into() };
     let before = "`+!leg` came twice: twice a plan before it was selected (`leg#1` twice)";
@@ -451,14 +451,14 @@ pub(crate) fn model() -> (ModelCoverage, SuiteExplanation) {
         agent: "Human".into(),
         kinds: kinds.map(|((kind, reached), all)| KindCoverage { kind, reached, all }).collect(),
         unreached: vec![
-            unreached(ItemKind::Selected, "plan Human.leg#2", before),
+            unreached(CoverItemKind::Selected, "plan Human.leg#2", before),
             unreached(
-                ItemKind::Completed,
+                CoverItemKind::Completed,
                 "plan Human.leg#1 completed",
                 "it was selected twice and failed twice",
             ),
             unreached(
-                ItemKind::Edge,
+                CoverItemKind::Edge,
                 "edge Human.table#1 -> leg#2 (step 1)",
                 "for this step others were selected (`leg#1` twice)",
             ),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_results::ItemKind;
+use hrdsl_results::CoverItemKind;
 
 use super::text;
 use hrdsl_results::{AgentCoverage, KindCoverage, ModelCoverage, SuiteExplanation, TestExplanation};
@@ -11,17 +11,17 @@ use hrdsl_results::{AgentCoverage, KindCoverage, ModelCoverage, SuiteExplanation
 const LISTED: usize = 12;
 
 /// The heading of a narrow column.
-pub fn short(kind: ItemKind) -> &'static str {
+pub fn short(kind: CoverItemKind) -> &'static str {
     match kind {
-        ItemKind::Selected => "plans",
-        ItemKind::Completed => "done",
-        ItemKind::Failed => "failed",
-        ItemKind::ContextTrue => "true",
-        ItemKind::ContextFalse => "false",
-        ItemKind::Applicable => "choices",
-        ItemKind::Message => "messages",
-        ItemKind::Edge => "edges",
-        ItemKind::Path => "paths",
+        CoverItemKind::Selected => "plans",
+        CoverItemKind::Completed => "done",
+        CoverItemKind::Failed => "failed",
+        CoverItemKind::ContextTrue => "true",
+        CoverItemKind::ContextFalse => "false",
+        CoverItemKind::Applicable => "choices",
+        CoverItemKind::Message => "messages",
+        CoverItemKind::Edge => "edges",
+        CoverItemKind::Path => "paths",
     }
 }
 
@@ -31,13 +31,13 @@ pub fn ratio(tally: KindCoverage) -> String {
 }
 
 /// The kinds of which an agent of the suite has items.
-pub fn kinds(model: &ModelCoverage) -> Vec<ItemKind> {
-    let has = |kind: &ItemKind| model.agents.iter().any(|a| of(a, *kind).all > 0);
-    ItemKind::ALL.into_iter().filter(has).collect()
+pub fn kinds(model: &ModelCoverage) -> Vec<CoverItemKind> {
+    let has = |kind: &CoverItemKind| model.agents.iter().any(|a| of(a, *kind).all > 0);
+    CoverItemKind::ALL.into_iter().filter(has).collect()
 }
 
 /// An agent's tally of a kind.
-pub fn of(agent: &AgentCoverage, kind: ItemKind) -> KindCoverage {
+pub fn of(agent: &AgentCoverage, kind: CoverItemKind) -> KindCoverage {
     let none = KindCoverage { kind, reached: 0, all: 0 };
     agent.kinds.iter().find(|k| k.kind == kind).copied().unwrap_or(none)
 }

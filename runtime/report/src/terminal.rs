@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hrdsl_results::{
-    BinResult, CoverageRatios, ItemKind, RequirementResult, Results, RunMark, SuiteInfo, TestResult,
+    BinResult, CoverItemKind, CoverageRatios, RequirementResult, Results, RunMark, SuiteInfo, TestResult,
     VerdictOutcome as Outcome,
 };
 
@@ -396,7 +396,7 @@ fn models(page: &mut Page, results: &Results) {
             page.line(&heads);
             for agent in &coverage.agents {
                 let mut cells = vec![left(&format!("  {}", text::line(&agent.agent)), label, Style::Plain)];
-                let cell = |kind: &ItemKind| {
+                let cell = |kind: &CoverItemKind| {
                     let tally = model::of(agent, *kind);
                     let style = if tally.reached < tally.all { Style::Warn } else { Style::Plain };
                     right(&model::ratio(tally), COLUMN, style)

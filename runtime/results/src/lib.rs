@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use code::{CodeFile, CoverageRatios};
-pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::ItemKind, test::TestMethod};
+pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
 pub use judgement::{FirstFailure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};

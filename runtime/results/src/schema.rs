@@ -1,6 +1,6 @@
 //! What the schema says of types that are not declared here: each is one of some words.
 
-use hrdsl_ir::{monitor::RequirementKind, suite::ItemKind, test::TestMethod};
+use hrdsl_ir::{monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 use hrdsl_trace::RunEnd;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub fn requirement_kind(_: &mut SchemaGenerator) -> Schema {
 }
 
 pub fn item_kind(_: &mut SchemaGenerator) -> Schema {
-    words(&ItemKind::ALL)
+    words(&CoverItemKind::ALL)
 }
 
 fn words<T: Serialize>(all: &[T]) -> Schema {

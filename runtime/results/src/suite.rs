@@ -1,6 +1,6 @@
 //! How the tests of a suite were made, and what of its model they reach.
 
-use hrdsl_ir::{suite::ItemKind, test::TestMethod};
+use hrdsl_ir::{suite::CoverItemKind, test::TestMethod};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +80,7 @@ pub struct AgentCoverage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct KindCoverage {
     #[schemars(schema_with = "schema::item_kind")]
-    pub kind: ItemKind,
+    pub kind: CoverItemKind,
     pub reached: usize,
     pub all: usize,
 }
@@ -89,7 +89,7 @@ pub struct KindCoverage {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct UnreachedItem {
     #[schemars(schema_with = "schema::item_kind")]
-    pub kind: ItemKind,
+    pub kind: CoverItemKind,
     /// `plan Human.leg#2 failed`
     pub item: GoalName,
     pub reason: String,

@@ -5,7 +5,7 @@ mod common;
 
 use common::{ARM, LEGS, OFFER, REST, STEP, move_to, named, number, run, settle, table, truth};
 use divan::Bencher;
-use hrdsl_ir::world::{BodyRef, SignalId, Term};
+use hrdsl_ir::world::{BodyRef, SignalId, SignalTerm};
 use hrdsl_sim::{MotorCommand, Sim};
 
 fn main() {
@@ -74,9 +74,9 @@ fn read_a_signal(bencher: Bencher, what: &str) {
     let world = table();
     let (leg, head) = (BodyRef::Body(named(&world, "leg1")), BodyRef::Body(named(&world, "person.head")));
     let signal = match what {
-        "distance" => number(what, Term::Distance(head, leg)),
-        "visible" => truth(what, Term::Visible(head, leg)),
-        _ => number(what, Term::JointSpeed(ARM)),
+        "distance" => number(what, SignalTerm::Distance(head, leg)),
+        "visible" => truth(what, SignalTerm::Visible(head, leg)),
+        _ => number(what, SignalTerm::JointSpeed(ARM)),
     };
     let sim = Sim::new(&world, &[signal]).expect("the world");
     bencher.bench_local(|| sim.read(SignalId(0)));

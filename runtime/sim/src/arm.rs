@@ -128,7 +128,7 @@ impl ArmControl {
     pub fn relative(&self, physics: &PhysicsAdapter, target: Vec3) -> Vec3 {
         let now = physics.pose(self.base);
         let start = physics.start(self.base);
-        if physics.motion(self.base) == hrdsl_ir::world::Motion::Fixed {
+        if physics.motion(self.base) == hrdsl_ir::world::BodyMotion::Fixed {
             return target;
         }
         crate::math::arr(start.point(now.inverse().point(v3(target))))

@@ -6,7 +6,7 @@
 //! the body is fixed to it where it is.
 
 use hrdsl_ir::Nanos;
-use hrdsl_ir::world::{BodyId, Gripper, Motion, World};
+use hrdsl_ir::world::{BodyId, BodyMotion, Gripper, World};
 use rapier3d::prelude::ImpulseJointHandle;
 
 use hrdsl_harness::CommandId;
@@ -53,7 +53,7 @@ impl GripperHand {
             }
         }
         let jointed = |b: BodyId| world.joints.iter().any(|j| j.parent == b || j.child == b);
-        let unfit = |b: &&BodyId| physics.motion(**b) != Motion::Dynamic || jointed(**b);
+        let unfit = |b: &&BodyId| physics.motion(**b) != BodyMotion::Dynamic || jointed(**b);
         if let Some(body) = gripper.holds.iter().find(unfit) {
             let body = world.bodies[index(*body)].name.clone();
             return Err(SimError::NotHoldable { gripper: gripper.name.clone(), body });
@@ -68,7 +68,7 @@ impl GripperHand {
             reach: gripper.reach,
             delay: gripper.delay,
             holds: gripper.holds.clone(),
-            dynamic: physics.motion(gripper.palm) == Motion::Dynamic,
+            dynamic: physics.motion(gripper.palm) == BodyMotion::Dynamic,
             phase: GripPhase::Open,
             grasping: false,
             held: None,

@@ -34,7 +34,7 @@ mod sense;
 mod world;
 
 use hrdsl_ir::world::{
-    ArmId, BodyId, GripperId, Motion, Point, Signal, SignalId, Term, Vec3, World, WorldAction,
+    ArmId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, Vec3, World, WorldAction, WorldPoint,
 };
 use hrdsl_ir::{Expr, Nanos, Value};
 
@@ -194,7 +194,7 @@ impl Sim {
 
     /// The value of a measurement at the last physics step; of what the world does not have, not a number.
     #[must_use]
-    pub fn measure(&self, term: &Term) -> Value {
+    pub fn measure(&self, term: &SignalTerm) -> Value {
         let exists = sense::check_term(term, &self.world, String::new).is_ok();
         if exists { self.view().term(term) } else { Value::Float(f64::NAN) }
     }
@@ -244,7 +244,7 @@ impl Sim {
         let Some(data) = self.world.bodies.get(index(body)) else {
             return Err(bad("an action".into(), "body", index(body)));
         };
-        if data.motion != Motion::Kinematic {
+        if data.motion != BodyMotion::Kinematic {
             return Err(SimError::NotKinematic { body: data.name.clone() });
         }
         Ok(match &self.paths[index(body)] {
@@ -257,7 +257,7 @@ impl Sim {
         self.paths[index(body)] = Some(KinematicPath::new(from, to, self.now, over));
     }
 
-    fn place(&self, point: &Point, var: Vars<'_>) -> Result<V3, SimError> {
+    fn place(&self, point: &WorldPoint, var: Vars<'_>) -> Result<V3, SimError> {
         let mut offset = V3::zeros();
         for (i, expr) in point.offset.iter().enumerate() {
             offset[i] = number(expr, var, "a place")?;

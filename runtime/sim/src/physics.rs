@@ -3,7 +3,7 @@
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
 use hrdsl_ir::value::seconds;
-use hrdsl_ir::world::{Body, BodyId, Joint, Motion, Shape, World};
+use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, Joint, World};
 use rapier3d::parry;
 use rapier3d::prelude::*;
 
@@ -77,9 +77,9 @@ struct PhysicsBody {
     start: BodyFrame,
     /// The body that this one is one with.
     root: BodyId,
-    motion: Motion,
+    motion: BodyMotion,
     ghost: bool,
-    shape: Shape,
+    shape: BodyShape,
 }
 
 pub(crate) struct PhysicsAdapter {
@@ -154,7 +154,7 @@ impl PhysicsAdapter {
             let local = start_of(&world.bodies[index(root)]).inverse().then(&start);
             let collider = ColliderBuilder::new(shape_of(body)?)
                 .position(to_pose(&local))
-                .mass(if motion == Motion::Dynamic { checked_mass(body)? } else { 0.0 })
+                .mass(if motion == BodyMotion::Dynamic { checked_mass(body)? } else { 0.0 })
                 .friction(0.8)
                 .sensor(body.ghost)
                 .collision_groups(classes[i].groups());
@@ -169,12 +169,12 @@ impl PhysicsAdapter {
     /// A limb moved by motors has no weight, since they carry it, and a rotor.
     fn add_rigid(&mut self, body: &Body, driven: bool) -> RigidBodyHandle {
         let builder = match body.motion {
-            Motion::Fixed => RigidBodyBuilder::fixed(),
-            Motion::Dynamic => RigidBodyBuilder::dynamic(),
-            Motion::Kinematic => RigidBodyBuilder::kinematic_position_based(),
+            BodyMotion::Fixed => RigidBodyBuilder::fixed(),
+            BodyMotion::Dynamic => RigidBodyBuilder::dynamic(),
+            BodyMotion::Kinematic => RigidBodyBuilder::kinematic_position_based(),
         };
         let mut builder = builder.pose(to_pose(&start_of(body)));
-        if driven && body.motion == Motion::Dynamic {
+        if driven && body.motion == BodyMotion::Dynamic {
             let rotor = MassProperties::new(Vector::ZERO, 0.0, Vector::splat(ROTOR));
             builder = builder.gravity_scale(0.0).can_sleep(false).additional_mass_properties(rotor);
         }
@@ -204,7 +204,7 @@ impl PhysicsAdapter {
         self.parts[index(body)].root
     }
 
-    pub fn motion(&self, body: BodyId) -> Motion {
+    pub fn motion(&self, body: BodyId) -> BodyMotion {
         self.parts[index(body)].motion
     }
 
@@ -411,7 +411,7 @@ fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
             return Err(SimError::BadNumber { what: format!("a measure of joint `{}`", joint.name) });
         }
         let child = index(joint.child);
-        if world.bodies[child].motion != Motion::Dynamic || joint.parent == joint.child {
+        if world.bodies[child].motion != BodyMotion::Dynamic || joint.parent == joint.child {
             return Err(SimError::BadChild { joint: joint.name.clone() });
         }
         if is_rigid(joint) && above[child].replace(joint.parent).is_some() {
@@ -442,13 +442,13 @@ fn classes(world: &World, roots: &[BodyId]) -> Vec<CollisionClass> {
         .map(|i| {
             let root = roots[i];
             match (world.bodies[index(root)].motion, palm(root), jointed(root)) {
-                (Motion::Dynamic, true, _) => CollisionClass::Palm,
-                (Motion::Dynamic | Motion::Fixed, false, true) => CollisionClass::Limb,
-                (Motion::Dynamic, false, false) if holdable(body_id(i)) => CollisionClass::Thing,
-                (Motion::Dynamic, false, false) => CollisionClass::Loose,
-                (Motion::Kinematic, false, _) => CollisionClass::Actor,
-                (Motion::Kinematic | Motion::Fixed, true, _) => CollisionClass::ActorPalm,
-                (Motion::Fixed, false, false) => CollisionClass::Scenery,
+                (BodyMotion::Dynamic, true, _) => CollisionClass::Palm,
+                (BodyMotion::Dynamic | BodyMotion::Fixed, false, true) => CollisionClass::Limb,
+                (BodyMotion::Dynamic, false, false) if holdable(body_id(i)) => CollisionClass::Thing,
+                (BodyMotion::Dynamic, false, false) => CollisionClass::Loose,
+                (BodyMotion::Kinematic, false, _) => CollisionClass::Actor,
+                (BodyMotion::Kinematic | BodyMotion::Fixed, true, _) => CollisionClass::ActorPalm,
+                (BodyMotion::Fixed, false, false) => CollisionClass::Scenery,
             }
         })
         .collect()
@@ -464,9 +464,11 @@ fn checked_mass(body: &Body) -> Result<f32, SimError> {
 
 fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
     let measures: Vec<f64> = match body.shape {
-        Shape::Box { size } => size.to_vec(),
-        Shape::Sphere { radius } => vec![radius],
-        Shape::Capsule { radius, length } | Shape::Cylinder { radius, length } => vec![radius, length],
+        BodyShape::Box { size } => size.to_vec(),
+        BodyShape::Sphere { radius } => vec![radius],
+        BodyShape::Capsule { radius, length } | BodyShape::Cylinder { radius, length } => {
+            vec![radius, length]
+        }
     };
     let place = body.position.iter().chain(&body.rotation);
     if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) || !place.into_iter().all(|x| x.is_finite()) {
@@ -474,11 +476,11 @@ fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
     }
     let half = |x: f64| (x / 2.0) as f32;
     Ok(match body.shape {
-        Shape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
-        Shape::Sphere { radius } => SharedShape::ball(radius as f32),
-        Shape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),
+        BodyShape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
+        BodyShape::Sphere { radius } => SharedShape::ball(radius as f32),
+        BodyShape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),
         // The engine's cylinder lies along y.
-        Shape::Cylinder { radius, length } => SharedShape::compound(vec![(
+        BodyShape::Cylinder { radius, length } => SharedShape::compound(vec![(
             Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(SQRT_HALF, 0.0, 0.0, SQRT_HALF)),
             SharedShape::cylinder(half(length), radius as f32),
         )]),
@@ -488,9 +490,9 @@ fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
 const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
 /// From the centre to an end, along the longest axis.
-fn half_length(shape: Shape) -> V3 {
+fn half_length(shape: BodyShape) -> V3 {
     match shape {
-        Shape::Box { size: [x, y, z] } => {
+        BodyShape::Box { size: [x, y, z] } => {
             if x >= y && x >= z {
                 V3::x() * (x / 2.0)
             } else if y >= z {
@@ -499,9 +501,9 @@ fn half_length(shape: Shape) -> V3 {
                 V3::z() * (z / 2.0)
             }
         }
-        Shape::Sphere { radius } => V3::z() * radius,
-        Shape::Capsule { radius, length } => V3::z() * (length / 2.0 + radius),
-        Shape::Cylinder { length, .. } => V3::z() * (length / 2.0),
+        BodyShape::Sphere { radius } => V3::z() * radius,
+        BodyShape::Capsule { radius, length } => V3::z() * (length / 2.0 + radius),
+        BodyShape::Cylinder { length, .. } => V3::z() * (length / 2.0),
     }
 }
 

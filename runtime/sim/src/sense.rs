@@ -1,6 +1,6 @@
 //! Sensors: the value of every primitive term, now.
 
-use hrdsl_ir::world::{Axis, BodyId, BodyRef, Current, Signal, Term, World};
+use hrdsl_ir::world::{Axis, BodyId, BodyRef, CurrentBody, Signal, SignalTerm, World};
 use hrdsl_ir::{Type, Value};
 
 use crate::{
@@ -16,7 +16,7 @@ pub(crate) struct SensorView<'a> {
     pub physics: &'a PhysicsAdapter,
     pub hands: &'a HandSet,
     pub arms: &'a [ArmControl],
-    pub currents: &'a [Current],
+    pub currents: &'a [CurrentBody],
 }
 
 impl SensorView<'_> {
@@ -28,7 +28,7 @@ impl SensorView<'_> {
         }
     }
 
-    fn current(&self, current: &Current) -> BodyId {
+    fn current(&self, current: &CurrentBody) -> BodyId {
         let of = &current.of;
         let held = self.hands.held_by(usize::from(current.by.0)).filter(|b| of.contains(b));
         let untaken = || of.iter().copied().find(|b| !self.hands.was_taken(*b));
@@ -47,19 +47,19 @@ impl SensorView<'_> {
         })
     }
 
-    pub fn term(&self, term: &Term) -> Value {
+    pub fn term(&self, term: &SignalTerm) -> Value {
         match *term {
-            Term::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
-            Term::Range(a, b) => {
+            SignalTerm::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
+            SignalTerm::Range(a, b) => {
                 let (a, b) = (self.physics.pose(self.body(a)), self.physics.pose(self.body(b)));
                 Value::Float((b.at - a.at).norm())
             }
-            Term::Angle(a, b) => {
+            SignalTerm::Angle(a, b) => {
                 let (a, b) = (self.physics.pose(self.body(a)), self.physics.pose(self.body(b)));
                 Value::Float(sight_angle(&a, b.at))
             }
-            Term::Visible(a, b) => Value::Bool(self.physics.visible(self.body(a), self.body(b))),
-            Term::Coordinate(b, axis) => {
+            SignalTerm::Visible(a, b) => Value::Bool(self.physics.visible(self.body(a), self.body(b))),
+            SignalTerm::Coordinate(b, axis) => {
                 let at = self.physics.pose(self.body(b)).at;
                 Value::Float(match axis {
                     Axis::X => at.x,
@@ -67,10 +67,12 @@ impl SensorView<'_> {
                     Axis::Z => at.z,
                 })
             }
-            Term::Holds(g, b) => Value::Bool(self.hands.held_by(usize::from(g.0)) == Some(self.body(b))),
-            Term::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
-            Term::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
-            Term::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
+            SignalTerm::Holds(g, b) => {
+                Value::Bool(self.hands.held_by(usize::from(g.0)) == Some(self.body(b)))
+            }
+            SignalTerm::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
+            SignalTerm::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
+            SignalTerm::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
         }
     }
 }
@@ -97,20 +99,27 @@ pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimError> {
 }
 
 /// Checks that what a measurement is of exists.
-pub(crate) fn check_term(term: &Term, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
+pub(crate) fn check_term(
+    term: &SignalTerm,
+    world: &World,
+    what: impl Fn() -> String,
+) -> Result<(), SimError> {
     let gripper = |i: u16| exists(usize::from(i), world.grippers.len(), "gripper", &what);
     match *term {
-        Term::Distance(a, b) | Term::Range(a, b) | Term::Angle(a, b) | Term::Visible(a, b) => {
+        SignalTerm::Distance(a, b)
+        | SignalTerm::Range(a, b)
+        | SignalTerm::Angle(a, b)
+        | SignalTerm::Visible(a, b) => {
             check_body(a, world, &what)?;
             check_body(b, world, &what)
         }
-        Term::Coordinate(b, _) | Term::Speed(b) => check_body(b, world, &what),
-        Term::Holds(g, b) => {
+        SignalTerm::Coordinate(b, _) | SignalTerm::Speed(b) => check_body(b, world, &what),
+        SignalTerm::Holds(g, b) => {
             gripper(g.0)?;
             check_body(b, world, &what)
         }
-        Term::HoldsAny(g) => gripper(g.0),
-        Term::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),
+        SignalTerm::HoldsAny(g) => gripper(g.0),
+        SignalTerm::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),
     }
 }
 

@@ -7,7 +7,7 @@ use hrdsl_harness::{CheckedCommand, CommandId, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
-    world::{SignalId, Term, WorldAction},
+    world::{SignalId, SignalTerm, WorldAction},
 };
 
 use crate::{Sim, command::MotorCommand, error::SimError};
@@ -20,7 +20,7 @@ pub struct SimWorld {
 }
 
 struct Expected {
-    term: Term,
+    term: SignalTerm,
     value: Value,
     otherwise: String,
 }

@@ -7,7 +7,7 @@ use hrdsl_sim::{CommandError, MotorCommand, Sim};
 use proptest::prelude::*;
 
 fn speeds() -> Vec<Signal> {
-    vec![number("speed", Term::JointSpeed(ARM))]
+    vec![number("speed", SignalTerm::JointSpeed(ARM))]
 }
 
 /// Every place of the interaction, in an order that occurs.
@@ -143,7 +143,7 @@ fn a_later_command_replaces_an_earlier_without_a_jerk() {
 #[test]
 fn what_is_in_the_way_makes_the_command_fail_with_the_distance() {
     let mut world = table();
-    let wall = body("wall", Motion::Fixed, cuboid(0.05, 1.0, 0.8), [0.56, 0.2, 0.7], 1.0);
+    let wall = body("wall", BodyMotion::Fixed, cuboid(0.05, 1.0, 0.8), [0.56, 0.2, 0.7], 1.0);
     world.bodies.push(wall);
     let mut sim = Sim::new(&world, &[]).unwrap();
     let id = sim.command(move_to([0.7, 0.1, 0.75])).unwrap();

@@ -24,7 +24,7 @@ fn bits(sim: &Sim, world: &World) -> Vec<u64> {
 /// Runs a fixed script, advancing to each of its times in pieces of the given lengths; what is seen after each part.
 fn script(pieces: &[Nanos]) -> Vec<Vec<u64>> {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", Term::JointSpeed(ARM))]).unwrap();
+    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     let hand = named(&world, "person.hand");
     let reach = WorldAction::Move { body: hand, to: at(None, [0.5, 0.1, 0.7]), over: Expr::float(1.5) };
     let mut seen = Vec::new();
@@ -67,7 +67,7 @@ proptest! {
 #[test]
 fn the_world_comes_to_rest_and_wakes() {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", Term::JointSpeed(ARM))]).unwrap();
+    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     assert_eq!(sim.next_wake(), Some(STEP));
     settle(&mut sim);
     assert!(sim.now() < 2 * SECOND, "legs that stand need little time: {}", sim.now());

@@ -42,7 +42,8 @@ fn a_leg_is_fetched_and_held_out_and_nothing_else_moves() {
 #[test]
 fn four_legs_go_over_to_the_person() {
     let world = table();
-    let signals = [truth("robot", Term::Holds(GRIP, LEG)), truth("person", Term::Holds(GRASP, LEG))];
+    let signals =
+        [truth("robot", SignalTerm::Holds(GRIP, LEG)), truth("person", SignalTerm::Holds(GRASP, LEG))];
     let mut sim = Sim::new(&world, &signals).unwrap();
     for n in 1..=4 {
         let [x, y, z] = LEGS[n - 1];
@@ -88,7 +89,7 @@ fn a_leg_is_thrown_away() {
 #[test]
 fn the_two_may_hold_at_once_without_a_fight() {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", Term::JointSpeed(ARM))]).unwrap();
+    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     offer(&mut sim);
     sim.act(&reach_for(&world, LEG, [0.05, -0.1, -0.05]), &none).unwrap();
     sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
@@ -122,7 +123,7 @@ fn a_grasp_waits_for_what_comes() {
 #[test]
 fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
     let world = table();
-    let mut sim = Sim::new(&world, &[truth("any", Term::HoldsAny(GRIP))]).unwrap();
+    let mut sim = Sim::new(&world, &[truth("any", SignalTerm::HoldsAny(GRIP))]).unwrap();
     let time = run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
     assert!((0.5..0.55).contains(&time), "{time}");
     assert!(!boolean(&sim, 0));
@@ -133,7 +134,7 @@ fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
 #[test]
 fn the_current_leg_is_the_held_or_the_next_or_the_last() {
     let world = table();
-    let x = Term::Coordinate(LEG, Axis::Y);
+    let x = SignalTerm::Coordinate(LEG, Axis::Y);
     let mut sim = Sim::new(&world, &[number("y", x)]).unwrap();
     let y = |sim: &Sim| float(sim, 0);
     assert!((y(&sim) - LEGS[0][1]).abs() < 1e-3);
@@ -177,7 +178,9 @@ fn a_world_that_makes_no_sense_is_refused() {
     };
     assert!(refuse(&|w| w.step = 0).contains("physics step"));
     assert!(refuse(&|w| w.bodies[3].mass = -1.0).contains("mass of body `robot.waist"));
-    assert!(refuse(&|w| w.bodies[0].shape = Shape::Sphere { radius: f64::NAN }).contains("measure of body"));
+    assert!(
+        refuse(&|w| w.bodies[0].shape = BodyShape::Sphere { radius: f64::NAN }).contains("measure of body")
+    );
     assert!(refuse(&|w| w.joints[2].child = BodyId(99)).contains("body 99"));
     assert!(refuse(&|w| w.arms[0].joints.swap(0, 1)).contains("not a chain"));
     assert!(refuse(&|w| w.arms[0].joints.clear()).contains("tip of the arm"));
@@ -186,7 +189,7 @@ fn a_world_that_makes_no_sense_is_refused() {
     assert!(refuse(&|w| w.grippers[0].palm = BodyId(77)).contains("body 77"));
     assert!(refuse(&|w| w.grippers[0].holds.push(BodyId(1))).contains("cannot hold `stand`"));
     assert!(refuse(&|w| w.currents[0].of.clear()).contains("current"));
-    let signal = signal("far", Type::Bool, vec![Term::HoldsAny(GripperId(4))], Expr::Var(0));
+    let signal = signal("far", Type::Bool, vec![SignalTerm::HoldsAny(GripperId(4))], Expr::Var(0));
     let error = Sim::new(&table(), &[signal]).err().unwrap();
     assert_eq!(error.to_string(), "signal `far` refers to gripper 4, which does not exist");
 }

@@ -2,7 +2,7 @@
 
 mod common;
 use common::*;
-use hrdsl_ir::expr::{BinaryOp, Function};
+use hrdsl_ir::expr::{BinaryOp, NumberFunction};
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Enumeration, Expr, Span, Symbol, Type, Value};
 use hrdsl_sim::{MotorCommand, Sim};
@@ -18,17 +18,17 @@ fn and(a: Expr, b: Expr) -> Expr {
 }
 
 fn apart(a: u16, b: u16) -> Expr {
-    Expr::Call(Function::Abs, vec![Expr::binary(BinaryOp::Sub, Expr::Var(a), Expr::Var(b))])
+    Expr::Call(NumberFunction::Abs, vec![Expr::binary(BinaryOp::Sub, Expr::Var(a), Expr::Var(b))])
 }
 
 /// Line of sight: offset at most 0.2 m, distance at most 0.6 m, angle below 40°.
 fn gaze(head: BodyRef) -> Signal {
     let terms = vec![
-        Term::Coordinate(head, Axis::Y),
-        Term::Coordinate(LEG, Axis::Y),
-        Term::Range(head, LEG),
-        Term::Angle(head, LEG),
-        Term::Visible(head, LEG),
+        SignalTerm::Coordinate(head, Axis::Y),
+        SignalTerm::Coordinate(LEG, Axis::Y),
+        SignalTerm::Range(head, LEG),
+        SignalTerm::Angle(head, LEG),
+        SignalTerm::Visible(head, LEG),
     ];
     let near = and(le(apart(0, 1), 0.2), le(Expr::Var(2), 0.6));
     let value = and(and(near, le(Expr::Var(3), 40f64.to_radians())), Expr::Var(4));
@@ -36,7 +36,7 @@ fn gaze(head: BodyRef) -> Signal {
 }
 
 fn pressure() -> Signal {
-    let terms = vec![Term::Holds(GRIP, LEG), Term::Holds(GRASP, LEG)];
+    let terms = vec![SignalTerm::Holds(GRIP, LEG), SignalTerm::Holds(GRASP, LEG)];
     signal("pressure", Type::Bool, terms, and(Expr::Var(0), Expr::Var(1)))
 }
 
@@ -44,7 +44,7 @@ fn pressure() -> Signal {
 fn location(hand: BodyRef) -> Signal {
     let mut terms = Vec::new();
     for axis in [Axis::X, Axis::Y, Axis::Z] {
-        terms.extend([Term::Coordinate(hand, axis), Term::Coordinate(LEG, axis)]);
+        terms.extend([SignalTerm::Coordinate(hand, axis), SignalTerm::Coordinate(LEG, axis)]);
     }
     let value = and(le(apart(0, 1), 0.3), and(le(apart(2, 3), 0.3), le(apart(4, 5), 0.3)));
     signal("location", Type::Bool, terms, value)
@@ -65,8 +65,8 @@ fn gaze_pressure_and_location_follow_the_person() {
     let world = table();
     let (head, hand) = (named(&world, "person.head"), named(&world, "person.hand"));
     let (h, p) = (BodyRef::Body(head), BodyRef::Body(hand));
-    let angle = number("angle", Term::Angle(h, LEG));
-    let range = number("range", Term::Range(h, LEG));
+    let angle = number("angle", SignalTerm::Angle(h, LEG));
+    let range = number("range", SignalTerm::Range(h, LEG));
     let mut sim = Sim::new(&world, &[gaze(h), pressure(), location(p), angle, range]).unwrap();
     offer(&mut sim);
     assert_eq!([0, 1, 2].map(|i| boolean(&sim, i)), [false; 3]);
@@ -107,11 +107,11 @@ fn gaze_pressure_and_location_follow_the_person() {
 fn scene(board: Option<f64>, ghost: bool) -> World {
     let mut world = table();
     world.bodies = vec![
-        body("eye", Motion::Kinematic, Shape::Sphere { radius: 0.1 }, [0.0, 0.0, 1.0], 1.0),
-        body("box", Motion::Fixed, cuboid(0.1, 0.1, 0.9), [2.0, 0.0, 1.0], 1.0),
+        body("eye", BodyMotion::Kinematic, BodyShape::Sphere { radius: 0.1 }, [0.0, 0.0, 1.0], 1.0),
+        body("box", BodyMotion::Fixed, cuboid(0.1, 0.1, 0.9), [2.0, 0.0, 1.0], 1.0),
     ];
     if let Some(height) = board {
-        let mut b = body("board", Motion::Fixed, cuboid(0.02, 2.0, height), [1.0, 0.0, 1.0], 1.0);
+        let mut b = body("board", BodyMotion::Fixed, cuboid(0.02, 2.0, height), [1.0, 0.0, 1.0], 1.0);
         b.ghost = ghost;
         world.bodies.push(b);
     }
@@ -128,7 +128,7 @@ const BOX: BodyRef = BodyRef::Body(BodyId(1));
 #[test]
 fn a_line_of_sight_is_broken_by_bodies_but_not_by_ghosts() {
     let seen = |world: &World| {
-        let sim = Sim::new(world, &[truth("visible", Term::Visible(EYE, BOX))]).unwrap();
+        let sim = Sim::new(world, &[truth("visible", SignalTerm::Visible(EYE, BOX))]).unwrap();
         boolean(&sim, 0)
     };
     assert!(seen(&scene(None, false)));
@@ -141,11 +141,11 @@ fn a_line_of_sight_is_broken_by_bodies_but_not_by_ghosts() {
 fn distance_is_between_surfaces_and_range_between_centres() {
     let world = scene(None, false);
     let signals = [
-        number("distance", Term::Distance(EYE, BOX)),
-        number("range", Term::Range(EYE, BOX)),
-        number("z", Term::Coordinate(BOX, Axis::Z)),
-        number("angle", Term::Angle(EYE, BOX)),
-        number("speed", Term::Speed(EYE)),
+        number("distance", SignalTerm::Distance(EYE, BOX)),
+        number("range", SignalTerm::Range(EYE, BOX)),
+        number("z", SignalTerm::Coordinate(BOX, Axis::Z)),
+        number("angle", SignalTerm::Angle(EYE, BOX)),
+        number("speed", SignalTerm::Speed(EYE)),
     ];
     let mut sim = Sim::new(&world, &signals).unwrap();
     for (i, expected) in [1.85, 2.0, 1.0, 0.0, 0.0].into_iter().enumerate() {
@@ -167,24 +167,26 @@ fn distance_is_between_surfaces_and_range_between_centres() {
 #[test]
 fn every_shape_has_distances_and_is_seen() {
     for (shape, near) in [
-        (Shape::Sphere { radius: 0.2 }, 1.7),
-        (Shape::Capsule { radius: 0.2, length: 0.5 }, 1.7),
-        (Shape::Cylinder { radius: 0.2, length: 0.5 }, 1.7),
+        (BodyShape::Sphere { radius: 0.2 }, 1.7),
+        (BodyShape::Capsule { radius: 0.2, length: 0.5 }, 1.7),
+        (BodyShape::Cylinder { radius: 0.2, length: 0.5 }, 1.7),
         (cuboid(0.4, 0.4, 0.5), 1.7),
     ] {
         let mut world = scene(None, false);
         world.bodies[1].shape = shape;
-        let signals =
-            [number("distance", Term::Distance(EYE, BOX)), truth("visible", Term::Visible(EYE, BOX))];
+        let signals = [
+            number("distance", SignalTerm::Distance(EYE, BOX)),
+            truth("visible", SignalTerm::Visible(EYE, BOX)),
+        ];
         let sim = Sim::new(&world, &signals).unwrap();
         assert!((float(&sim, 0) - near).abs() < 1e-4, "{shape:?}: {}", float(&sim, 0));
         assert!(boolean(&sim, 1), "{shape:?}");
     }
     // A cylinder stands along z.
     let mut world = scene(None, false);
-    world.bodies[1].shape = Shape::Cylinder { radius: 0.1, length: 1.0 };
+    world.bodies[1].shape = BodyShape::Cylinder { radius: 0.1, length: 1.0 };
     world.bodies[1].position = [0.0, 0.0, 2.0];
-    let sim = Sim::new(&world, &[number("distance", Term::Distance(EYE, BOX))]).unwrap();
+    let sim = Sim::new(&world, &[number("distance", SignalTerm::Distance(EYE, BOX))]).unwrap();
     assert!((float(&sim, 0) - 0.4).abs() < 1e-4, "{}", float(&sim, 0));
 }
 
@@ -193,7 +195,7 @@ fn the_hand_near_the_closing_gripper_is_seen() {
     let world = table();
     let hand = named(&world, "person.hand");
     let palm = named(&world, "robot.palm");
-    let near = number("near", Term::Distance(BodyRef::Body(hand), BodyRef::Body(palm)));
+    let near = number("near", SignalTerm::Distance(BodyRef::Body(hand), BodyRef::Body(palm)));
     let mut sim = Sim::new(&world, &[near]).unwrap();
     run(&mut sim, move_to(LEGS[0]));
     assert!(float(&sim, 0) > 0.3);

@@ -194,7 +194,7 @@ fn strict_bounds_in_a_tiny_unit_need_finer_ticks() {
         clock: ClockId(clock),
         minus: None,
         op,
-        bound: hrdsl_ir::ta::Time::constant(bound),
+        bound: hrdsl_ir::ta::TimeSum::constant(bound),
     };
     let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "c")];
     let mut first = edge(l[0], l[1]).reset(0);
@@ -257,9 +257,9 @@ fn is(name: &str) -> Expr {
     Expr::Const(symbol(name))
 }
 
-fn over(name: &str, e: Enumeration, init: &str) -> hrdsl_ir::ta::Var {
+fn over(name: &str, e: Enumeration, init: &str) -> hrdsl_ir::ta::AutomatonVar {
     let init = e.index_of(Symbol::intern(init)).unwrap() as i64;
-    hrdsl_ir::ta::Var { enumeration: Some(e), ..var(name, 0, e.values().len() as i64 - 1, init) }
+    hrdsl_ir::ta::AutomatonVar { enumeration: Some(e), ..var(name, 0, e.values().len() as i64 - 1, init) }
 }
 
 /// A person asks for any pace but its last, once a second; a robot takes the pace asked for, but is never `fast` at once.
@@ -342,8 +342,8 @@ fn faults_with_symbols_are_said() {
     }
 }
 
-fn edge_update(slot: u16, value: Expr) -> Vec<hrdsl_ir::ta::Update> {
-    vec![hrdsl_ir::ta::Update::Assign { place: hrdsl_ir::expr::Place::slot(slot), value }]
+fn edge_update(slot: u16, value: Expr) -> Vec<hrdsl_ir::ta::EdgeAssignment> {
+    vec![hrdsl_ir::ta::EdgeAssignment::Assign { place: hrdsl_ir::expr::Lvalue::slot(slot), value }]
 }
 
 #[test]

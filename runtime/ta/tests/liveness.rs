@@ -12,7 +12,10 @@ use common::{add, automaton, clock, edge, eq, event, location, n, program, share
 use hrdsl_ir::{
     Program, Span,
     ta::NetworkId,
-    ta::{Ask, ClockConstraint, ClockOp, Edge, Formula, LocationId, LocationKind, Query, Sync, Update},
+    ta::{
+        ClockConstraint, ClockOp, Edge, EdgeAssignment, LocationId, LocationKind, Query, QueryFormula,
+        QueryKind, SyncLabel,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{QueryOptions, QueryVerdict, answer};
@@ -130,16 +133,16 @@ impl<'p> Oracle<'p> {
         let committed = all.clone().any(|a| self.kind(s, a) == LocationKind::Committed);
         for a in all.clone() {
             for e in &self.p.automata[a].edges {
-                if matches!(e.sync, Sync::Receive { .. }) || !self.open(s, a, e) {
+                if matches!(e.sync, SyncLabel::Receive { .. }) || !self.open(s, a, e) {
                     continue;
                 }
                 let mut groups: Vec<Vec<(usize, &Edge)>> = vec![vec![(a, e)]];
-                if let Sync::Send { event, .. } = e.sync {
+                if let SyncLabel::Send { event, .. } = e.sync {
                     for r in all.clone().filter(|&r| r != a) {
                         let ways: Vec<&Edge> = self.p.automata[r]
                             .edges
                             .iter()
-                            .filter(|w| matches!(w.sync, Sync::Receive { event: f, .. } if f == event))
+                            .filter(|w| matches!(w.sync, SyncLabel::Receive { event: f, .. } if f == event))
                             .filter(|w| self.open(s, r, w))
                             .collect();
                         if !ways.is_empty() {
@@ -182,22 +185,22 @@ impl<'p> Oracle<'p> {
         }
     }
 
-    fn is(&self, f: &Formula, s: &State) -> bool {
+    fn is(&self, f: &QueryFormula, s: &State) -> bool {
         match f {
-            Formula::At { automaton, location } => s.at[usize::from(*automaton)] == location.0,
-            Formula::Data(e) => {
+            QueryFormula::At { automaton, location } => s.at[usize::from(*automaton)] == location.0,
+            QueryFormula::Data(e) => {
                 e.eval(&|_| Some(hrdsl_ir::Value::Int(s.data))) == Ok(hrdsl_ir::Value::Bool(true))
             }
-            Formula::Clock(c) => compare(s.clocks[usize::from(c.clock.0)], c.op, c.bound.nanos / SECOND),
-            Formula::Deadlock => self.deadlocked(s),
-            Formula::Not(f) => !self.is(f, s),
-            Formula::And(fs) => fs.iter().all(|f| self.is(f, s)),
-            Formula::Or(fs) => fs.iter().any(|f| self.is(f, s)),
+            QueryFormula::Clock(c) => compare(s.clocks[usize::from(c.clock.0)], c.op, c.bound.nanos / SECOND),
+            QueryFormula::Deadlock => self.deadlocked(s),
+            QueryFormula::Not(f) => !self.is(f, s),
+            QueryFormula::And(fs) => fs.iter().all(|f| self.is(f, s)),
+            QueryFormula::Or(fs) => fs.iter().any(|f| self.is(f, s)),
         }
     }
 
     /// The states from which a maximal run never meets the formula: what is left when all without a way on are taken away.
-    fn avoiding(&self, f: &Formula) -> BTreeSet<State> {
+    fn avoiding(&self, f: &QueryFormula) -> BTreeSet<State> {
         let ends: BTreeSet<&State> =
             self.next.iter().filter(|(_, next)| next.is_empty()).map(|x| x.0).collect();
         let mut left: BTreeSet<State> = self.next.keys().filter(|s| !self.is(f, s)).cloned().collect();
@@ -216,18 +219,20 @@ impl<'p> Oracle<'p> {
         }
     }
 
-    fn verdict(&self, ask: &Ask) -> bool {
+    fn verdict(&self, ask: &QueryKind) -> bool {
         let start = self.start.as_ref().unwrap();
         match ask {
-            Ask::Possibly(f) => self.next.keys().any(|s| self.is(f, s)),
-            Ask::Invariantly(f) => self.next.keys().all(|s| self.is(f, s)),
-            Ask::PotentiallyAlways(f) => self.avoiding(&Formula::Not(Box::new(f.clone()))).contains(start),
-            Ask::Eventually(f) => !self.avoiding(f).contains(start),
-            Ask::LeadsTo(f, g) => {
+            QueryKind::Possibly(f) => self.next.keys().any(|s| self.is(f, s)),
+            QueryKind::Invariantly(f) => self.next.keys().all(|s| self.is(f, s)),
+            QueryKind::PotentiallyAlways(f) => {
+                self.avoiding(&QueryFormula::Not(Box::new(f.clone()))).contains(start)
+            }
+            QueryKind::Eventually(f) => !self.avoiding(f).contains(start),
+            QueryKind::LeadsTo(f, g) => {
                 let bad = self.avoiding(g);
                 !self.next.keys().any(|s| self.is(f, s) && bad.contains(s))
             }
-            Ask::Sup { .. } | Ask::Inf { .. } => unreachable!("not asked here"),
+            QueryKind::Sup { .. } | QueryKind::Inf { .. } => unreachable!("not asked here"),
         }
     }
 }
@@ -236,12 +241,12 @@ fn take(s: &mut State, a: usize, e: &Edge) {
     s.at[a] = e.to.0;
     for u in &e.updates {
         match u {
-            Update::Reset { .. } => s.clocks[a] = (0, 0),
-            Update::Assign { value, .. } => {
+            EdgeAssignment::Reset { .. } => s.clocks[a] = (0, 0),
+            EdgeAssignment::Assign { value, .. } => {
                 let got = value.eval(&|_| Some(hrdsl_ir::Value::Int(s.data))).unwrap();
                 s.data = got.as_int().unwrap();
             }
-            Update::Call { .. } => unreachable!("not made here"),
+            EdgeAssignment::Call { .. } => unreachable!("not made here"),
         }
     }
 }
@@ -305,28 +310,28 @@ fn network(rng: &mut ChaCha8Rng) -> Program {
     p
 }
 
-fn atom(rng: &mut ChaCha8Rng, p: &Program, clocks: bool) -> Formula {
+fn atom(rng: &mut ChaCha8Rng, p: &Program, clocks: bool) -> QueryFormula {
     let automaton = rng.random_range(0..2u16);
     match rng.random_range(0..if clocks { 5 } else { 3 }) {
         0 | 1 => {
             let count = p.automata[usize::from(automaton)].locations.len() as u16;
-            Formula::At { automaton, location: LocationId(rng.random_range(0..count)) }
+            QueryFormula::At { automaton, location: LocationId(rng.random_range(0..count)) }
         }
-        2 => Formula::Data(eq(v(0), n(rng.random_range(0..2)))),
-        _ => Formula::Clock(clock(automaton, op(rng), rng.random_range(0..=MOST))),
+        2 => QueryFormula::Data(eq(v(0), n(rng.random_range(0..2)))),
+        _ => QueryFormula::Clock(clock(automaton, op(rng), rng.random_range(0..=MOST))),
     }
 }
 
-fn formula(rng: &mut ChaCha8Rng, p: &Program, clocks: bool) -> Formula {
+fn formula(rng: &mut ChaCha8Rng, p: &Program, clocks: bool) -> QueryFormula {
     match rng.random_range(0..5) {
-        0 => Formula::Not(Box::new(atom(rng, p, clocks))),
-        1 => Formula::And(vec![atom(rng, p, clocks), Formula::Not(Box::new(atom(rng, p, clocks)))]),
-        2 => Formula::Or(vec![atom(rng, p, clocks), atom(rng, p, clocks)]),
+        0 => QueryFormula::Not(Box::new(atom(rng, p, clocks))),
+        1 => QueryFormula::And(vec![atom(rng, p, clocks), QueryFormula::Not(Box::new(atom(rng, p, clocks)))]),
+        2 => QueryFormula::Or(vec![atom(rng, p, clocks), atom(rng, p, clocks)]),
         _ => atom(rng, p, clocks),
     }
 }
 
-fn check(p: &Program, ask: Ask, seed: u64) {
+fn check(p: &Program, ask: QueryKind, seed: u64) {
     let o = Oracle::new(p);
     if o.start.is_none() {
         return;
@@ -352,10 +357,10 @@ proptest! {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let p = network(&mut rng);
         for clocks in [false, true] {
-            check(&p, Ask::Eventually(formula(&mut rng, &p, clocks)), seed);
-            check(&p, Ask::PotentiallyAlways(formula(&mut rng, &p, clocks)), seed);
+            check(&p, QueryKind::Eventually(formula(&mut rng, &p, clocks)), seed);
+            check(&p, QueryKind::PotentiallyAlways(formula(&mut rng, &p, clocks)), seed);
             let (f, g) = (formula(&mut rng, &p, clocks), formula(&mut rng, &p, clocks));
-            check(&p, Ask::LeadsTo(f, g), seed);
+            check(&p, QueryKind::LeadsTo(f, g), seed);
         }
     }
 
@@ -363,10 +368,10 @@ proptest! {
     fn reachability_with_clocks_and_deadlocks_is_that_of_regions(seed in any::<u64>()) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let p = network(&mut rng);
-        check(&p, Ask::Possibly(formula(&mut rng, &p, true)), seed);
-        check(&p, Ask::Invariantly(formula(&mut rng, &p, true)), seed);
-        check(&p, Ask::Possibly(Formula::Deadlock), seed);
+        check(&p, QueryKind::Possibly(formula(&mut rng, &p, true)), seed);
+        check(&p, QueryKind::Invariantly(formula(&mut rng, &p, true)), seed);
+        check(&p, QueryKind::Possibly(QueryFormula::Deadlock), seed);
         let f = formula(&mut rng, &p, true);
-        check(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, f])), seed);
+        check(&p, QueryKind::Possibly(QueryFormula::And(vec![QueryFormula::Deadlock, f])), seed);
     }
 }

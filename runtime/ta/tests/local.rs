@@ -6,7 +6,7 @@ mod local_nets;
 use common::{add, automaton, channel, edge, eq, families, n, normal, program, shared, v};
 use hrdsl_ir::{
     Program,
-    ta::{AutomatonId, ChannelKind, ClockOp, Formula, LocationId, Party},
+    ta::{AutomatonId, ChannelKind, ChannelParticipant, ClockOp, LocationId, QueryFormula},
 };
 use hrdsl_ta::{
     CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, ReachabilityGoal, SearchError,
@@ -178,7 +178,7 @@ fn who_stays_away_from_a_broadcast_does_so_at_its_time() {
 
 #[test]
 fn who_stays_away_from_a_joint_channel_does_so_at_its_time() {
-    let party = |i, optional| Party { automaton: AutomatonId(i), optional };
+    let party = |i, optional| ChannelParticipant { automaton: AutomatonId(i), optional };
     let kind = ChannelKind::Joint(vec![party(0, true), party(1, false)]);
     let joint = |p: &mut Program| [channel(p, "all", kind.clone(), &[]); 2];
     is_out_of_order(&leaving(joint, true), (0, 1), (1, 1));
@@ -212,7 +212,7 @@ fn what_local_time_does_not_serve_is_refused() {
     assert_eq!(refusal(&p), "channel `hurry` is urgent");
     p.channels[0].urgent = false;
     let high = ReachabilityGoal {
-        what: GoalKind::Formula(Formula::Clock(common::clock(0, ClockOp::Ge, 1))),
+        what: GoalKind::Formula(QueryFormula::Clock(common::clock(0, ClockOp::Ge, 1))),
         settled: false,
     };
     let refused = local::explore(&model(&p), &[high], &LocalSearchOptions::default(), &|_| true);

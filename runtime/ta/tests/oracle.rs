@@ -11,7 +11,10 @@ use common::{E, add, and, automaton, bin, clock, edge, eq, event, location, n, p
 use hrdsl_ir::{
     ArgPattern, Expr, Program, Type, Value,
     expr::BinaryOp,
-    ta::{Automaton, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg, Sync, Update},
+    ta::{
+        Automaton, ClockConstraint, ClockId, ClockOp, EdgeAssignment, LocationId, LocationKind, ReceiveArg,
+        SyncLabel,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{GoalKind, GoalOutcome, ModelError, ReachabilityGoal, SearchBudget, SearchError, check};
@@ -148,7 +151,7 @@ impl<'p> Oracle<'p> {
             return Vec::new();
         }
         let mut bound = Vec::new();
-        if let (Sync::Receive { args, .. }, Some(values)) = (&edge.sync, received) {
+        if let (SyncLabel::Receive { args, .. }, Some(values)) = (&edge.sync, received) {
             for (p, v) in args.iter().zip(values) {
                 match p {
                     ReceiveArg::Bind => bound.push(*v),
@@ -182,12 +185,12 @@ impl<'p> Oracle<'p> {
         for a in all.clone() {
             for e in 0..self.p.automata[a].edges.len() {
                 let sync = self.p.automata[a].edges[e].sync.clone();
-                if matches!(sync, Sync::Receive { .. }) {
+                if matches!(sync, SyncLabel::Receive { .. }) {
                     continue;
                 }
                 for way in self.ways(s, a, e, None) {
                     let mut groups = vec![vec![way.clone()]];
-                    if let Sync::Send { args, .. } = &sync {
+                    if let SyncLabel::Send { args, .. } = &sync {
                         let values: Vec<Value> = args.iter().map(|x| self.eval(s, x, &way.2)).collect();
                         for r in all.clone().filter(|&r| r != a) {
                             groups = self.join(s, r, &values, groups);
@@ -203,7 +206,7 @@ impl<'p> Oracle<'p> {
     fn join(&self, s: &State, r: usize, values: &[Value], groups: Vec<Vec<Way>>) -> Vec<Vec<Way>> {
         let edges = self.p.automata[r].edges.iter().enumerate();
         let ways: Vec<Way> = edges
-            .filter(|(_, e)| matches!(e.sync, Sync::Receive { .. }))
+            .filter(|(_, e)| matches!(e.sync, SyncLabel::Receive { .. }))
             .flat_map(|(e, _)| self.ways(s, r, e, Some(values)))
             .collect();
         if ways.is_empty() {
@@ -226,13 +229,13 @@ impl<'p> Oracle<'p> {
             next.at[*a] = edge.to.0;
             for u in &edge.updates {
                 match u {
-                    Update::Reset { clock, .. } => {
+                    EdgeAssignment::Reset { clock, .. } => {
                         next.clocks[self.first_clock[*a] + clock.0 as usize] = (0, 0);
                     }
-                    Update::Assign { place, value } => {
+                    EdgeAssignment::Assign { place, value } => {
                         next.data[place.slot as usize] = self.eval(&next, value, binders).as_int().unwrap();
                     }
-                    Update::Call { .. } => unreachable!("the networks have no functions"),
+                    EdgeAssignment::Call { .. } => unreachable!("the networks have no functions"),
                 }
             }
         }
@@ -321,7 +324,7 @@ fn random_edge(d: &mut Dice, a: &mut Automaton, e: hrdsl_ir::EventId, clocks: u1
             clock: ClockId(0),
             minus: Some(ClockId(1)),
             op: d.op(),
-            bound: hrdsl_ir::ta::Time::constant(bound),
+            bound: hrdsl_ir::ta::TimeSum::constant(bound),
         });
     }
     if d.one_in(3) {

@@ -176,13 +176,16 @@ fn an_automaton_that_is_not_there_is_an_error() {
 fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
     use hrdsl_ir::{
         Expr, Span,
-        ta::{Channel, ChannelId, ChannelKind, ClockId, Party, Sync, Time, TimeTerm, Update},
+        ta::{
+            Channel, ChannelId, ChannelKind, ChannelParticipant, ClockId, EdgeAssignment, SyncLabel, TimeSum,
+            TimeTerm,
+        },
     };
     let mut p = program();
     p.clocks.push("g".into());
     let kinds = [
         ChannelKind::HandShake,
-        ChannelKind::Joint(vec![Party { automaton: AutomatonId(0), optional: true }]),
+        ChannelKind::Joint(vec![ChannelParticipant { automaton: AutomatonId(0), optional: true }]),
         ChannelKind::Broadcast,
     ];
     p.channels = kinds
@@ -202,7 +205,8 @@ fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
     let channel = |c: u16, e: common::E, offer: bool| {
         let mut e = e;
         let channel = ChannelId(c);
-        e.0.sync = if offer { Sync::Offer { channel, args: Vec::new() } } else { Sync::Join { channel } };
+        e.0.sync =
+            if offer { SyncLabel::Offer { channel, args: Vec::new() } } else { SyncLabel::Join { channel } };
         e
     };
     channel(0, edge(l[0], l[3]), true).to(&mut a);
@@ -210,11 +214,11 @@ fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
     let mut offer = channel(2, edge(l[0], l[1]), true).clock(0, ClockOp::Ge, 0);
     // g >= n * 1 s; then x = g + 1 s.
     offer.0.clock_guard[0].bound =
-        Time { nanos: 0, terms: vec![TimeTerm { factor: SECOND, value: Expr::Var(0) }] };
-    offer.0.updates.push(Update::Reset {
+        TimeSum { nanos: 0, terms: vec![TimeTerm { factor: SECOND, value: Expr::Var(0) }] };
+    offer.0.updates.push(EdgeAssignment::Reset {
         clock: ClockId(1),
         from: Some(ClockId(0)),
-        to: Time::constant(SECOND),
+        to: TimeSum::constant(SECOND),
     });
     offer.to(&mut a);
     edge(l[1], l[2]).clock(1, ClockOp::Ge, 7).send(done).to(&mut a);

@@ -6,14 +6,17 @@ use common::{E, add, automaton, bin, clock, edge, eq, event, location, n, normal
 use hrdsl_ir::{
     Program, Span,
     expr::BinaryOp,
-    suite::{Delays, WitnessKind},
+    suite::{DelayChoice, WitnessKind},
     ta::NetworkId,
-    ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, LocationKind, Measure, Query, Time},
+    ta::{
+        ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, Query, QueryFormula, QueryKind,
+        QueryMeasure, TimeSum,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{ExtremumLimit, ExtremumValue, QueryAnswer, QueryOptions, QueryVerdict, RunEnding, answer};
 
-fn query(ask: Ask) -> Query {
+fn query(ask: QueryKind) -> Query {
     Query {
         name: "q".into(),
         title: "q".into(),
@@ -24,24 +27,24 @@ fn query(ask: Ask) -> Query {
     }
 }
 
-fn ask_with(p: &Program, ask: Ask, options: &QueryOptions) -> QueryAnswer {
+fn ask_with(p: &Program, ask: QueryKind, options: &QueryOptions) -> QueryAnswer {
     answer(p, &p.networks[0], &query(ask), options).unwrap()
 }
 
-fn ask(p: &Program, ask: Ask) -> QueryAnswer {
+fn ask(p: &Program, ask: QueryKind) -> QueryAnswer {
     ask_with(p, ask, &QueryOptions::default())
 }
 
-fn at(automaton: u16, l: LocationId) -> Formula {
-    Formula::At { automaton, location: l }
+fn at(automaton: u16, l: LocationId) -> QueryFormula {
+    QueryFormula::At { automaton, location: l }
 }
 
-fn not(f: Formula) -> Formula {
-    Formula::Not(Box::new(f))
+fn not(f: QueryFormula) -> QueryFormula {
+    QueryFormula::Not(Box::new(f))
 }
 
-fn x(c: u16, op: ClockOp, s: i64) -> Formula {
-    Formula::Clock(clock(c, op, s))
+fn x(c: u16, op: ClockOp, s: i64) -> QueryFormula {
+    QueryFormula::Clock(clock(c, op, s))
 }
 
 fn ending(a: &QueryAnswer) -> Option<RunEnding> {
@@ -69,45 +72,48 @@ fn two(bounded: bool) -> Two {
 #[test]
 fn possibly_and_invariantly() {
     let t = two(true);
-    let yes = ask(&t.p, Ask::Possibly(at(0, t.b)));
+    let yes = ask(&t.p, QueryKind::Possibly(at(0, t.b)));
     assert_eq!(yes.verdict, QueryVerdict::Holds);
     assert_eq!(yes.run.unwrap().end, 2 * SECOND);
     assert_eq!(yes.why, "a run reaches it after 1 transition and 2 s");
-    let no = ask(&t.p, Ask::Invariantly(at(0, t.a)));
+    let no = ask(&t.p, QueryKind::Invariantly(at(0, t.a)));
     assert_eq!((no.verdict, no.run.is_some()), (QueryVerdict::Fails, true));
-    let never = Formula::And(vec![at(0, t.a), at(0, t.b)]);
-    assert_eq!(ask(&t.p, Ask::Possibly(never.clone())).verdict, QueryVerdict::Fails);
-    assert_eq!(ask(&t.p, Ask::Invariantly(not(never))).verdict, QueryVerdict::Holds);
+    let never = QueryFormula::And(vec![at(0, t.a), at(0, t.b)]);
+    assert_eq!(ask(&t.p, QueryKind::Possibly(never.clone())).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&t.p, QueryKind::Invariantly(not(never))).verdict, QueryVerdict::Holds);
 }
 
 #[test]
 fn clocks_in_reachability() {
     let t = two(true);
-    let in_a = |f| Formula::And(vec![at(0, t.a), f]);
-    let late = ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Ge, 5))));
+    let in_a = |f| QueryFormula::And(vec![at(0, t.a), f]);
+    let late = ask(&t.p, QueryKind::Possibly(in_a(x(0, ClockOp::Ge, 5))));
     assert_eq!(late.verdict, QueryVerdict::Holds);
     let run = late.run.unwrap();
     assert_eq!((run.steps.len(), run.end), (0, 5 * SECOND));
-    assert_eq!(ask(&t.p, Ask::Possibly(in_a(x(0, ClockOp::Gt, 5)))).verdict, QueryVerdict::Fails);
-    assert_eq!(ask(&t.p, Ask::Invariantly(not(in_a(x(0, ClockOp::Gt, 5))))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, QueryKind::Possibly(in_a(x(0, ClockOp::Gt, 5)))).verdict, QueryVerdict::Fails);
+    assert_eq!(
+        ask(&t.p, QueryKind::Invariantly(not(in_a(x(0, ClockOp::Gt, 5))))).verdict,
+        QueryVerdict::Holds
+    );
     // Greater than any constant of the model, and finer.
-    assert_eq!(ask(&t.p, Ask::Possibly(x(0, ClockOp::Gt, 1000))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, QueryKind::Possibly(x(0, ClockOp::Gt, 1000))).verdict, QueryVerdict::Holds);
     let half = ClockConstraint {
         clock: ClockId(0),
         minus: None,
         op: ClockOp::Eq,
-        bound: Time::constant(SECOND / 2),
+        bound: TimeSum::constant(SECOND / 2),
     };
-    let run = ask(&t.p, Ask::Possibly(Formula::Clock(half))).run.unwrap();
+    let run = ask(&t.p, QueryKind::Possibly(QueryFormula::Clock(half))).run.unwrap();
     assert_eq!(run.end, SECOND / 2);
 }
 
 #[test]
 fn eventually_needs_an_invariant() {
     let t = two(true);
-    assert_eq!(ask(&t.p, Ask::Eventually(at(0, t.b))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, QueryKind::Eventually(at(0, t.b))).verdict, QueryVerdict::Holds);
     let t = two(false);
-    let no = ask(&t.p, Ask::Eventually(at(0, t.b)));
+    let no = ask(&t.p, QueryKind::Eventually(at(0, t.b)));
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert_eq!(no.why, "time can pass for ever in `M.a`, so no run has to go on from there");
 }
@@ -122,15 +128,18 @@ fn a_missed_guard_is_a_time_lock() {
     edge(a, b).clock(0, ClockOp::Le, 2).to(&mut m);
     edge(b, b).clock(0, ClockOp::Ge, 0).to(&mut m);
     add(&mut p, m);
-    let no = ask(&p, Ask::Eventually(at(0, b)));
+    let no = ask(&p, QueryKind::Eventually(at(0, b)));
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Stuck)));
     assert!(no.run.unwrap().end > 2 * SECOND);
-    let yes = ask(&p, Ask::Possibly(Formula::Deadlock));
+    let yes = ask(&p, QueryKind::Possibly(QueryFormula::Deadlock));
     let run = yes.run.unwrap();
     assert_eq!((run.steps.len(), run.end), (0, 2 * SECOND + 1));
-    let free = Formula::Or(vec![not(Formula::Deadlock), Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)])]);
-    assert_eq!(ask(&p, Ask::Invariantly(free)).verdict, QueryVerdict::Holds);
-    assert_eq!(ask(&p, Ask::Invariantly(not(Formula::Deadlock))).verdict, QueryVerdict::Fails);
+    let free = QueryFormula::Or(vec![
+        not(QueryFormula::Deadlock),
+        QueryFormula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)]),
+    ]);
+    assert_eq!(ask(&p, QueryKind::Invariantly(free)).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, QueryKind::Invariantly(not(QueryFormula::Deadlock))).verdict, QueryVerdict::Fails);
 }
 
 #[test]
@@ -143,10 +152,12 @@ fn a_deadlock_may_come_from_the_target_s_invariant() {
     edge(a, b).reset(0).to(&mut m);
     edge(b, b).reset(1).to(&mut m);
     add(&mut p, m);
-    let run = ask(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, at(0, a)]))).run.unwrap();
+    let run =
+        ask(&p, QueryKind::Possibly(QueryFormula::And(vec![QueryFormula::Deadlock, at(0, a)]))).run.unwrap();
     assert_eq!(run.end, SECOND + 1);
     assert_eq!(
-        ask(&p, Ask::Possibly(Formula::And(vec![Formula::Deadlock, x(1, ClockOp::Le, 1)]))).verdict,
+        ask(&p, QueryKind::Possibly(QueryFormula::And(vec![QueryFormula::Deadlock, x(1, ClockOp::Le, 1)])))
+            .verdict,
         QueryVerdict::Fails
     );
 }
@@ -160,15 +171,15 @@ fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
     edge(a, a).clock(0, ClockOp::Ge, 3).reset(0).to(&mut m);
     edge(a, b).clock(0, ClockOp::Ge, 3).to(&mut m);
     add(&mut p, m);
-    let no = ask(&p, Ask::Eventually(at(0, b)));
+    let no = ask(&p, QueryKind::Eventually(at(0, b)));
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Again(0))));
     assert_eq!(no.why, "a run goes round for ever through `M.a`, by 1 transition");
-    let yes = ask(&p, Ask::PotentiallyAlways(at(0, a)));
+    let yes = ask(&p, QueryKind::PotentiallyAlways(at(0, a)));
     assert_eq!((yes.verdict, ending(&yes)), (QueryVerdict::Holds, Some(RunEnding::Again(0))));
     // The same in no time.
     p.automata[0].locations[0].kind = LocationKind::Committed;
     p.automata[0].edges[0].clock_guard.clear();
-    let zeno = ask(&p, Ask::PotentiallyAlways(at(0, a)));
+    let zeno = ask(&p, QueryKind::PotentiallyAlways(at(0, a)));
     assert_eq!(
         zeno.why,
         "a run stays in it: a run goes round for ever through `M.a`, by 1 transition, in which no time passes"
@@ -179,23 +190,29 @@ fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
 fn clocks_in_liveness() {
     let t = two(true);
     // Time passes through each cell, up to the invariant.
-    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Eq, 2))).verdict, QueryVerdict::Holds);
-    assert_eq!(ask(&t.p, Ask::Eventually(x(0, ClockOp::Gt, 2))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, QueryKind::Eventually(x(0, ClockOp::Eq, 2))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&t.p, QueryKind::Eventually(x(0, ClockOp::Gt, 2))).verdict, QueryVerdict::Holds);
     // Which it need not do in a: it may leave at 2.
-    let three_in_a = Formula::And(vec![at(0, t.a), x(0, ClockOp::Ge, 3)]);
-    assert_eq!(ask(&t.p, Ask::Eventually(three_in_a.clone())).verdict, QueryVerdict::Fails);
-    let or_b = Formula::Or(vec![three_in_a, at(0, t.b)]);
-    assert_eq!(ask(&t.p, Ask::Eventually(or_b)).verdict, QueryVerdict::Holds);
+    let three_in_a = QueryFormula::And(vec![at(0, t.a), x(0, ClockOp::Ge, 3)]);
+    assert_eq!(ask(&t.p, QueryKind::Eventually(three_in_a.clone())).verdict, QueryVerdict::Fails);
+    let or_b = QueryFormula::Or(vec![three_in_a, at(0, t.b)]);
+    assert_eq!(ask(&t.p, QueryKind::Eventually(or_b)).verdict, QueryVerdict::Holds);
     // No run stays before 2, but one stays before 6 if it ends at 5.
-    assert_eq!(ask(&t.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 2))).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&t.p, QueryKind::PotentiallyAlways(x(0, ClockOp::Lt, 2))).verdict, QueryVerdict::Fails);
     let mut stops = two(true);
     stops.p.automata[0].edges.clear();
-    let stays = ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 6)));
+    let stays = ask(&stops.p, QueryKind::PotentiallyAlways(x(0, ClockOp::Lt, 6)));
     assert_eq!((stays.verdict, ending(&stays)), (QueryVerdict::Holds, Some(RunEnding::Stuck)));
-    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, QueryVerdict::Fails);
+    assert_eq!(
+        ask(&stops.p, QueryKind::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict,
+        QueryVerdict::Fails
+    );
     stops.p.automata[0].locations[0].invariant = vec![clock(0, ClockOp::Lt, 5)];
-    assert_eq!(ask(&stops.p, Ask::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict, QueryVerdict::Holds);
-    assert_eq!(ask(&stops.p, Ask::Eventually(x(0, ClockOp::Ge, 5))).verdict, QueryVerdict::Fails);
+    assert_eq!(
+        ask(&stops.p, QueryKind::PotentiallyAlways(x(0, ClockOp::Lt, 5))).verdict,
+        QueryVerdict::Holds
+    );
+    assert_eq!(ask(&stops.p, QueryKind::Eventually(x(0, ClockOp::Ge, 5))).verdict, QueryVerdict::Fails);
 }
 
 #[test]
@@ -209,17 +226,17 @@ fn leads_to() {
     edge(idle, busy).reset(0).to(&mut m);
     edge(busy, idle).clock(0, ClockOp::Ge, 1).to(&mut m);
     add(&mut p, m);
-    let ask_it = |p: &Program| ask(p, Ask::LeadsTo(at(0, busy), at(0, idle)));
+    let ask_it = |p: &Program| ask(p, QueryKind::LeadsTo(at(0, busy), at(0, idle)));
     assert_eq!(ask_it(&p).verdict, QueryVerdict::Holds);
-    assert_eq!(ask(&p, Ask::Eventually(at(0, busy))).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&p, QueryKind::Eventually(at(0, busy))).verdict, QueryVerdict::Fails);
     let mut worse = p.clone();
     edge(busy, hole).clock(0, ClockOp::Ge, 3).to(&mut worse.automata[0]);
     let no = ask_it(&worse);
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert_eq!(no.run.unwrap().end, 3 * SECOND);
     // Only from where the first holds with its clocks.
-    let late = Formula::And(vec![at(0, busy), x(0, ClockOp::Gt, 3)]);
-    assert_eq!(ask(&worse, Ask::LeadsTo(late, at(0, idle))).verdict, QueryVerdict::Holds);
+    let late = QueryFormula::And(vec![at(0, busy), x(0, ClockOp::Gt, 3)]);
+    assert_eq!(ask(&worse, QueryKind::LeadsTo(late, at(0, idle))).verdict, QueryVerdict::Holds);
 }
 
 #[test]
@@ -237,11 +254,14 @@ fn committed_loops_stay() {
     let d = normal(&mut other, "d");
     edge(c, d).to(&mut other);
     add(&mut p, other);
-    let yes = ask(&p, Ask::PotentiallyAlways(at(1, c)));
+    let yes = ask(&p, QueryKind::PotentiallyAlways(at(1, c)));
     assert_eq!((yes.verdict, ending(&yes)), (QueryVerdict::Holds, Some(RunEnding::Again(0))));
-    assert_eq!(ask(&p, Ask::PotentiallyAlways(Formula::Data(eq(v(q), n(0))))).verdict, QueryVerdict::Fails);
+    assert_eq!(
+        ask(&p, QueryKind::PotentiallyAlways(QueryFormula::Data(eq(v(q), n(0))))).verdict,
+        QueryVerdict::Fails
+    );
     // The other never gets a turn.
-    assert_eq!(ask(&p, Ask::Possibly(at(1, d))).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&p, QueryKind::Possibly(at(1, d))).verdict, QueryVerdict::Fails);
 }
 
 fn limits(a: &QueryAnswer) -> Vec<ExtremumLimit> {
@@ -255,20 +275,20 @@ fn secs(s: i64, attained: bool) -> ExtremumLimit {
 #[test]
 fn least_and_greatest() {
     let t = two(true);
-    let clocks = |when: Formula| Ask::Sup { of: vec![Measure::Clock(ClockId(0))], when };
-    let low = |when: Formula| Ask::Inf { of: vec![Measure::Clock(ClockId(0))], when };
+    let clocks = |when: QueryFormula| QueryKind::Sup { of: vec![QueryMeasure::Clock(ClockId(0))], when };
+    let low = |when: QueryFormula| QueryKind::Inf { of: vec![QueryMeasure::Clock(ClockId(0))], when };
     assert_eq!(limits(&ask(&t.p, clocks(at(0, t.a)))), [secs(5, true)]);
     assert_eq!(limits(&ask(&t.p, clocks(at(0, t.b)))), [ExtremumLimit::Unbounded]);
     assert_eq!(limits(&ask(&t.p, low(at(0, t.b)))), [secs(2, true)]);
     assert_eq!(limits(&ask(&t.p, low(at(0, t.a)))), [secs(0, true)]);
-    let beyond = Formula::And(vec![at(0, t.b), x(0, ClockOp::Gt, 700)]);
+    let beyond = QueryFormula::And(vec![at(0, t.b), x(0, ClockOp::Gt, 700)]);
     assert_eq!(limits(&ask(&t.p, low(beyond))), [secs(700, false)]);
-    let between = Formula::And(vec![at(0, t.b), x(0, ClockOp::Lt, 900)]);
+    let between = QueryFormula::And(vec![at(0, t.b), x(0, ClockOp::Lt, 900)]);
     let sup = ask(&t.p, clocks(between));
     assert_eq!(limits(&sup), [secs(900, false)]);
     assert_eq!(sup.why, "< 900 s");
     assert!(sup.extrema[0].run.as_ref().unwrap().end > 899 * SECOND);
-    let nowhere = Formula::And(vec![at(0, t.a), at(0, t.b)]);
+    let nowhere = QueryFormula::And(vec![at(0, t.a), at(0, t.b)]);
     assert_eq!(limits(&ask(&t.p, clocks(nowhere))), [ExtremumLimit::Nowhere]);
 }
 
@@ -283,12 +303,12 @@ fn a_clock_beyond_its_constants_is_followed() {
     let again = edge(a, a).clock(0, ClockOp::Gt, 2).when(bin(BinaryOp::Lt, v(k), n(4)));
     again.reset(0).set(k, more).to(&mut m);
     add(&mut p, m);
-    let of = || vec![Measure::Clock(ClockId(1)), Measure::Data(v(k))];
-    let done = || Formula::Data(eq(v(k), n(4)));
-    let sup = ask(&p, Ask::Sup { of: of(), when: done() });
+    let of = || vec![QueryMeasure::Clock(ClockId(1)), QueryMeasure::Data(v(k))];
+    let done = || QueryFormula::Data(eq(v(k), n(4)));
+    let sup = ask(&p, QueryKind::Sup { of: of(), when: done() });
     let four = ExtremumLimit::At { value: ExtremumValue::Number(4), attained: true };
     assert_eq!(limits(&sup), [secs(15, true), four]);
-    let inf = ask(&p, Ask::Inf { of: of(), when: done() });
+    let inf = ask(&p, QueryKind::Inf { of: of(), when: done() });
     assert_eq!(limits(&inf), [secs(8, false), four]);
     for e in sup.extrema.iter().chain(&inf.extrema) {
         assert!(e.run.is_some());
@@ -307,23 +327,23 @@ fn the_fastest_way_may_have_more_transitions() {
     add(&mut p, m);
     let go = |witness, delays, seed| {
         let options = QueryOptions { witness, delays, seed, ..QueryOptions::default() };
-        let run = ask_with(&p, Ask::Possibly(at(0, l[3])), &options).run.unwrap();
+        let run = ask_with(&p, QueryKind::Possibly(at(0, l[3])), &options).run.unwrap();
         (run.steps.len(), run.end, run.steps.iter().map(|s| s.time).collect::<Vec<_>>())
     };
-    let short = go(WitnessKind::Shortest, Delays::Earliest, 0);
+    let short = go(WitnessKind::Shortest, DelayChoice::Earliest, 0);
     assert_eq!((short.0, short.1), (1, 10 * SECOND));
-    let fast = go(WitnessKind::Fastest, Delays::Earliest, 0);
+    let fast = go(WitnessKind::Fastest, DelayChoice::Earliest, 0);
     assert_eq!((fast.0, fast.1), (3, 3 * SECOND));
-    let late = go(WitnessKind::Fastest, Delays::Latest, 0);
+    let late = go(WitnessKind::Fastest, DelayChoice::Latest, 0);
     assert_eq!(late.2, [3 * SECOND; 3]);
-    let drawn: Vec<Vec<i64>> = (0..8).map(|s| go(WitnessKind::Fastest, Delays::Sampled, s).2).collect();
+    let drawn: Vec<Vec<i64>> = (0..8).map(|s| go(WitnessKind::Fastest, DelayChoice::Sampled, s).2).collect();
     assert!(drawn.iter().all(|t| t[2] == 3 * SECOND && t[0] > SECOND && t[0] <= t[1]));
     assert!(drawn.iter().any(|t| t != &drawn[0]));
-    assert_eq!(drawn[3], go(WitnessKind::Fastest, Delays::Sampled, 3).2);
+    assert_eq!(drawn[3], go(WitnessKind::Fastest, DelayChoice::Sampled, 3).2);
     // A goal with a clock: time passes after the last transition.
     let options = QueryOptions { witness: WitnessKind::Fastest, ..QueryOptions::default() };
-    let f = Formula::And(vec![at(0, l[2]), x(0, ClockOp::Gt, 2)]);
-    let run = ask_with(&p, Ask::Possibly(f), &options).run.unwrap();
+    let f = QueryFormula::And(vec![at(0, l[2]), x(0, ClockOp::Gt, 2)]);
+    let run = ask_with(&p, QueryKind::Possibly(f), &options).run.unwrap();
     assert_eq!((run.steps.len(), run.end), (2, 2 * SECOND + 1));
     assert!(run.steps[1].time <= run.end);
 }
@@ -371,8 +391,8 @@ fn a_run_is_told_and_drawn() {
     let back: E = edge(d, c);
     back.to(&mut m);
     add(&mut p, m);
-    let f = Formula::And(vec![at(0, b), at(1, c)]);
-    let run = ask(&p, Ask::Possibly(f)).run.unwrap();
+    let f = QueryFormula::And(vec![at(0, b), at(1, c)]);
+    let run = ask(&p, QueryKind::Possibly(f)).run.unwrap();
     let trace = hrdsl_ta::WitnessTrace::from_run(&p, &p.networks[0], &run);
     let told = "\
 2 s  Sender  go  a -> b, R: c -> d   [q: 0 -> 2; Sender.x = 0]
@@ -402,9 +422,11 @@ sequenceDiagram
 
 /// Two shake hands over `go(1)` in an urgent way; a third joins both over `all`.
 fn channels() -> (Program, [LocationId; 2]) {
-    use hrdsl_ir::ta::{AutomatonId, Channel, ChannelId, ChannelKind, Party, ReceiveArg, Sync};
+    use hrdsl_ir::ta::{
+        AutomatonId, Channel, ChannelId, ChannelKind, ChannelParticipant, ReceiveArg, SyncLabel,
+    };
     let mut p = program();
-    let party = |n| Party { automaton: AutomatonId(n), optional: false };
+    let party = |n| ChannelParticipant { automaton: AutomatonId(n), optional: false };
     let kinds = [ChannelKind::HandShake, ChannelKind::Joint(vec![party(0), party(1)])];
     for (name, kind) in ["go", "all"].into_iter().zip(kinds) {
         let params = if name == "go" { vec![common::var("k", 0, 3, 0)] } else { Vec::new() };
@@ -419,13 +441,13 @@ fn channels() -> (Program, [LocationId; 2]) {
         let mut shake = edge(a, b).reset(0);
         let channel = ChannelId(0);
         shake.0.sync = if i == 0 {
-            Sync::Offer { channel, args: vec![n(1)] }
+            SyncLabel::Offer { channel, args: vec![n(1)] }
         } else {
-            Sync::Accept { channel, args: vec![ReceiveArg::Bind] }
+            SyncLabel::Accept { channel, args: vec![ReceiveArg::Bind] }
         };
         shake.to(&mut m);
         let mut join = edge(b, a).clock(0, ClockOp::Gt, 2);
-        join.0.sync = Sync::Join { channel: ChannelId(1) };
+        join.0.sync = SyncLabel::Join { channel: ChannelId(1) };
         join.to(&mut m);
         add(&mut p, m);
     }
@@ -436,20 +458,20 @@ fn channels() -> (Program, [LocationId; 2]) {
 fn channels_urge_and_are_told() {
     let (p, [a, b]) = channels();
     // Time never passes in a: the binary synchronisation is possible.
-    let in_a = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 3)]);
-    let fresh = Formula::And(vec![at(0, b), x(0, ClockOp::Gt, 2)]);
+    let in_a = QueryFormula::And(vec![at(0, a), x(0, ClockOp::Gt, 3)]);
+    let fresh = QueryFormula::And(vec![at(0, b), x(0, ClockOp::Gt, 2)]);
     assert_eq!(
-        ask(&p, Ask::Possibly(Formula::And(vec![at(0, a), not(at(1, a))]))).verdict,
+        ask(&p, QueryKind::Possibly(QueryFormula::And(vec![at(0, a), not(at(1, a))]))).verdict,
         QueryVerdict::Fails
     );
-    assert_eq!(ask(&p, Ask::Eventually(at(0, b))).verdict, QueryVerdict::Holds);
-    assert_eq!(ask(&p, Ask::LeadsTo(at(0, a), at(1, b))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, QueryKind::Eventually(at(0, b))).verdict, QueryVerdict::Holds);
+    assert_eq!(ask(&p, QueryKind::LeadsTo(at(0, a), at(1, b))).verdict, QueryVerdict::Holds);
     // The clock keeps what it had when it came back, but no time is added.
-    assert_eq!(ask(&p, Ask::Possibly(in_a)).verdict, QueryVerdict::Holds);
-    let run = ask(&p, Ask::Possibly(fresh)).run.unwrap();
+    assert_eq!(ask(&p, QueryKind::Possibly(in_a)).verdict, QueryVerdict::Holds);
+    let run = ask(&p, QueryKind::Possibly(fresh)).run.unwrap();
     assert_eq!((run.steps.len(), run.end), (1, 2 * SECOND + 1));
-    let again = Formula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)]);
-    let run = ask(&p, Ask::Possibly(again)).run.unwrap();
+    let again = QueryFormula::And(vec![at(0, a), x(0, ClockOp::Gt, 2)]);
+    let run = ask(&p, QueryKind::Possibly(again)).run.unwrap();
     let trace = hrdsl_ta::WitnessTrace::from_run(&p, &p.networks[0], &run);
     let told = "          0 s  A  go(1)  a -> b, B: a -> b   [A.x = 0; B.x = 0]
 2.000000001 s  A  all    b -> a, B: b -> a
@@ -457,7 +479,7 @@ fn channels_urge_and_are_told() {
     assert_eq!(trace.text(), told);
     assert!(trace.mermaid().contains("  a0->>a1: go(1)\n"));
     // Waiting in b for ever is possible: nothing forces the multi-way channel.
-    let no = ask(&p, Ask::LeadsTo(at(0, b), at(0, a)));
+    let no = ask(&p, QueryKind::LeadsTo(at(0, b), at(0, a)));
     assert_eq!((no.verdict, ending(&no)), (QueryVerdict::Fails, Some(RunEnding::Waits)));
     assert!(no.why.starts_with("after the first, time can pass for ever in `A.b` and `B.b`"), "{}", no.why);
 }

@@ -7,10 +7,10 @@ use common::{
 };
 use hrdsl_ir::{
     Expr, Program, Span,
-    expr::{BinaryOp, Place},
+    expr::{BinaryOp, Lvalue},
     ta::{
-        AutomatonId, ChannelKind, ClockConstraint, ClockId, ClockOp, Function, FunctionId, LocationKind,
-        Party, Statement, Time, TimeTerm, Update,
+        AutomatonFunction, AutomatonId, ChannelKind, ChannelParticipant, ClockConstraint, ClockId, ClockOp,
+        EdgeAssignment, FunctionId, FunctionStatement, LocationKind, TimeSum, TimeTerm,
     },
     value::SECOND,
 };
@@ -70,7 +70,7 @@ fn an_argument_outside_its_range_is_a_fault() {
 /// B must join, C may; A's edge waits for a variable.
 fn joint(optional: bool, clock_of_c: i64) -> Program {
     let mut p = program();
-    let party = |automaton, optional| Party { automaton: AutomatonId(automaton), optional };
+    let party = |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
     let parties = vec![party(0, false), party(1, optional)];
     let go = channel(&mut p, "go", ChannelKind::Joint(parties), &[]);
     let mut a = automaton("A", &["x"]);
@@ -124,24 +124,28 @@ fn clocks_are_set_to_times_and_compared_with_variables() {
     let mut a = automaton("A", &["x"]);
     let (total, x) = (ClockId(0), ClockId(1));
     let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "c"), normal(&mut a, "d")];
-    let scaled = |factor: i64, nanos: i64| Time {
+    let scaled = |factor: i64, nanos: i64| TimeSum {
         nanos: nanos * SECOND,
         terms: vec![TimeTerm { factor: factor * SECOND, value: v(k) }],
     };
     // x = 2 k + 1 = 5 while total is at most 1.
     let mut set = edge(l[0], l[1]).clock(0, ClockOp::Le, 1);
-    set.0.updates.push(Update::Reset { clock: x, from: None, to: scaled(2, 1) });
+    set.0.updates.push(EdgeAssignment::Reset { clock: x, from: None, to: scaled(2, 1) });
     set.to(&mut a);
     // x - total is 5 - total's value then, so at most 5 and at least 4: x >= 3 k + 1 = 7 needs total >= 2.
     let at = |clock, op, bound| ClockConstraint { clock, minus: None, op, bound };
     let mut on = edge(l[1], l[2]);
     on.0.clock_guard.push(at(x, ClockOp::Ge, scaled(3, 1)));
-    on.0.clock_guard.push(at(total, ClockOp::Lt, Time::constant(2 * SECOND)));
+    on.0.clock_guard.push(at(total, ClockOp::Lt, TimeSum::constant(2 * SECOND)));
     on.to(&mut a);
     let mut copied = edge(l[1], l[3]);
     copied.0.clock_guard.push(at(x, ClockOp::Ge, scaled(3, 1)));
-    copied.0.clock_guard.push(at(total, ClockOp::Le, Time::constant(2 * SECOND)));
-    copied.0.updates.push(Update::Reset { clock: total, from: Some(x), to: Time::constant(-7 * SECOND) });
+    copied.0.clock_guard.push(at(total, ClockOp::Le, TimeSum::constant(2 * SECOND)));
+    copied.0.updates.push(EdgeAssignment::Reset {
+        clock: total,
+        from: Some(x),
+        to: TimeSum::constant(-7 * SECOND),
+    });
     copied.to(&mut a);
     add(&mut p, a);
     assert_eq!(discrete(&p), 3);
@@ -154,8 +158,8 @@ fn a_negative_clock_is_a_fault_where_it_can_be_one() {
         let mut a = automaton("A", &["x", "y"]);
         let l = normal(&mut a, "a");
         let mut e = edge(l, l).clock(0, ClockOp::Ge, least).clock(0, ClockOp::Le, 5);
-        let to = Time::constant(-2 * SECOND);
-        e.0.updates.push(Update::Reset { clock: ClockId(1), from: Some(ClockId(0)), to });
+        let to = TimeSum::constant(-2 * SECOND);
+        e.0.updates.push(EdgeAssignment::Reset { clock: ClockId(1), from: Some(ClockId(0)), to });
         e.to(&mut a);
         add(&mut p, a);
         p
@@ -165,9 +169,9 @@ fn a_negative_clock_is_a_fault_where_it_can_be_one() {
 }
 
 /// `fn sum() -> 0..limit { s = 0; for i in 0..2 { s += q[i] } return s }`
-fn sum(limit: i64) -> Function {
+fn sum(limit: i64) -> AutomatonFunction {
     let add = bin(BinaryOp::Add, v(4), element(0, v(5), 3));
-    Function {
+    AutomatonFunction {
         name: "sum".into(),
         owner: None,
         params: Vec::new(),
@@ -175,13 +179,13 @@ fn sum(limit: i64) -> Function {
         result: Some(var("", 0, limit, 0)),
         pure: true,
         body: vec![
-            Statement::For {
+            FunctionStatement::For {
                 slot: 5,
                 lo: n(0),
                 hi: n(2),
-                body: vec![Statement::Assign { place: Place::slot(4), value: add }],
+                body: vec![FunctionStatement::Assign { place: Lvalue::slot(4), value: add }],
             },
-            Statement::Return(Some(v(4))),
+            FunctionStatement::Return(Some(v(4))),
         ],
         origin: Span::default(),
     }
@@ -207,7 +211,7 @@ fn functions_and_arrays_have_values_or_faults() {
     assert_eq!(discrete(&p), ways);
     p.automata[0].edges[1].guard = None;
     assert_eq!(fault(&p), "automaton `A`, edge a -> a: index 3 is none of 0..2");
-    p.functions[0].body.insert(0, Statement::While { condition: Expr::bool(true), body: Vec::new() });
+    p.functions[0].body.insert(0, FunctionStatement::While { condition: Expr::bool(true), body: Vec::new() });
     assert_eq!(fault(&p), "automaton `A`, edge a -> a: a function does not end");
 }
 

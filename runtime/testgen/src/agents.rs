@@ -11,7 +11,7 @@ use hrdsl_harness::RunTermination;
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
-    suite::{Explore, Method, PlayerRef, Suite},
+    suite::{ExploreMode, PlayerRef, Suite, SuiteMethod},
 };
 use hrdsl_results::ModelCoverage;
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ const WARNINGS: usize = 20;
 /// # Errors
 /// A choice that has no alternatives, or a model that cannot be run.
 pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
-    let Method::Agents { players, stop_after, goals, .. } = &suite.method else {
+    let SuiteMethod::Agents { players, stop_after, goals, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
     let mut explorer = explorer(program, suite, count, seed)?;
@@ -62,7 +62,7 @@ fn explorer<'p>(
     count: u32,
     seed: u64,
 ) -> Result<BeliefExplorer<'p>, String> {
-    let Method::Agents { players, choose, explore, .. } = &suite.method else {
+    let SuiteMethod::Agents { players, choose, explore, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
     let fault = |e| format!("suite `{}`: {e}", suite.name);
@@ -103,7 +103,7 @@ pub fn belief_set(
     seed: u64,
     number: u64,
 ) -> Result<BeliefSet, String> {
-    let Method::Agents { players, explore, stop_after, goals, .. } = &suite.method else {
+    let SuiteMethod::Agents { players, explore, stop_after, goals, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
     let mut explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
@@ -123,7 +123,7 @@ pub fn belief_set(
             return Ok(batch.swap_remove(here));
         }
         made += batch.len() as u64;
-        if *explore == Explore::Learn {
+        if *explore == ExploreMode::Learn {
             let rewards = run_batch(&model, &mut sum, batch)?;
             explorer.learn(&rewards);
         }

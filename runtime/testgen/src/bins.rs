@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::coverage::{Bin, Condition, Coverage, PointId};
+use hrdsl_ir::coverage::{BinCondition, CoverBin, Coverage, CoverpointId};
 
 /// Values that are listed one by one, at most.
 const LISTED: usize = 8;
@@ -18,18 +18,20 @@ pub fn why(coverage: &Coverage, cross: u16, bin: u16, seen: &BTreeSet<Vec<i64>>)
         return "there was no run".to_owned();
     }
     let parts = match &bin.when {
-        Condition::And(parts) => parts.as_slice(),
-        whole @ (Condition::In { .. } | Condition::Not(_) | Condition::Or(_)) => std::slice::from_ref(whole),
+        BinCondition::And(parts) => parts.as_slice(),
+        whole @ (BinCondition::In { .. } | BinCondition::Not(_) | BinCondition::Or(_)) => {
+            std::slice::from_ref(whole)
+        }
     };
-    let holds = |c: &Condition, numbers: &[i64]| c.holds(coverage, &|p| number(numbers, p));
-    let never: Vec<&Condition> = parts.iter().filter(|c| !seen.iter().any(|n| holds(c, n))).collect();
+    let holds = |c: &BinCondition, numbers: &[i64]| c.holds(coverage, &|p| number(numbers, p));
+    let never: Vec<&BinCondition> = parts.iter().filter(|c| !seen.iter().any(|n| holds(c, n))).collect();
     if !never.is_empty() {
         let texts: Vec<String> = never.iter().map(|c| unmet(coverage, c, seen)).collect();
         return texts.join("; ");
     }
     // The first of those that come nearest.
     let missing =
-        |numbers: &Vec<i64>| -> Vec<&Condition> { parts.iter().filter(|c| !holds(c, numbers)).collect() };
+        |numbers: &Vec<i64>| -> Vec<&BinCondition> { parts.iter().filter(|c| !holds(c, numbers)).collect() };
     let nearest = seen.iter().map(missing).min_by_key(Vec::len).unwrap_or_default();
     if nearest.is_empty() {
         return "its condition was met only together with what the cross ignores".to_owned();
@@ -41,30 +43,30 @@ pub fn why(coverage: &Coverage, cross: u16, bin: u16, seen: &BTreeSet<Vec<i64>>)
     )
 }
 
-fn number(numbers: &[i64], point: PointId) -> i64 {
+fn number(numbers: &[i64], point: CoverpointId) -> i64 {
     numbers.get(usize::from(point.0)).copied().unwrap_or(0)
 }
 
 /// What the point of a condition was, and what it must be.
-fn unmet(coverage: &Coverage, condition: &Condition, seen: &BTreeSet<Vec<i64>>) -> String {
+fn unmet(coverage: &Coverage, condition: &BinCondition, seen: &BTreeSet<Vec<i64>>) -> String {
     match condition {
-        Condition::In { point, bin } => {
+        BinCondition::In { point, bin } => {
             let Some((name, bin)) = declared(coverage, *point, *bin) else { return "?".to_owned() };
             format!("`{name}` was {}, needs {}", values(*point, seen), needed(bin))
         }
-        Condition::Not(inner) => match &**inner {
-            Condition::In { point, bin } => {
+        BinCondition::Not(inner) => match &**inner {
+            BinCondition::In { point, bin } => {
                 let Some((name, bin)) = declared(coverage, *point, *bin) else { return "?".to_owned() };
                 format!("`{name}` was {}, must not be {}", values(*point, seen), needed(bin))
             }
-            Condition::Not(_) | Condition::And(_) | Condition::Or(_) => {
+            BinCondition::Not(_) | BinCondition::And(_) | BinCondition::Or(_) => {
                 format!("`{}` was never met", text(coverage, condition, false))
             }
         },
-        Condition::And(_) | Condition::Or(_) => {
+        BinCondition::And(_) | BinCondition::Or(_) => {
             let mut points = BTreeSet::new();
             points_of(condition, &mut points);
-            let name = |p: &PointId| coverage.points.get(usize::from(p.0)).map_or("?", |p| &p.name);
+            let name = |p: &CoverpointId| coverage.points.get(usize::from(p.0)).map_or("?", |p| &p.name);
             let were: Vec<String> =
                 points.iter().map(|p| format!("`{}` was {}", name(p), values(*p, seen))).collect();
             format!("`{}` was never met: {}", text(coverage, condition, false), were.join(", "))
@@ -72,23 +74,23 @@ fn unmet(coverage: &Coverage, condition: &Condition, seen: &BTreeSet<Vec<i64>>) 
     }
 }
 
-fn points_of(condition: &Condition, points: &mut BTreeSet<PointId>) {
+fn points_of(condition: &BinCondition, points: &mut BTreeSet<CoverpointId>) {
     match condition {
-        Condition::In { point, .. } => {
+        BinCondition::In { point, .. } => {
             points.insert(*point);
         }
-        Condition::Not(c) => points_of(c, points),
-        Condition::And(cs) | Condition::Or(cs) => cs.iter().for_each(|c| points_of(c, points)),
+        BinCondition::Not(c) => points_of(c, points),
+        BinCondition::And(cs) | BinCondition::Or(cs) => cs.iter().for_each(|c| points_of(c, points)),
     }
 }
 
-fn declared(coverage: &Coverage, point: PointId, bin: u16) -> Option<(&str, &Bin)> {
+fn declared(coverage: &Coverage, point: CoverpointId, bin: u16) -> Option<(&str, &CoverBin)> {
     let point = coverage.points.get(usize::from(point.0))?;
     Some((&point.name, point.bins.get(usize::from(bin))?))
 }
 
 /// `0..3`, `0, 2, 5`
-fn values(point: PointId, seen: &BTreeSet<Vec<i64>>) -> String {
+fn values(point: CoverpointId, seen: &BTreeSet<Vec<i64>>) -> String {
     let values: BTreeSet<i64> = seen.iter().map(|n| number(n, point)).collect();
     let (Some(lo), Some(hi)) = (values.first(), values.last()) else { return "never counted".to_owned() };
     let is_gapless = usize::try_from(hi - lo).is_ok_and(|d| d + 1 == values.len());
@@ -104,7 +106,7 @@ fn values(point: PointId, seen: &BTreeSet<Vec<i64>>) -> String {
 }
 
 /// `4`, `2..3`, `4 or more`
-fn needed(bin: &Bin) -> String {
+fn needed(bin: &CoverBin) -> String {
     match bin.hi {
         Some(hi) if hi == bin.lo => bin.lo.to_string(),
         Some(hi) => format!("{}..{hi}", bin.lo),
@@ -113,17 +115,17 @@ fn needed(bin: &Bin) -> String {
 }
 
 /// The condition as it is written, in parentheses if it must be one.
-fn text(coverage: &Coverage, condition: &Condition, is_inner: bool) -> String {
-    let joined = |cs: &[Condition], op: &str| {
+fn text(coverage: &Coverage, condition: &BinCondition, is_inner: bool) -> String {
+    let joined = |cs: &[BinCondition], op: &str| {
         let all: Vec<String> = cs.iter().map(|c| text(coverage, c, true)).collect();
         if is_inner { format!("({})", all.join(op)) } else { all.join(op) }
     };
     match condition {
-        Condition::In { point, bin } => declared(coverage, *point, *bin)
+        BinCondition::In { point, bin } => declared(coverage, *point, *bin)
             .map_or_else(|| "?".to_owned(), |(name, bin)| format!("{name}.{}", bin.name)),
-        Condition::Not(c) => format!("!{}", text(coverage, c, true)),
-        Condition::And(cs) => joined(cs, " && "),
-        Condition::Or(cs) => joined(cs, " || "),
+        BinCondition::Not(c) => format!("!{}", text(coverage, c, true)),
+        BinCondition::And(cs) => joined(cs, " && "),
+        BinCondition::Or(cs) => joined(cs, " || "),
     }
 }
 
@@ -131,14 +133,15 @@ fn text(coverage: &Coverage, condition: &Condition, is_inner: bool) -> String {
 mod tests {
     use hrdsl_ir::{
         Span,
-        coverage::{Cross, CrossBin, Point},
+        coverage::{CoverCross, Coverpoint, CrossBin},
     };
 
     use super::*;
 
-    fn point(name: &str, bins: &[(&str, i64, Option<i64>)]) -> Point {
-        let bin = |(name, lo, hi): &(&str, i64, Option<i64>)| Bin { name: (*name).into(), lo: *lo, hi: *hi };
-        Point {
+    fn point(name: &str, bins: &[(&str, i64, Option<i64>)]) -> Coverpoint {
+        let bin =
+            |(name, lo, hi): &(&str, i64, Option<i64>)| CoverBin { name: (*name).into(), lo: *lo, hi: *hi };
+        Coverpoint {
             name: name.into(),
             count: vec![],
             bins: bins.iter().map(bin).collect(),
@@ -146,15 +149,15 @@ mod tests {
         }
     }
 
-    fn is(point: u16, bin: u16) -> Condition {
-        Condition::In { point: PointId(point), bin }
+    fn is(point: u16, bin: u16) -> BinCondition {
+        BinCondition::In { point: CoverpointId(point), bin }
     }
 
-    fn coverage(when: Condition, ignore: Vec<Condition>) -> Coverage {
+    fn coverage(when: BinCondition, ignore: Vec<BinCondition>) -> Coverage {
         let bin = CrossBin { name: "b".into(), when, origin: Span::default() };
-        let cross = Cross {
+        let cross = CoverCross {
             name: "c".into(),
-            points: vec![PointId(0), PointId(1)],
+            points: vec![CoverpointId(0), CoverpointId(1)],
             bins: vec![bin],
             ignore,
             origin: Span::default(),
@@ -168,13 +171,13 @@ mod tests {
         }
     }
 
-    fn why_not(when: Condition, ignore: Vec<Condition>, seen: &[[i64; 2]]) -> String {
+    fn why_not(when: BinCondition, ignore: Vec<BinCondition>, seen: &[[i64; 2]]) -> String {
         why(&coverage(when, ignore), 0, 0, &seen.iter().map(|n| n.to_vec()).collect())
     }
 
     #[test]
     fn the_condition_that_was_never_met_is_named_with_its_values() {
-        let both = || Condition::And(vec![is(0, 2), is(1, 1)]);
+        let both = || BinCondition::And(vec![is(0, 2), is(1, 1)]);
         let seen = [[0, 0], [1, 1], [2, 0], [3, 2]];
         assert_eq!(why_not(both(), vec![], &seen), "`asked` was 0..3, needs 4");
         assert_eq!(
@@ -182,9 +185,9 @@ mod tests {
             "`asked` was 0, 7, 9, needs 4; `given` was always 0, needs 1 or more"
         );
         assert_eq!(why_not(is(0, 1), vec![], &[[0, 0], [1, 0]]), "`asked` was 0, 1, needs 2..3");
-        let not = Condition::Not(Box::new(is(1, 0)));
+        let not = BinCondition::Not(Box::new(is(1, 0)));
         assert_eq!(why_not(not, vec![], &[[1, 0]]), "`given` was always 0, must not be 0");
-        let either = Condition::Or(vec![is(0, 2), Condition::Not(Box::new(is(1, 0)))]);
+        let either = BinCondition::Or(vec![is(0, 2), BinCondition::Not(Box::new(is(1, 0)))]);
         assert_eq!(
             why_not(either, vec![], &[[1, 0]]),
             "`asked.four || !given.no` was never met: `asked` was always 1, `given` was always 0"
@@ -194,7 +197,7 @@ mod tests {
 
     #[test]
     fn conditions_that_never_came_together_are_said_so() {
-        let both = || Condition::And(vec![is(0, 2), is(1, 1)]);
+        let both = || BinCondition::And(vec![is(0, 2), is(1, 1)]);
         assert_eq!(
             why_not(both(), vec![], &[[4, 0], [1, 3]]),
             "each of its conditions was met, but never all at once: in the nearest run `asked.four` was not"

@@ -2,10 +2,10 @@
 
 use hrdsl_ir::{
     Program,
-    coverage::{BinName, Condition, Cross},
+    coverage::{BinCondition, BinName, CoverCross},
     monitor::RequirementId,
     suite::SearchGoal,
-    ta::{Ask, Automaton, AutomatonId, LocationId, Network},
+    ta::{Automaton, AutomatonId, LocationId, Network, QueryKind},
 };
 use hrdsl_results::GoalName;
 use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
@@ -30,11 +30,13 @@ pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<
 
 /// One counter for each coverpoint, up to where its bins no longer tell numbers apart.
 pub fn counters(program: &Program) -> Vec<EventCounter> {
-    let cap = |point: &hrdsl_ir::coverage::Point| {
+    let cap = |point: &hrdsl_ir::coverage::Coverpoint| {
         point.bins.iter().map(|b| b.hi.map_or(b.lo, |hi| hi + 1).max(b.lo)).max().unwrap_or(0)
     };
-    let counter =
-        |point: &hrdsl_ir::coverage::Point| EventCounter { patterns: point.count.clone(), cap: cap(point) };
+    let counter = |point: &hrdsl_ir::coverage::Coverpoint| EventCounter {
+        patterns: point.count.clone(),
+        cap: cap(point),
+    };
     program.coverage.points.iter().map(counter).collect()
 }
 
@@ -51,7 +53,7 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
         SearchGoal::Trigger(id) => requirement(program, *id, "trigger", WitnessedGoal::Trigger),
         SearchGoal::Query(id) => {
             let Some(query) = program.queries.get(usize::from(id.0)) else { return Vec::new() };
-            let Ask::Possibly(formula) = &query.ask else { return Vec::new() };
+            let QueryKind::Possibly(formula) = &query.ask else { return Vec::new() };
             let goal = prove::of_formula(formula);
             vec![NamedGoal::one(format!("query {}", query.name), goal.what, false, WitnessedGoal::Nothing)]
         }
@@ -101,7 +103,7 @@ fn edges(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
 // ── bins ──
 
 /// A bin holds where its condition does and none of the cross's `ignore`s.
-fn bins(program: &Program, cross: &Cross) -> Vec<NamedGoal> {
+fn bins(program: &Program, cross: &CoverCross) -> Vec<NamedGoal> {
     let ignored = cross.ignore.iter().map(|c| StateFormula::Not(Box::new(formula(program, c))));
     let ignored: Vec<StateFormula> = ignored.collect();
     let named = cross.bins.iter().map(|bin| {
@@ -119,15 +121,15 @@ fn bins(program: &Program, cross: &Cross) -> Vec<NamedGoal> {
 }
 
 /// The condition over the counters: counter i is point i.
-fn formula(program: &Program, condition: &Condition) -> StateFormula {
+fn formula(program: &Program, condition: &BinCondition) -> StateFormula {
     match condition {
-        Condition::In { point, bin } => {
+        BinCondition::In { point, bin } => {
             let point = point.0 as usize;
             let bin = &program.coverage.points[point].bins[*bin as usize];
             StateFormula::CounterIn { counter: point, lo: bin.lo, hi: bin.hi }
         }
-        Condition::Not(c) => StateFormula::Not(Box::new(formula(program, c))),
-        Condition::And(cs) => StateFormula::And(cs.iter().map(|c| formula(program, c)).collect()),
-        Condition::Or(cs) => StateFormula::Or(cs.iter().map(|c| formula(program, c)).collect()),
+        BinCondition::Not(c) => StateFormula::Not(Box::new(formula(program, c))),
+        BinCondition::And(cs) => StateFormula::And(cs.iter().map(|c| formula(program, c)).collect()),
+        BinCondition::Or(cs) => StateFormula::Or(cs.iter().map(|c| formula(program, c)).collect()),
     }
 }

@@ -8,11 +8,11 @@ use std::convert::Infallible;
 use hrdsl_coverage::{CoverageCollector, TestCoverage};
 use hrdsl_ir::{
     ActorId, EventId, EventPattern, Nanos, Program, Role, Value,
-    bdi::{Agent, StepKind, TriggerOn, each_step},
+    bdi::{Agent, PlanStepKind, TriggerOn, each_step},
     event::{ArgPattern, StimulusStep},
     expr::Expr,
     suite::PlayerRef,
-    ta::{ReceiveArg, Sync},
+    ta::{ReceiveArg, SyncLabel},
     test::TestStep,
     value::nanos,
 };
@@ -72,7 +72,7 @@ fn of_agent(program: &Program, agent: &Agent) -> Vec<AwaitGroup> {
     let mut groups = Vec::new();
     for plan in &agent.plans {
         each_step(&plan.body, &mut |step| {
-            if let StepKind::Await { events, within } = &step.kind {
+            if let PlanStepKind::Await { events, within } = &step.kind {
                 let within = within.as_ref().and_then(constant);
                 groups.push(AwaitGroup { actor, events: events.clone(), within });
             }
@@ -105,18 +105,20 @@ fn any(program: &Program, event: EventId) -> EventPattern {
     EventPattern { event, args: vec![ArgPattern::Any; program.event(event).params.len()] }
 }
 
-fn received(sync: &Sync) -> Option<EventPattern> {
+fn received(sync: &SyncLabel) -> Option<EventPattern> {
     match sync {
-        Sync::Receive { event, args } => {
+        SyncLabel::Receive { event, args } => {
             let args = args.iter().map(|a| match a {
                 ReceiveArg::Match(pattern) => *pattern,
                 ReceiveArg::Bind => ArgPattern::Any,
             });
             Some(EventPattern { event: *event, args: args.collect() })
         }
-        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {
-            None
-        }
+        SyncLabel::Internal
+        | SyncLabel::Send { .. }
+        | SyncLabel::Offer { .. }
+        | SyncLabel::Accept { .. }
+        | SyncLabel::Join { .. } => None,
     }
 }
 
@@ -200,7 +202,7 @@ pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
 mod tests {
     use hrdsl_ir::{
         Actor, Event, Span,
-        bdi::{AgentId, Belief, BeliefId, Context, Plan, Step, Trigger},
+        bdi::{AgentId, BeliefDecl, BeliefId, Plan, PlanContext, PlanStep, PlanTrigger},
         expr::BinaryOp,
         value::SECOND,
     };
@@ -218,39 +220,39 @@ mod tests {
         }
     }
 
-    fn plan(on: TriggerOn, body: Vec<StepKind>) -> Plan {
+    fn plan(on: TriggerOn, body: Vec<PlanStepKind>) -> Plan {
         Plan {
             label: "p".into(),
             atomic: false,
-            trigger: Trigger {
+            trigger: PlanTrigger {
                 name: Span::default(),
                 origin: Span::default(),
                 on,
                 args: vec![],
                 annotations: vec![],
             },
-            context: Context::True,
+            context: PlanContext::True,
             body: steps_of(body),
             vars: vec![],
             origin: Span::default(),
         }
     }
 
-    fn steps_of(body: Vec<StepKind>) -> Vec<Step> {
-        body.into_iter().map(|kind| Step { kind, origin: Span::default() }).collect()
+    fn steps_of(body: Vec<PlanStepKind>) -> Vec<PlanStep> {
+        body.into_iter().map(|kind| PlanStep { kind, origin: Span::default() }).collect()
     }
 
-    fn awaits(event: u16, within: Option<Expr>) -> StepKind {
+    fn awaits(event: u16, within: Option<Expr>) -> PlanStepKind {
         let events = vec![EventPattern { event: EventId(event), args: vec![] }];
-        StepKind::Await { events, within }
+        PlanStepKind::Await { events, within }
     }
 
     #[test]
     fn what_is_awaited_within_blocks_and_perceived_as_a_belief_makes_groups() {
         let sum = Expr::binary(BinaryOp::Add, Expr::float(1.5), Expr::float(2.0));
         let inner = vec![steps_of(vec![awaits(1, Some(Expr::Var(0)))]), steps_of(vec![awaits(0, None)])];
-        let body = vec![awaits(0, Some(sum)), StepKind::Fork { branches: inner, all: true }];
-        let belief = |percept| Belief {
+        let body = vec![awaits(0, Some(sum)), PlanStepKind::Fork { branches: inner, all: true }];
+        let belief = |percept| BeliefDecl {
             negates: None,
             name: "b".into(),
             params: vec![],

@@ -2,8 +2,8 @@
 
 use hrdsl_ir::{
     Expr, Program,
-    expr::Place,
-    ta::{Automaton, Edge, FunctionId, Network, Statement, Sync, Update},
+    expr::Lvalue,
+    ta::{Automaton, Edge, EdgeAssignment, FunctionId, FunctionStatement, Network, SyncLabel},
 };
 use hrdsl_ta::{GoalKind, ReachabilityGoal};
 
@@ -153,17 +153,22 @@ impl DataFlowCollector<'_> {
             c.bound.terms.iter().for_each(|t| self.read(&t.value));
         }
         match &edge.sync {
-            Sync::Send { args, .. } | Sync::Offer { args, .. } => args.iter().for_each(|e| self.read(e)),
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
+                args.iter().for_each(|e| self.read(e))
+            }
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => {}
         }
         for update in &edge.updates {
             match update {
-                Update::Assign { place, value } => {
+                EdgeAssignment::Assign { place, value } => {
                     self.read(value);
                     self.define(place);
                 }
-                Update::Reset { to, .. } => to.terms.iter().for_each(|t| self.read(&t.value)),
-                Update::Call { function, args } => {
+                EdgeAssignment::Reset { to, .. } => to.terms.iter().for_each(|t| self.read(&t.value)),
+                EdgeAssignment::Call { function, args } => {
                     args.iter().for_each(|e| self.read(e));
                     self.call(*function);
                 }
@@ -171,9 +176,9 @@ impl DataFlowCollector<'_> {
         }
     }
 
-    fn define(&mut self, place: &Place) {
+    fn define(&mut self, place: &Lvalue) {
         let mut slots = Vec::new();
-        let bare = Place { slot: place.slot, indices: place.indices.iter().map(constant_index).collect() };
+        let bare = Lvalue { slot: place.slot, indices: place.indices.iter().map(constant_index).collect() };
         bare.each_var(&mut |slot| slots.push(usize::from(slot)));
         self.defines.extend(slots);
         place.indices.iter().for_each(|i| self.read(&i.at));
@@ -210,40 +215,40 @@ impl DataFlowCollector<'_> {
         self.open.pop();
     }
 
-    fn statements(&mut self, body: &[Statement]) {
+    fn statements(&mut self, body: &[FunctionStatement]) {
         for statement in body {
             match statement {
-                Statement::Assign { place, value } => {
+                FunctionStatement::Assign { place, value } => {
                     self.read(value);
                     self.define(place);
                 }
-                Statement::Call { function, args } => {
+                FunctionStatement::Call { function, args } => {
                     args.iter().for_each(|e| self.read(e));
                     self.call(*function);
                 }
-                Statement::If { condition, then, otherwise } => {
+                FunctionStatement::If { condition, then, otherwise } => {
                     self.read(condition);
                     self.statements(then);
                     self.statements(otherwise);
                 }
-                Statement::While { condition, body } => {
+                FunctionStatement::While { condition, body } => {
                     self.read(condition);
                     self.statements(body);
                 }
-                Statement::For { lo, hi, body, .. } => {
+                FunctionStatement::For { lo, hi, body, .. } => {
                     self.read(lo);
                     self.read(hi);
                     self.statements(body);
                 }
-                Statement::Return(value) => value.iter().for_each(|e| self.read(e)),
+                FunctionStatement::Return(value) => value.iter().for_each(|e| self.read(e)),
             }
         }
     }
 }
 
 /// The same index without what it reads: only which elements there are counts.
-fn constant_index(index: &hrdsl_ir::expr::Index) -> hrdsl_ir::expr::Index {
-    hrdsl_ir::expr::Index { at: Expr::int(0), count: index.count, stride: index.stride }
+fn constant_index(index: &hrdsl_ir::expr::ArrayIndex) -> hrdsl_ir::expr::ArrayIndex {
+    hrdsl_ir::expr::ArrayIndex { at: Expr::int(0), count: index.count, stride: index.stride }
 }
 
 fn calls(e: &Expr, out: &mut Vec<FunctionId>) {

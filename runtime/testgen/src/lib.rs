@@ -30,8 +30,8 @@ mod write;
 
 use hrdsl_ir::{
     Program,
-    suite::{Delays, Method, Suite, WitnessKind},
-    test::{Provenance, Test, TestMethod},
+    suite::{DelayChoice, Suite, SuiteMethod, WitnessKind},
+    test::{Test, TestMethod, TestProvenance},
 };
 use hrdsl_prove::ProofOptions;
 use hrdsl_results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation, UncoveredGoal};
@@ -73,7 +73,7 @@ pub struct GenerateOptions {
     pub minimise: Option<bool>,
     /// Of a suite by search: which witnesses are taken, instead of what the suite says.
     pub witness: Option<WitnessKind>,
-    pub delays: Option<Delays>,
+    pub delays: Option<DelayChoice>,
     /// Of a suite by search: how it searches; its witnesses and seed do not count.
     pub search: ProofOptions,
 }
@@ -109,10 +109,10 @@ pub fn generate_with(
         return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
     }
     let (method, harvest, minimise) = match &suite.method {
-        Method::Agents { minimise: said, .. } => {
+        SuiteMethod::Agents { minimise: said, .. } => {
             (TestMethod::Agents, agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
         }
-        Method::Search { network, goals, witness, delays } => {
+        SuiteMethod::Search { network, goals, witness, delays } => {
             let settings = ProofOptions {
                 witness: options.witness.unwrap_or(*witness),
                 delays: options.delays.unwrap_or(*delays),
@@ -122,7 +122,9 @@ pub fn generate_with(
             };
             (TestMethod::Search, search::harvest(program, suite, *network, goals, &settings)?, true)
         }
-        Method::Random { .. } => (TestMethod::Random, random::harvest(program, suite, most, seed)?, false),
+        SuiteMethod::Random { .. } => {
+            (TestMethod::Random, random::harvest(program, suite, most, seed)?, false)
+        }
     };
     let AbstractTests { tests, mut goals, mut notes, found } = harvest;
     let mut different = distinct::distinct(tests);
@@ -198,7 +200,7 @@ fn make_concrete(
             Ok(Test {
                 name: format!("{}.{}", program.name, test_name(suite, number)),
                 seed,
-                provenance: Provenance {
+                provenance: TestProvenance {
                     suite: suite.name.clone(),
                     method,
                     because: test.because.clone(),
@@ -231,11 +233,11 @@ mod tests {
     fn goals_that_only_tests_left_out_reach_are_uncovered() {
         let suite = Suite {
             name: "s".into(),
-            method: Method::Search {
+            method: SuiteMethod::Search {
                 network: NetworkId(0),
                 goals: vec![],
                 witness: hrdsl_ir::suite::WitnessKind::default(),
-                delays: hrdsl_ir::suite::Delays::default(),
+                delays: hrdsl_ir::suite::DelayChoice::default(),
             },
             tests: 1,
             horizon: 0,

@@ -4,7 +4,7 @@ use hrdsl_bdi::coverage::{AgentTeam, name, universe};
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
-    suite::{ItemKind, PlayerRef},
+    suite::{CoverItemKind, PlayerRef},
 };
 use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, UnreachedItem};
 
@@ -25,7 +25,7 @@ fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCovera
         .into_iter()
         .map(|item| (item, measured.is_some_and(|m| item.is_reached(m))))
         .collect();
-    let kind = |kind: ItemKind| {
+    let kind = |kind: CoverItemKind| {
         let of_kind = || items.iter().filter(|(item, _)| item.kind() == kind);
         KindCoverage {
             kind,
@@ -40,7 +40,7 @@ fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCovera
     });
     AgentCoverage {
         agent: agent.name.clone(),
-        kinds: ItemKind::ALL.into_iter().map(kind).collect(),
+        kinds: CoverItemKind::ALL.into_iter().map(kind).collect(),
         unreached: unreached.collect(),
     }
 }

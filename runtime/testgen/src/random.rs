@@ -4,7 +4,7 @@ use hrdsl_coverage::assume::Assumptions;
 use hrdsl_ir::{
     EventId, Expr, Nanos, Program, Type, Value,
     event::StimulusStep,
-    suite::{Method, Suite},
+    suite::{Suite, SuiteMethod},
     test::TestStep,
 };
 use rand::{RngExt, SeedableRng};
@@ -20,7 +20,8 @@ use crate::{
 /// # Errors
 /// A suite without stimuli, or a stimulus whose arguments cannot be enumerated.
 pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
-    let Method::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } = &suite.method else {
+    let SuiteMethod::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } = &suite.method
+    else {
         return Err(format!("suite `{}` is not by random", suite.name));
     };
     let mut choices: Vec<TestStep> = Vec::new();
@@ -122,14 +123,14 @@ fn makes(program: &Program, event: EventId, args: &[Value]) -> Vec<(EventId, Vec
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{ActorId, Enumeration, Event, Param, Span, Unit};
+    use hrdsl_ir::{ActorId, Enumeration, Event, Parameter, Span, Unit};
 
     use super::*;
 
     #[test]
     fn every_symbol_is_a_choice() {
         let pace = Type::Enum(Enumeration::intern("Pace", &["slow", "fast", "crawl"]));
-        let param = |name: &str, ty| Param { name: name.into(), ty };
+        let param = |name: &str, ty| Parameter { name: name.into(), ty };
         let mut event = Event {
             name: "go".into(),
             params: vec![param("pace", pace), param("on", Type::Bool)],
@@ -141,7 +142,7 @@ mod tests {
         let program = Program { events: vec![event.clone()], ..Program::default() };
         let suite = Suite {
             name: "s".into(),
-            method: Method::Random {
+            method: SuiteMethod::Random {
                 stimuli: vec![EventId(0)],
                 awaits: Vec::new(),
                 length_lo: 60,

@@ -121,14 +121,14 @@ fn time_text(time: Nanos) -> String {
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{ActorId, Enumeration, Event, EventId, Param, Span, Symbol};
+    use hrdsl_ir::{ActorId, Enumeration, Event, EventId, Parameter, Span, Symbol};
 
     use super::*;
 
     const METRE: Type = Type::Float(Unit::Metre);
 
     fn program(params: &[(&str, Type)]) -> Program {
-        let param = |(name, ty): &(&str, Type)| Param { name: (*name).to_owned(), ty: *ty };
+        let param = |(name, ty): &(&str, Type)| Parameter { name: (*name).to_owned(), ty: *ty };
         let event = Event {
             name: "go".into(),
             params: params.iter().map(param).collect(),

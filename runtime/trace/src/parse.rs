@@ -11,7 +11,7 @@ use std::{
     io::{BufRead, Read as _},
 };
 
-use hrdsl_ir::{EventId, Nanos, Param, Program, Type, Unit, Value, world::SignalId};
+use hrdsl_ir::{EventId, Nanos, Parameter, Program, Type, Unit, Value, world::SignalId};
 use serde_json::Value as Json;
 use thiserror::Error;
 
@@ -253,8 +253,10 @@ impl<'a> StepReader<'a> {
             }
             *place = Some(typed(&arg, param.ty, &json)?);
         }
-        let missing =
-            |param: &Param| LineProblem::MissingArgument { event: name.to_owned(), name: param.name.clone() };
+        let missing = |param: &Parameter| LineProblem::MissingArgument {
+            event: name.to_owned(),
+            name: param.name.clone(),
+        };
         let all = args.into_iter().zip(params).map(|(arg, param)| arg.ok_or_else(|| missing(param)));
         Ok(TraceStepKind::Event { event, args: all.collect::<Result<_, _>>()? })
     }

@@ -1,8 +1,8 @@
 //! Tests of the recording format: what is written is read back, and what is wrong is said.
 
 use hrdsl_ir::{
-    Actor, ActorId, Enumeration, Event, EventId, Expr, Nanos, Param, Program, Role, Span, Symbol, Type, Unit,
-    Value,
+    Actor, ActorId, Enumeration, Event, EventId, Expr, Nanos, Parameter, Program, Role, Span, Symbol, Type,
+    Unit, Value,
     world::{Signal, SignalId},
 };
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ use crate::{
 };
 
 fn event(name: &str, from: u16, params: &[(&str, Type)]) -> Event {
-    let param = |(name, ty): &(&str, Type)| Param { name: (*name).to_owned(), ty: *ty };
+    let param = |(name, ty): &(&str, Type)| Parameter { name: (*name).to_owned(), ty: *ty };
     Event {
         name: name.to_owned(),
         params: params.iter().map(param).collect(),

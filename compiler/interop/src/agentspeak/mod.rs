@@ -25,7 +25,7 @@ mod term;
 mod types;
 mod write;
 
-use hrdsl_source::{Files, Span};
+use hrdsl_source::{SourceFiles, Span};
 
 use self::{
     names::Names,
@@ -88,7 +88,7 @@ pub fn import(
 }
 
 struct Report<'a> {
-    files: &'a Files,
+    files: &'a SourceFiles,
     notes: Vec<Note>,
 }
 

@@ -3,7 +3,7 @@
 mod body;
 mod term;
 
-use hrdsl_source::{FileId, Files, Span};
+use hrdsl_source::{FileId, SourceFiles, Span};
 
 use super::{
     ast::{Item, ItemKind, Literal, Plan, Program, Term, TermKind, Trigger, TriggerKind},
@@ -28,7 +28,7 @@ pub type Parsed<T> = Result<T, Fault>;
 
 /// Where files come from, and what was wrong with them.
 pub struct Reader<'l> {
-    pub files: Files,
+    pub files: SourceFiles,
     pub loader: &'l dyn Loader,
     pub errors: Vec<SyntaxError>,
     /// The names of the files that are being read, the outermost first.
@@ -39,7 +39,7 @@ pub struct Reader<'l> {
 
 impl<'l> Reader<'l> {
     pub fn new(loader: &'l dyn Loader) -> Self {
-        Self { files: Files::default(), loader, errors: Vec::new(), open: Vec::new(), bytes: 0 }
+        Self { files: SourceFiles::default(), loader, errors: Vec::new(), open: Vec::new(), bytes: 0 }
     }
 
     /// Says what is wrong at a place.
@@ -118,7 +118,7 @@ impl<'l> Reader<'l> {
 }
 
 /// The file, the line and the column of a place.
-pub fn place(files: &Files, span: Span) -> (String, u32, u32) {
+pub fn place(files: &SourceFiles, span: Span) -> (String, u32, u32) {
     let at = files.position(span);
     (files.get(span.file).map(|f| f.name.clone()).unwrap_or_default(), at.line, at.column)
 }

@@ -1,6 +1,6 @@
 //! All agents and their programs: what every step after reading starts from.
 
-use hrdsl_source::{Files, Span};
+use hrdsl_source::{SourceFiles, Span};
 
 use super::{
     ast::{Literal, Program},
@@ -22,7 +22,7 @@ pub(crate) struct Entry {
 #[derive(Debug, Default)]
 pub(crate) struct System {
     pub name: String,
-    pub files: Files,
+    pub files: SourceFiles,
     pub programs: Vec<Program>,
     pub agents: Vec<Entry>,
     pub skipped: Vec<(Span, String)>,

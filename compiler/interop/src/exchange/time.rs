@@ -2,14 +2,14 @@
 
 use hrdsl_ir::{
     Nanos, Program,
-    ta::{Ask, Automaton, Formula, Time, Update},
+    ta::{Automaton, EdgeAssignment, QueryFormula, QueryKind, TimeSum},
     value::SECOND,
 };
 
 /// The greatest unit in which all time constants are whole; a second if there are none.
 pub(crate) fn unit(program: &Program, automata: &[&Automaton]) -> Nanos {
     let mut all = 0;
-    let mut see = |time: &Time| {
+    let mut see = |time: &TimeSum| {
         all = gcd(all, time.nanos.unsigned_abs());
         for term in &time.terms {
             all = gcd(all, term.factor.unsigned_abs());
@@ -21,22 +21,25 @@ pub(crate) fn unit(program: &Program, automata: &[&Automaton]) -> Nanos {
             e.clock_guard.iter().for_each(|c| see(&c.bound));
             for u in &e.updates {
                 match u {
-                    Update::Reset { to, .. } => see(to),
-                    Update::Assign { .. } | Update::Call { .. } => {}
+                    EdgeAssignment::Reset { to, .. } => see(to),
+                    EdgeAssignment::Assign { .. } | EdgeAssignment::Call { .. } => {}
                 }
             }
         }
     }
     for query in &program.queries {
         match &query.ask {
-            Ask::Possibly(f) | Ask::Invariantly(f) | Ask::PotentiallyAlways(f) | Ask::Eventually(f) => {
+            QueryKind::Possibly(f)
+            | QueryKind::Invariantly(f)
+            | QueryKind::PotentiallyAlways(f)
+            | QueryKind::Eventually(f) => {
                 formula(f, &mut see);
             }
-            Ask::LeadsTo(f, g) => {
+            QueryKind::LeadsTo(f, g) => {
                 formula(f, &mut see);
                 formula(g, &mut see);
             }
-            Ask::Sup { when, .. } | Ask::Inf { when, .. } => formula(when, &mut see),
+            QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => formula(when, &mut see),
         }
     }
     Nanos::try_from(all).ok().filter(|n| *n > 0).unwrap_or(SECOND)
@@ -49,12 +52,12 @@ pub(crate) fn seconds(nanos: Nanos) -> String {
     format!("{} {name}", nanos / size)
 }
 
-fn formula(f: &Formula, see: &mut impl FnMut(&Time)) {
+fn formula(f: &QueryFormula, see: &mut impl FnMut(&TimeSum)) {
     match f {
-        Formula::Clock(c) => see(&c.bound),
-        Formula::Not(f) => formula(f, see),
-        Formula::And(fs) | Formula::Or(fs) => fs.iter().for_each(|f| formula(f, see)),
-        Formula::At { .. } | Formula::Data(_) | Formula::Deadlock => {}
+        QueryFormula::Clock(c) => see(&c.bound),
+        QueryFormula::Not(f) => formula(f, see),
+        QueryFormula::And(fs) | QueryFormula::Or(fs) => fs.iter().for_each(|f| formula(f, see)),
+        QueryFormula::At { .. } | QueryFormula::Data(_) | QueryFormula::Deadlock => {}
     }
 }
 

@@ -2,8 +2,11 @@
 
 use hrdsl_ir::{
     Expr, Program, Value,
-    expr::{BinaryOp, Function, Place, UnaryOp},
-    ta::{Automaton, ClockConstraint, ClockId, ClockOp, Edge, ReceiveArg, Sync, Time, Update, Var},
+    expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
+    ta::{
+        Automaton, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, ReceiveArg,
+        SyncLabel, TimeSum,
+    },
 };
 
 use crate::exchange::time::seconds;
@@ -25,14 +28,17 @@ impl<'p> Show<'p> {
     pub fn edge(&self, edge: &Edge) -> Self {
         let mut binders: Vec<String> = edge.selects.iter().map(|s| s.name.clone()).collect();
         let (args, names): (&[ReceiveArg], Vec<&str>) = match &edge.sync {
-            Sync::Receive { event, args } => {
+            SyncLabel::Receive { event, args } => {
                 (args, self.program.event(*event).params.iter().map(|p| p.name.as_str()).collect())
             }
-            Sync::Accept { channel, args } => {
+            SyncLabel::Accept { channel, args } => {
                 let channel = &self.program.channels[usize::from(channel.0)];
                 (args, channel.params.iter().map(|p| p.name.as_str()).collect())
             }
-            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => (&[], Vec::new()),
+            SyncLabel::Internal
+            | SyncLabel::Send { .. }
+            | SyncLabel::Offer { .. }
+            | SyncLabel::Join { .. } => (&[], Vec::new()),
         };
         for (arg, name) in args.iter().zip(names) {
             match arg {
@@ -47,7 +53,7 @@ impl<'p> Show<'p> {
         let slot = usize::from(slot);
         let own = slot.wrapping_sub(self.program.shared.len());
         let bound = own.wrapping_sub(self.automaton.vars.len());
-        let of = |v: &'p Var| v.name.as_str();
+        let of = |v: &'p AutomatonVar| v.name.as_str();
         let shared = self.program.shared.get(slot).map(of);
         let found = shared.or_else(|| self.automaton.vars.get(own).map(of));
         found.or_else(|| self.binders.get(bound).map(String::as_str)).unwrap_or("?")
@@ -60,7 +66,7 @@ impl<'p> Show<'p> {
         found.map_or("?", String::as_str)
     }
 
-    fn place(&self, place: &Place) -> String {
+    fn place(&self, place: &Lvalue) -> String {
         if place.indices.is_empty() {
             return self.var(place.slot).to_owned();
         }
@@ -109,7 +115,7 @@ impl<'p> Show<'p> {
         format!("{name}({})", args.join(", "))
     }
 
-    fn time(&self, time: &Time) -> String {
+    fn time(&self, time: &TimeSum) -> String {
         let mut parts: Vec<String> = time
             .terms
             .iter()
@@ -159,26 +165,28 @@ impl<'p> Show<'p> {
         };
         let channel = |c: &hrdsl_ir::ta::ChannelId| self.program.channels[usize::from(c.0)].name.as_str();
         match &edge.sync {
-            Sync::Internal => None,
-            Sync::Send { event, args } => named(&self.program.event(*event).name, sent(args), "!"),
-            Sync::Receive { event, args } => named(&self.program.event(*event).name, taken(args), "?"),
-            Sync::Offer { channel: c, args } => named(channel(c), sent(args), "!"),
-            Sync::Accept { channel: c, args } => named(channel(c), taken(args), "?"),
-            Sync::Join { channel: c } => named(channel(c), Vec::new(), ""),
+            SyncLabel::Internal => None,
+            SyncLabel::Send { event, args } => named(&self.program.event(*event).name, sent(args), "!"),
+            SyncLabel::Receive { event, args } => named(&self.program.event(*event).name, taken(args), "?"),
+            SyncLabel::Offer { channel: c, args } => named(channel(c), sent(args), "!"),
+            SyncLabel::Accept { channel: c, args } => named(channel(c), taken(args), "?"),
+            SyncLabel::Join { channel: c } => named(channel(c), Vec::new(), ""),
         }
     }
 
-    pub fn update(&self, update: &Update) -> String {
+    pub fn update(&self, update: &EdgeAssignment) -> String {
         match update {
-            Update::Assign { place, value } => format!("{} = {}", self.place(place), self.expr(value)),
-            Update::Reset { clock, from: None, to } if *to == Time::ZERO => {
+            EdgeAssignment::Assign { place, value } => {
+                format!("{} = {}", self.place(place), self.expr(value))
+            }
+            EdgeAssignment::Reset { clock, from: None, to } if *to == TimeSum::ZERO => {
                 format!("{} = 0", self.clock(*clock))
             }
-            Update::Reset { clock, from, to } => {
+            EdgeAssignment::Reset { clock, from, to } => {
                 let from = from.map_or(String::new(), |f| format!("{} + ", self.clock(f)));
                 format!("{} = {from}{}", self.clock(*clock), self.time(to))
             }
-            Update::Call { function, args } => {
+            EdgeAssignment::Call { function, args } => {
                 let name = &self.program.functions[usize::from(function.0)].name;
                 self.call(name, args)
             }
@@ -208,11 +216,11 @@ fn operator(op: BinaryOp) -> (&'static str, u8) {
     }
 }
 
-fn function(f: Function) -> &'static str {
+fn function(f: NumberFunction) -> &'static str {
     match f {
-        Function::Abs => "abs",
-        Function::Min => "min",
-        Function::Max => "max",
-        Function::Norm => "norm",
+        NumberFunction::Abs => "abs",
+        NumberFunction::Min => "min",
+        NumberFunction::Max => "max",
+        NumberFunction::Norm => "norm",
     }
 }

@@ -5,20 +5,20 @@ use hrdsl_syntax::ast::{self, ItemKind, Name};
 
 use super::{
     state::{
-        issues::Issues,
+        issues::IssueList,
         names::{
-            AgentNames, ChannelNames, ConstEntry, EventNames, JudgedNames, NetworkNames, PlayerNames,
-            SharedNames, Source, Templates, TypeNames, WorldState,
+            AgentNames, ChannelNames, CheckedSource, ConstEntry, EventNames, JudgedNames, NetworkNames,
+            PlayerNames, SharedNames, TemplateNames, TypeNames, WorldState,
         },
-        table::{Map, Table},
-        template::Given,
+        table::{NameTable, OrderedMap},
+        template::TemplateArgument,
         world::WorldNames,
     },
     unread,
 };
 use crate::{
-    ActorId, ArgPattern, DefinedType, Definition, EventId, Kind, PlayerRef, PointId, Resolutions, Role,
-    Scenario,
+    ActorId, ArgPattern, CoverpointId, DefinedType, EventId, InferredType, NameDefinition, PlayerRef,
+    Resolutions, Role, Scenario,
     noun::Noun,
     report::{
         names::{unknown, wrong_kind},
@@ -32,13 +32,13 @@ pub(super) const NOBODY: ActorId = ActorId(u16::MAX);
 /// The scenario so far and what is known for the rest of it, in the order of the phases.
 pub(crate) struct Checker<'a> {
     pub(super) s: Scenario,
-    pub(super) issues: Issues,
-    pub(super) source: Source<'a>,
+    pub(super) issues: IssueList,
+    pub(super) source: CheckedSource<'a>,
     // 1. the vocabulary
-    pub(super) actors: Table,
-    pub(super) consts: Map<&'a str, ConstEntry<'a>>,
+    pub(super) actors: NameTable,
+    pub(super) consts: OrderedMap<&'a str, ConstEntry<'a>>,
     pub(super) types: TypeNames<'a>,
-    pub(super) templates: Templates<'a>,
+    pub(super) templates: TemplateNames<'a>,
     pub(super) events: EventNames<'a>,
     pub(super) players: PlayerNames<'a>,
     pub(super) shared: SharedNames,
@@ -53,19 +53,19 @@ pub(crate) struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(source: Source<'a>) -> Self {
+    pub(super) fn new(source: CheckedSource<'a>) -> Self {
         let exists = source.items.iter().any(|i| matches!(i.kind, ItemKind::World(_)));
         Self {
             s: Scenario { names: Resolutions::of_items(&source.items), ..Scenario::default() },
-            issues: Issues::default(),
+            issues: IssueList::default(),
             source,
-            actors: Table::default(),
-            consts: Map::default(),
+            actors: NameTable::default(),
+            consts: OrderedMap::default(),
             types: TypeNames::default(),
-            templates: Templates::default(),
+            templates: TemplateNames::default(),
             events: EventNames::default(),
             players: PlayerNames {
-                table: Table::default(),
+                table: NameTable::default(),
                 ids: Vec::new(),
                 agents: Vec::new(),
                 automata: Vec::new(),
@@ -75,7 +75,7 @@ impl<'a> Checker<'a> {
             channels: ChannelNames::default(),
             world: WorldState {
                 exists,
-                parts: Map::default(),
+                parts: OrderedMap::default(),
                 open_parts: Vec::new(),
                 names: WorldNames::default(),
                 missed: Vec::new(),
@@ -101,14 +101,14 @@ impl<'a> Checker<'a> {
     }
 
     /// A variable that is declared where it first stands.
-    pub(super) fn define_here(&mut self, name: &Name, ty: Kind) {
-        let inferred = |ty: Kind| DefinedType::Inferred(ty.to_string());
-        self.s.names.define(Definition {
+    pub(super) fn define_here(&mut self, name: &Name, ty: InferredType) {
+        let inferred = |ty: InferredType| DefinedType::Inferred(ty.to_string());
+        self.s.names.define(NameDefinition {
             noun: "variable",
             name: name.text.clone(),
             place: name.span,
             whole: name.span,
-            ty: if ty == Kind::Unknown { DefinedType::None } else { inferred(ty) },
+            ty: if ty == InferredType::Unknown { DefinedType::None } else { inferred(ty) },
             doc: String::new(),
         });
     }
@@ -127,16 +127,22 @@ impl<'a> Checker<'a> {
 
     pub(super) fn actor(&mut self, name: &Name) -> Option<ActorId> {
         match self.given(&name.text) {
-            Some(Given::Actor(id)) => {
+            Some(TemplateArgument::Actor(id)) => {
                 let id = *id;
                 self.refer_given(name);
                 return Some(id);
             }
-            Some(Given::Unknown) => {
+            Some(TemplateArgument::Unknown) => {
                 self.refer_given(name);
                 return Some(NOBODY);
             }
-            Some(Given::Value(_) | Given::Events(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+            Some(
+                TemplateArgument::Value(_)
+                | TemplateArgument::Events(_)
+                | TemplateArgument::Thing(..)
+                | TemplateArgument::Point(_),
+            )
+            | None => {}
         }
         match self.actors.get(&name.text) {
             Some(id) => {
@@ -154,7 +160,7 @@ impl<'a> Checker<'a> {
     /// An event, a stimulus, or either.
     pub(super) fn event(&mut self, noun: Noun, name: &Name, local: Option<Noun>) -> Option<EventId> {
         match self.given(&name.text) {
-            Some(Given::Events(patterns)) => {
+            Some(TemplateArgument::Events(patterns)) => {
                 if let [only] = patterns.as_slice()
                     && only.args.iter().all(|a| *a == ArgPattern::Any)
                 {
@@ -165,11 +171,17 @@ impl<'a> Checker<'a> {
                 self.report(types::several_events(&name.text, name.span));
                 return None;
             }
-            Some(Given::Unknown) => {
+            Some(TemplateArgument::Unknown) => {
                 self.refer_given(name);
                 return None;
             }
-            Some(Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+            Some(
+                TemplateArgument::Value(_)
+                | TemplateArgument::Actor(_)
+                | TemplateArgument::Thing(..)
+                | TemplateArgument::Point(_),
+            )
+            | None => {}
         }
         let fits = |c: &Self, id: u16| {
             let is = c.s.events[usize::from(id)].stimulus.is_some();
@@ -189,20 +201,26 @@ impl<'a> Checker<'a> {
     }
 
     /// A coverage point.
-    pub(super) fn point_named(&mut self, name: &Name) -> Option<PointId> {
+    pub(super) fn point_named(&mut self, name: &Name) -> Option<CoverpointId> {
         match self.given(&name.text) {
-            Some(Given::Point(id)) => {
+            Some(TemplateArgument::Point(id)) => {
                 let id = *id;
                 self.refer_given(name);
                 return Some(id);
             }
-            Some(Given::Unknown) => {
+            Some(TemplateArgument::Unknown) => {
                 self.refer_given(name);
                 return None;
             }
-            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..)) | None => {}
+            Some(
+                TemplateArgument::Value(_)
+                | TemplateArgument::Events(_)
+                | TemplateArgument::Actor(_)
+                | TemplateArgument::Thing(..),
+            )
+            | None => {}
         }
-        let found = self.judged.points.get(&name.text).map(PointId);
+        let found = self.judged.points.get(&name.text).map(CoverpointId);
         self.refer(name, self.judged.points.span_of(&name.text));
         if found.is_none() {
             let mut all = self.near(self.judged.points.names());

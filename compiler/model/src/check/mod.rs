@@ -17,11 +17,11 @@ use hrdsl_syntax::ast::{self, ItemKind};
 use crate::Scenario;
 use checker::Checker;
 use state::{
-    names::{Alone, Source},
-    phase::Phase,
+    names::{CheckedSource, LoneDeclaration},
+    phase::CheckPhase,
 };
 
-pub use agents::internal_table::{INTERNAL_ACTIONS, InternalAction, Slot};
+pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 pub(crate) use value::linear::BadTime;
 pub(crate) use vocabulary::layout::type_span;
 
@@ -71,19 +71,19 @@ pub fn resolve_alone(
     *place = declaration;
     let file = declaration.span.file;
     let mut source = source(items, modules, missing);
-    source.alone = Some(Alone { file, phase: Phase::of(&declaration.kind) });
+    source.alone = Some(LoneDeclaration { file, phase: CheckPhase::of(&declaration.kind) });
     let (_, mut issues) = phases(source, scenario.scenario.as_ref(), &[]);
     issues.retain(|issue| issue.span().file == file);
     issues
 }
 
 /// What is checked: what modules share, then the scenario's own items.
-fn source<'a>(own: Vec<&'a ast::Item>, modules: &[&'a ast::File], missing: bool) -> Source<'a> {
+fn source<'a>(own: Vec<&'a ast::Item>, modules: &[&'a ast::File], missing: bool) -> CheckedSource<'a> {
     let mut items: Vec<&ast::Item> =
         modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
     let from_modules = items.len();
     items.extend(own);
-    Source {
+    CheckedSource {
         unread_items: items.iter().any(|i| unread::in_item(&i.kind)),
         items,
         from_modules,
@@ -94,10 +94,10 @@ fn source<'a>(own: Vec<&'a ast::Item>, modules: &[&'a ast::File], missing: bool)
 }
 
 /// A phase's work.
-type Check<'a> = fn(&mut Checker<'a>);
+type PhaseCheck<'a> = fn(&mut Checker<'a>);
 
 fn phases<'a>(
-    source: Source<'a>,
+    source: CheckedSource<'a>,
     name: Option<&ast::Name>,
     tests: &[&ast::File],
 ) -> (Scenario, Vec<Diagnostic>) {
@@ -106,15 +106,15 @@ fn phases<'a>(
     checker.vocabulary();
     checker.devices();
     checker.world();
-    let later: [(Phase, Check<'a>); 8] = [
-        (Phase::Stimuli, Checker::stimuli),
-        (Phase::Agents, Checker::agents),
-        (Phase::Automata, Checker::automata),
-        (Phase::Queries, Checker::queries),
-        (Phase::Requirements, Checker::requirements),
-        (Phase::Coverage, Checker::coverage),
-        (Phase::Suites, Checker::suites),
-        (Phase::Systems, Checker::systems),
+    let later: [(CheckPhase, PhaseCheck<'a>); 8] = [
+        (CheckPhase::Stimuli, Checker::stimuli),
+        (CheckPhase::Agents, Checker::agents),
+        (CheckPhase::Automata, Checker::automata),
+        (CheckPhase::Queries, Checker::queries),
+        (CheckPhase::Requirements, Checker::requirements),
+        (CheckPhase::Coverage, Checker::coverage),
+        (CheckPhase::Suites, Checker::suites),
+        (CheckPhase::Systems, Checker::systems),
     ];
     for (phase, check) in later {
         if checker.source.reaches(phase) {

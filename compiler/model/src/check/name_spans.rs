@@ -6,8 +6,8 @@ use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
 };
 
-use crate::check::{checker::Checker, state::names::Declared, vocabulary::template::template};
-use crate::{AgentPlaces, Automaton, AutomatonPlaces, Named, VarPlace};
+use crate::check::{checker::Checker, state::names::DeclaredPlayer, vocabulary::template::template};
+use crate::{AgentPlaces, AutomatonPlaces, NamedSpan, TypedAutomaton, VarPlace};
 
 impl Checker<'_> {
     #[expect(clippy::too_many_lines, reason = "a flat match")]
@@ -83,11 +83,11 @@ impl Checker<'_> {
 
     fn declared(&mut self, noun: &'static str, name: &ast::Name, span: Span, used: bool) {
         let (text, place) = (name.text.clone(), name.span);
-        self.s.declared.push(Named { noun, name: text, place, span, used });
+        self.s.declared.push(NamedSpan { noun, name: text, place, span, used });
     }
 }
 
-impl<T> Declared<'_, T> {
+impl<T> DeclaredPlayer<'_, T> {
     /// Where the agent or automaton gets its name.
     fn name_span(&self, plain: Span) -> Span {
         self.instance.map_or(plain, |i| i.name.span)
@@ -110,7 +110,7 @@ fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
     places
 }
 
-fn automaton_places(automaton: &ast::Automaton, of: &Automaton, name: Span) -> AutomatonPlaces {
+fn automaton_places(automaton: &ast::Automaton, of: &TypedAutomaton, name: Span) -> AutomatonPlaces {
     let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
     for member in &automaton.members {
         match &member.kind {

@@ -1,16 +1,16 @@
 //! What the rules on plans ask about an agent: which beliefs come about and how, which goals are adopted, by whom.
 
 use crate::{
-    Agent, AgentId, Arg, Belief, BeliefId, ChoiceCondition, ChoiceKind, Context, GoalId, Performative, Plan,
-    Scenario, Step, StepKind, TriggerOn, nearest::nearest,
+    AgentId, BeliefDecl, BeliefId, ChoiceKind, GoalId, Performative, Scenario, TriggerOn, TypedAgent,
+    TypedChoiceCondition, TypedContext, TypedPlan, TypedStep, TypedStepKind, TypedTerm, nearest::nearest,
 };
 use hrdsl_ir::bdi::each_step;
 use hrdsl_source::{Diagnostic, Span};
 
 use super::{
-    agent_index::{AgentIndex, Message, Work},
-    facts::Facts,
-    plan_terms::{Term, alternatives, may_unify, of_args, of_exprs, of_values},
+    agent_index::{AgentIndex, AgentWork, SentMessage},
+    facts::ScenarioFacts,
+    plan_terms::{PlanTerm, alternatives, may_unify, of_args, of_exprs, of_values},
 };
 
 /// One agent, with what the scenario says about it.
@@ -18,14 +18,14 @@ use super::{
 pub(crate) struct AgentFacts<'a> {
     pub scenario: &'a Scenario,
     pub id: AgentId,
-    pub agent: &'a Agent,
+    pub agent: &'a TypedAgent,
     index: &'a AgentIndex<'a>,
-    work: &'a Work,
+    work: &'a AgentWork,
 }
 
 /// What is known of the facts of a belief at all times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Held {
+pub(crate) enum HeldBeliefs {
     /// Nothing.
     Unknown,
     /// There is one at least.
@@ -38,14 +38,14 @@ pub(crate) enum Held {
 
 /// A belief literal of a context.
 #[derive(Clone, Copy)]
-pub(crate) struct Literal<'a> {
+pub(crate) struct GroundLiteral<'a> {
     pub belief: BeliefId,
-    pub args: &'a [Arg],
+    pub args: &'a [TypedTerm],
     pub span: Span,
     pub negated: bool,
 }
 
-impl Literal<'_> {
+impl GroundLiteral<'_> {
     /// The belief's name in the text.
     pub fn name_span(&self, name: &str) -> Span {
         let end = self.span.start + u32::try_from(name.len()).unwrap_or(0);
@@ -56,7 +56,7 @@ impl Literal<'_> {
 /// All agents.
 pub(crate) fn agents<'a>(
     scenario: &'a Scenario,
-    facts: &'a Facts<'a>,
+    facts: &'a ScenarioFacts<'a>,
 ) -> impl Iterator<Item = AgentFacts<'a>> {
     let all = (0..).zip(scenario.agents.iter().zip(&facts.agents));
     all.map(move |(i, (agent, index))| AgentFacts {
@@ -69,19 +69,19 @@ pub(crate) fn agents<'a>(
 }
 
 /// The literals of a context from the left; negated are those under an odd number of `not`.
-pub(crate) fn literals(context: &Context) -> Vec<Literal<'_>> {
-    fn collect<'a>(context: &'a Context, negated: bool, all: &mut Vec<Literal<'a>>) {
+pub(crate) fn literals(context: &TypedContext) -> Vec<GroundLiteral<'_>> {
+    fn collect<'a>(context: &'a TypedContext, negated: bool, all: &mut Vec<GroundLiteral<'a>>) {
         match context {
-            Context::True | Context::Test(_) | Context::Unify(..) => {}
-            Context::Belief(b) => {
+            TypedContext::True | TypedContext::Test(_) | TypedContext::Unify(..) => {}
+            TypedContext::Belief(b) => {
                 let (belief, args, span) = (b.belief, b.args.as_slice(), b.origin);
-                all.push(Literal { belief, args, span, negated });
+                all.push(GroundLiteral { belief, args, span, negated });
             }
-            Context::Internal(action, _) => {
+            TypedContext::Internal(action, _) => {
                 action.formula().iter().for_each(|inner| collect(inner, negated, all));
             }
-            Context::Not(inner) => collect(inner, !negated, all),
-            Context::And(parts) | Context::Or(parts) => {
+            TypedContext::Not(inner) => collect(inner, !negated, all),
+            TypedContext::And(parts) | TypedContext::Or(parts) => {
                 parts.iter().for_each(|part| collect(part, negated, all));
             }
         }
@@ -92,63 +92,65 @@ pub(crate) fn literals(context: &Context) -> Vec<Literal<'_>> {
 }
 
 /// What a step does to beliefs.
-pub(crate) enum Change<'a> {
-    Adds(BeliefId, Vec<Term<'a>>),
+pub(crate) enum BeliefChange<'a> {
+    Adds(BeliefId, Vec<PlanTerm<'a>>),
     /// Leaves this as the only one.
-    Replaces(BeliefId, Vec<Term<'a>>),
-    Removes(BeliefId, Vec<Term<'a>>),
+    Replaces(BeliefId, Vec<PlanTerm<'a>>),
+    Removes(BeliefId, Vec<PlanTerm<'a>>),
 }
 
-impl Change<'_> {
+impl BeliefChange<'_> {
     pub fn belief(&self) -> BeliefId {
         match self {
-            Change::Adds(b, _) | Change::Replaces(b, _) | Change::Removes(b, _) => *b,
+            BeliefChange::Adds(b, _) | BeliefChange::Replaces(b, _) | BeliefChange::Removes(b, _) => *b,
         }
     }
 }
 
-pub(crate) fn change(step: &Step) -> Option<Change<'_>> {
+pub(crate) fn change(step: &TypedStep) -> Option<BeliefChange<'_>> {
     match &step.kind {
-        StepKind::Add(a) => Some(Change::Adds(a.belief, of_exprs(&a.args))),
-        StepKind::Replace(a) => Some(Change::Replaces(a.belief, of_exprs(&a.args))),
-        StepKind::Remove(l) | StepKind::Abolish(l) => Some(Change::Removes(l.belief, of_args(&l.args))),
-        StepKind::Do { .. }
-        | StepKind::Achieve { .. }
-        | StepKind::Spawn { .. }
-        | StepKind::Query(..)
-        | StepKind::Test(_)
-        | StepKind::Await { .. }
-        | StepKind::Wait { .. }
-        | StepKind::If { .. }
-        | StepKind::While { .. }
-        | StepKind::For { .. }
-        | StepKind::Fork { .. }
-        | StepKind::Send { .. }
-        | StepKind::Ask { .. }
-        | StepKind::AskAll { .. }
-        | StepKind::Print { .. }
-        | StepKind::Control { .. }
-        | StepKind::Fail => None,
+        TypedStepKind::Add(a) => Some(BeliefChange::Adds(a.belief, of_exprs(&a.args))),
+        TypedStepKind::Replace(a) => Some(BeliefChange::Replaces(a.belief, of_exprs(&a.args))),
+        TypedStepKind::Remove(l) | TypedStepKind::Abolish(l) => {
+            Some(BeliefChange::Removes(l.belief, of_args(&l.args)))
+        }
+        TypedStepKind::Do { .. }
+        | TypedStepKind::Achieve { .. }
+        | TypedStepKind::Spawn { .. }
+        | TypedStepKind::Query(..)
+        | TypedStepKind::Test(_)
+        | TypedStepKind::Await { .. }
+        | TypedStepKind::Wait { .. }
+        | TypedStepKind::If { .. }
+        | TypedStepKind::While { .. }
+        | TypedStepKind::For { .. }
+        | TypedStepKind::Fork { .. }
+        | TypedStepKind::Send { .. }
+        | TypedStepKind::Ask { .. }
+        | TypedStepKind::AskAll { .. }
+        | TypedStepKind::Print { .. }
+        | TypedStepKind::Control { .. }
+        | TypedStepKind::Fail => None,
     }
 }
 
 /// The steps, those within blocks too, in the order of the text.
-pub(crate) fn all_steps(steps: &[Step]) -> Vec<&Step> {
+pub(crate) fn all_steps(steps: &[TypedStep]) -> Vec<&TypedStep> {
     let mut all = Vec::new();
     each_step(steps, &mut |step| all.push(step));
     all
 }
 
 /// How a goal is adopted.
-pub(crate) enum Adoption<'a> {
+pub(crate) enum GoalAdoption<'a> {
     /// At the start, or in an intention of its own: nobody waits for it.
     Root,
     /// By the step with this number.
-    By(&'a Plan, usize),
+    By(&'a TypedPlan, usize),
 }
 
 impl<'a> AgentFacts<'a> {
-    pub fn belief(&self, id: BeliefId) -> &'a Belief {
+    pub fn belief(&self, id: BeliefId) -> &'a BeliefDecl {
         &self.agent.beliefs[usize::from(id.0)]
     }
 
@@ -156,7 +158,7 @@ impl<'a> AgentFacts<'a> {
         &self.agent.goals[usize::from(id.0)].name
     }
 
-    pub fn plans(&self, on: TriggerOn) -> impl Iterator<Item = &'a Plan> + use<'a> {
+    pub fn plans(&self, on: TriggerOn) -> impl Iterator<Item = &'a TypedPlan> + use<'a> {
         let agent = self.agent;
         self.index.plans(on).iter().map(|i| &agent.plans[*i])
     }
@@ -172,7 +174,7 @@ impl<'a> AgentFacts<'a> {
     }
 
     /// What is sent about a belief of this agent, and by whom.
-    fn about(&self, belief: BeliefId) -> impl Iterator<Item = Message> {
+    fn about(&self, belief: BeliefId) -> impl Iterator<Item = SentMessage> {
         self.index.about_belief[usize::from(belief.0)].iter().copied()
     }
 
@@ -222,7 +224,7 @@ impl<'a> AgentFacts<'a> {
     }
 
     /// What suites ask of the beliefs that it starts with.
-    pub fn choice_conditions(&self) -> impl Iterator<Item = &'a ChoiceCondition> {
+    pub fn choice_conditions(&self) -> impl Iterator<Item = &'a TypedChoiceCondition> {
         self.index.conditions.iter().copied()
     }
 
@@ -235,7 +237,7 @@ impl<'a> AgentFacts<'a> {
         &self.index.chosen[usize::from(belief.0)]
     }
 
-    fn initial(&self, belief: BeliefId) -> impl Iterator<Item = Vec<Term<'a>>> {
+    fn initial(&self, belief: BeliefId) -> impl Iterator<Item = Vec<PlanTerm<'a>>> {
         let agent = self.agent;
         let facts = self.index.initial[usize::from(belief.0)].iter();
         facts.map(|i| of_values(&agent.initial_beliefs[*i].args))
@@ -248,7 +250,10 @@ impl<'a> AgentFacts<'a> {
 
     /// A plan adds it.
     pub fn is_added(&self, belief: BeliefId) -> bool {
-        self.index.changes_of(belief).iter().any(|c| matches!(c, Change::Adds(..) | Change::Replaces(..)))
+        self.index
+            .changes_of(belief)
+            .iter()
+            .any(|c| matches!(c, BeliefChange::Adds(..) | BeliefChange::Replaces(..)))
     }
 
     /// It holds at some time, in some run.
@@ -279,7 +284,7 @@ impl<'a> AgentFacts<'a> {
             runs[number] = true;
             for change in all_steps(&plan.body).into_iter().filter_map(change) {
                 let b = usize::from(change.belief().0);
-                let adds = matches!(change, Change::Adds(..) | Change::Replaces(..));
+                let adds = matches!(change, BeliefChange::Adds(..) | BeliefChange::Replaces(..));
                 if adds && !std::mem::replace(&mut known[b], true) {
                     open.append(&mut waiting[b]);
                 }
@@ -289,30 +294,30 @@ impl<'a> AgentFacts<'a> {
     }
 
     /// A fact that these arguments of a plan match comes about.
-    pub fn may_come_about(&self, belief: BeliefId, args: &[Term<'_>]) -> bool {
+    pub fn may_come_about(&self, belief: BeliefId, args: &[PlanTerm<'_>]) -> bool {
         let changes = self.index.changes_of(belief);
         self.is_chosen(belief)
             || self.is_foreign(belief)
             || !self.work(changes.len() + self.index.initial[usize::from(belief.0)].len())
             || self.initial(belief).any(|fact| may_unify(args, &fact, true))
             || changes.iter().any(|c| match c {
-                Change::Adds(_, made) | Change::Replaces(_, made) => may_unify(args, made, true),
-                Change::Removes(..) => false,
+                BeliefChange::Adds(_, made) | BeliefChange::Replaces(_, made) => may_unify(args, made, true),
+                BeliefChange::Removes(..) => false,
             })
     }
 
     /// What is certain of a belief's facts.
-    pub fn held(&self, belief: BeliefId) -> Held {
+    pub fn held(&self, belief: BeliefId) -> HeldBeliefs {
         *self.index.held[usize::from(belief.0)].get_or_init(|| self.certain(belief))
     }
 
-    fn certain(&self, belief: BeliefId) -> Held {
+    fn certain(&self, belief: BeliefId) -> HeldBeliefs {
         let changes = self.index.changes_of(belief);
         if self.is_foreign(belief)
             || self.is_untold(belief)
-            || changes.iter().any(|c| matches!(c, Change::Removes(..)))
+            || changes.iter().any(|c| matches!(c, BeliefChange::Removes(..)))
         {
-            return Held::Unknown;
+            return HeldBeliefs::Unknown;
         }
         let chosen = self.chosen(belief);
         let always = |kind: ChoiceKind| {
@@ -320,25 +325,25 @@ impl<'a> AgentFacts<'a> {
                 && chosen.len() == self.index.suites
                 && chosen.iter().all(|(_, how)| *how == kind)
         };
-        let added = changes.iter().any(|c| matches!(c, Change::Adds(..)));
+        let added = changes.iter().any(|c| matches!(c, BeliefChange::Adds(..)));
         match self.index.initial[usize::from(belief.0)].len() {
             0 if always(ChoiceKind::One) => {
                 if added {
-                    Held::Some
+                    HeldBeliefs::Some
                 } else {
-                    Held::One
+                    HeldBeliefs::One
                 }
             }
             0 => match chosen.first() {
                 Some((0, ChoiceKind::OnePer(param)))
                     if changes.is_empty() && always(ChoiceKind::OnePer(*param)) =>
                 {
-                    Held::OnePer(*param)
+                    HeldBeliefs::OnePer(*param)
                 }
-                Some(_) | None => Held::Unknown,
+                Some(_) | None => HeldBeliefs::Unknown,
             },
-            1 if !added && !self.is_chosen(belief) => Held::One,
-            _ => Held::Some,
+            1 if !added && !self.is_chosen(belief) => HeldBeliefs::One,
+            _ => HeldBeliefs::Some,
         }
     }
 
@@ -347,32 +352,33 @@ impl<'a> AgentFacts<'a> {
     }
 
     /// Who adopts a goal.
-    pub fn adoptions(&self, goal: GoalId) -> impl Iterator<Item = Adoption<'a>> {
+    pub fn adoptions(&self, goal: GoalId) -> impl Iterator<Item = GoalAdoption<'a>> {
         let agent = self.agent;
         let goal_index = usize::from(goal.0);
-        let initial = (0..self.index.initial_goals[goal_index]).map(|_| Adoption::Root);
-        let by = self.index.adopters(goal).iter().map(|(plan, at)| Adoption::By(&agent.plans[*plan], *at));
-        let spawns = self.index.spawned[goal_index].iter().map(|_| Adoption::Root);
-        let asked = self.is_requested(goal).then_some(Adoption::Root);
+        let initial = (0..self.index.initial_goals[goal_index]).map(|_| GoalAdoption::Root);
+        let by =
+            self.index.adopters(goal).iter().map(|(plan, at)| GoalAdoption::By(&agent.plans[*plan], *at));
+        let spawns = self.index.spawned[goal_index].iter().map(|_| GoalAdoption::Root);
+        let asked = self.is_requested(goal).then_some(GoalAdoption::Root);
         initial.chain(asked).chain(by).chain(spawns)
     }
 
     /// The plans that adopt a goal, each as often as it does.
-    pub fn adopters(&self, goal: GoalId) -> impl Iterator<Item = &'a Plan> {
+    pub fn adopters(&self, goal: GoalId) -> impl Iterator<Item = &'a TypedPlan> {
         let agent = self.agent;
         let by = self.index.adopters(goal).iter().map(|(plan, _)| plan);
         by.chain(&self.index.spawned[usize::from(goal.0)]).map(|plan| &agent.plans[*plan])
     }
 
     /// The plans that ask for a belief, with the number of the step.
-    pub fn askers(&self, belief: BeliefId) -> impl Iterator<Item = (&'a Plan, usize)> {
+    pub fn askers(&self, belief: BeliefId) -> impl Iterator<Item = (&'a TypedPlan, usize)> {
         let agent = self.agent;
         let queries = self.index.queries[usize::from(belief.0)].iter();
         queries.map(|(plan, at, _)| (&agent.plans[*plan], *at))
     }
 
     /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
-    pub fn is_unadopted(&self, plan: &Plan) -> bool {
+    pub fn is_unadopted(&self, plan: &TypedPlan) -> bool {
         match plan.trigger.on {
             TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => !self.is_adopted(goal),
             TriggerOn::BeliefAdded(_)
@@ -384,7 +390,7 @@ impl<'a> AgentFacts<'a> {
     }
 
     /// What happens to a belief that a plan waits for never happens.
-    pub fn is_dead_trigger(&self, plan: &Plan) -> bool {
+    pub fn is_dead_trigger(&self, plan: &TypedPlan) -> bool {
         let args = of_args(&plan.trigger.args);
         match plan.trigger.on {
             TriggerOn::BeliefAdded(b) => !self.may_come_about(b, &args),
@@ -392,9 +398,9 @@ impl<'a> AgentFacts<'a> {
                 let changes = self.index.changes_of(b);
                 let goes = !self.work(changes.len())
                     || changes.iter().any(|c| match c {
-                        Change::Removes(_, removed) => may_unify(&args, removed, true),
-                        Change::Replaces(..) => true,
-                        Change::Adds(..) => false,
+                        BeliefChange::Removes(_, removed) => may_unify(&args, removed, true),
+                        BeliefChange::Replaces(..) => true,
+                        BeliefChange::Adds(..) => false,
                     });
                 (!goes && !self.is_foreign(b) && !self.is_untold(b)) || !self.may_come_about(b, &args)
             }
@@ -432,7 +438,7 @@ impl<'a> AgentFacts<'a> {
 }
 
 /// Whether the plan can run with these beliefs alone, as far as its trigger and the literals of its context say.
-fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
+fn needs_only(plan: &TypedPlan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
     let trigger = match plan.trigger.on {
         TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) => is_known(b),
         TriggerOn::GoalAdded(_)
@@ -441,15 +447,15 @@ fn needs_only(plan: &Plan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
         | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => true,
     };
-    let holds = |part: &&Context| match part {
-        Context::Belief(literal) => is_known(literal.belief),
-        Context::True
-        | Context::Not(_)
-        | Context::And(_)
-        | Context::Or(_)
-        | Context::Test(_)
-        | Context::Unify(..)
-        | Context::Internal(..) => true,
+    let holds = |part: &&TypedContext| match part {
+        TypedContext::Belief(literal) => is_known(literal.belief),
+        TypedContext::True
+        | TypedContext::Not(_)
+        | TypedContext::And(_)
+        | TypedContext::Or(_)
+        | TypedContext::Test(_)
+        | TypedContext::Unify(..)
+        | TypedContext::Internal(..) => true,
     };
     trigger && alternatives(&plan.context).is_none_or(|all| all.iter().any(|parts| parts.iter().all(holds)))
 }

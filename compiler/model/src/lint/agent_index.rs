@@ -5,10 +5,10 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use super::agent_facts::{Change, Held, all_steps, change};
+use super::agent_facts::{BeliefChange, HeldBeliefs, all_steps, change};
 use crate::{
-    Agent, AgentId, BeliefId, ChoiceCondition, ChoiceKind, GoalId, Literal, Method, Performative, PlayerRef,
-    Scenario, StepKind, Subject, TriggerOn,
+    AgentId, BeliefId, ChoiceKind, GoalId, MessageSubject, Performative, PlayerRef, Scenario, TriggerOn,
+    TypedAgent, TypedChoiceCondition, TypedLiteral, TypedMethod, TypedStepKind,
 };
 
 /// Steps of looking that the rules on plans have for all agents of a scenario. What comes after that is not looked for: to
@@ -16,15 +16,15 @@ use crate::{
 const WORK: u64 = 4_000_000;
 
 /// What is left of [`WORK`].
-pub(crate) struct Work(Cell<u64>);
+pub(crate) struct AgentWork(Cell<u64>);
 
-impl Default for Work {
+impl Default for AgentWork {
     fn default() -> Self {
         Self(Cell::new(WORK))
     }
 }
 
-impl Work {
+impl AgentWork {
     /// Takes some of it; `false` if there is not that much left.
     pub fn take(&self, steps: usize) -> bool {
         let left = self.0.get().checked_sub(steps as u64);
@@ -34,7 +34,7 @@ impl Work {
 }
 
 /// How a message is about something, and who sends it.
-pub(crate) type Message = (Option<Performative>, AgentId);
+pub(crate) type SentMessage = (Option<Performative>, AgentId);
 
 /// One agent's plans, steps, messages and choices by what they are about. Plans and steps are numbers, those of steps in
 /// the plan's body; of a step within a block that of the block.
@@ -42,26 +42,26 @@ pub(crate) type Message = (Option<Performative>, AgentId);
 pub(crate) struct AgentIndex<'a> {
     plans: BTreeMap<TriggerOn, Vec<usize>>,
     /// By belief.
-    pub changes: Vec<Vec<Change<'a>>>,
-    pub queries: Vec<Vec<(usize, usize, &'a Literal)>>,
+    pub changes: Vec<Vec<BeliefChange<'a>>>,
+    pub queries: Vec<Vec<(usize, usize, &'a TypedLiteral)>>,
     pub initial: Vec<Vec<usize>>,
     pub derived: Vec<bool>,
-    pub about_belief: Vec<Vec<Message>>,
+    pub about_belief: Vec<Vec<SentMessage>>,
     /// By belief: how suites choose it, with the number of the suite among those that the agent plays in.
     pub chosen: Vec<Vec<(usize, ChoiceKind)>>,
     /// In how many suites the agent plays.
     pub suites: usize,
-    pub conditions: Vec<&'a ChoiceCondition>,
+    pub conditions: Vec<&'a TypedChoiceCondition>,
     /// By goal.
     pub adopted: Vec<Vec<(usize, usize)>>,
     pub spawned: Vec<Vec<usize>>,
     /// How often it is a goal from the start.
     pub initial_goals: Vec<usize>,
-    pub about_goal: Vec<Vec<Message>>,
+    pub about_goal: Vec<Vec<SentMessage>>,
     /// How many plans and steps there are.
     pub size: usize,
     /// By belief: what is certain of it, once it has been asked.
-    pub held: Vec<OnceCell<Held>>,
+    pub held: Vec<OnceCell<HeldBeliefs>>,
 }
 
 /// The indices of all agents.
@@ -70,15 +70,15 @@ pub(crate) fn indices(scenario: &Scenario) -> Vec<AgentIndex<'_>> {
     for (content, speech) in scenario.contents.iter().zip(&scenario.speech) {
         for (index, of) in all.iter_mut().zip(&content.of) {
             let about = match of {
-                Some(Subject::Belief(b)) => index.about_belief.get_mut(usize::from(b.0)),
-                Some(Subject::Goal(g)) => index.about_goal.get_mut(usize::from(g.0)),
+                Some(MessageSubject::Belief(b)) => index.about_belief.get_mut(usize::from(b.0)),
+                Some(MessageSubject::Goal(g)) => index.about_goal.get_mut(usize::from(g.0)),
                 None => None,
             };
             about.into_iter().for_each(|about| about.extend(speech.uses.iter().copied()));
         }
     }
     for suite in &scenario.suites {
-        let Method::Agents { players, choose, .. } = &suite.method else { continue };
+        let TypedMethod::Agents { players, choose, .. } = &suite.method else { continue };
         let playing: BTreeSet<u16> = players
             .iter()
             .filter_map(|p| match p {
@@ -104,7 +104,7 @@ pub(crate) fn indices(scenario: &Scenario) -> Vec<AgentIndex<'_>> {
 }
 
 impl<'a> AgentIndex<'a> {
-    fn of(agent: &'a Agent) -> Self {
+    fn of(agent: &'a TypedAgent) -> Self {
         let (beliefs, goals) = (agent.beliefs.len(), agent.goals.len());
         let mut index = Self {
             changes: (0..beliefs).map(|_| Vec::new()).collect(),
@@ -141,29 +141,29 @@ impl<'a> AgentIndex<'a> {
         index
     }
 
-    fn step(&mut self, plan: usize, at: usize, kind: &'a StepKind) {
+    fn step(&mut self, plan: usize, at: usize, kind: &'a TypedStepKind) {
         match kind {
-            StepKind::Query(l) => self.queries[usize::from(l.belief.0)].push((plan, at, l)),
-            StepKind::Achieve { goal: g, .. } => self.adopted[usize::from(g.0)].push((plan, at)),
-            StepKind::Spawn { goal: g, .. } => self.spawned[usize::from(g.0)].push(plan),
-            StepKind::Do { .. }
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::If { .. }
-            | StepKind::While { .. }
-            | StepKind::For { .. }
-            | StepKind::Fork { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => {}
+            TypedStepKind::Query(l) => self.queries[usize::from(l.belief.0)].push((plan, at, l)),
+            TypedStepKind::Achieve { goal: g, .. } => self.adopted[usize::from(g.0)].push((plan, at)),
+            TypedStepKind::Spawn { goal: g, .. } => self.spawned[usize::from(g.0)].push(plan),
+            TypedStepKind::Do { .. }
+            | TypedStepKind::Test(_)
+            | TypedStepKind::Add(_)
+            | TypedStepKind::Remove(_)
+            | TypedStepKind::Replace(_)
+            | TypedStepKind::Abolish(_)
+            | TypedStepKind::Await { .. }
+            | TypedStepKind::Wait { .. }
+            | TypedStepKind::If { .. }
+            | TypedStepKind::While { .. }
+            | TypedStepKind::For { .. }
+            | TypedStepKind::Fork { .. }
+            | TypedStepKind::Send { .. }
+            | TypedStepKind::Ask { .. }
+            | TypedStepKind::AskAll { .. }
+            | TypedStepKind::Print { .. }
+            | TypedStepKind::Control { .. }
+            | TypedStepKind::Fail => {}
         }
     }
 
@@ -172,7 +172,7 @@ impl<'a> AgentIndex<'a> {
         self.plans.get(&on).map_or(&[], Vec::as_slice)
     }
 
-    pub fn changes_of(&self, belief: BeliefId) -> &[Change<'a>] {
+    pub fn changes_of(&self, belief: BeliefId) -> &[BeliefChange<'a>] {
         &self.changes[usize::from(belief.0)]
     }
 

@@ -5,13 +5,13 @@
 use std::cmp::Ordering;
 
 use super::{
-    agent_facts::{AgentFacts, Change, Held, change},
+    agent_facts::{AgentFacts, BeliefChange, HeldBeliefs, change},
     plan_terms::{alternatives, fold, same_value},
     simple::{is_simple, is_simple_literal, is_simple_step},
 };
 use crate::{
-    Arg, BeliefId, BinaryOp, Context, Expr, ExprKind, GoalId, Leaf, Param, Plan, StepKind, TriggerOn, Type,
-    UnaryOp, Value,
+    BeliefId, BinaryOp, GoalId, Parameter, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind,
+    TypedPlan, TypedStepKind, TypedTerm, UnaryOp, Value, VariableRef,
 };
 
 /// Steps of the search.
@@ -23,23 +23,23 @@ const LARGE: i64 = 16;
 
 /// A value, or what is known of it by name only.
 #[derive(Clone, Debug, PartialEq)]
-enum Sym {
+enum SymbolicTerm {
     Value(Value),
     Named(String),
 }
 
-impl Sym {
+impl SymbolicTerm {
     fn text(&self) -> String {
         match self {
-            Sym::Value(value) => value.to_string(),
-            Sym::Named(name) => name.clone(),
+            SymbolicTerm::Value(value) => value.to_string(),
+            SymbolicTerm::Named(name) => name.clone(),
         }
     }
 }
 
 /// A question that a world answers.
 #[derive(Clone, Debug, PartialEq)]
-enum Question {
+enum ContextQuestion {
     /// Whether such a fact is held; `None`: with any value.
     Held(String, Vec<Option<String>>),
     /// Whether a condition is true.
@@ -52,52 +52,54 @@ enum Question {
     Which(String, Vec<Value>),
 }
 
-impl Question {
+impl ContextQuestion {
     fn answers(&self) -> usize {
         match self {
-            Question::Held(..) | Question::Holds(_) => 2,
-            Question::Against(..) | Question::Between(..) => 3,
-            Question::Which(_, values) => values.len(),
+            ContextQuestion::Held(..) | ContextQuestion::Holds(_) => 2,
+            ContextQuestion::Against(..) | ContextQuestion::Between(..) => 3,
+            ContextQuestion::Which(_, values) => values.len(),
         }
     }
 }
 
 /// What has been answered so far.
 #[derive(Default)]
-struct World {
-    known: Vec<(Question, usize)>,
+struct PossibleWorld {
+    known: Vec<(ContextQuestion, usize)>,
     budget: u32,
 }
 
 /// The answer, or the question that must be answered first.
-type Asked<T> = Result<T, Question>;
+type AskedLiteral<T> = Result<T, ContextQuestion>;
 
 const ORDERS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
 
-impl World {
-    fn ask(&self, question: Question) -> Asked<usize> {
+impl PossibleWorld {
+    fn ask(&self, question: ContextQuestion) -> AskedLiteral<usize> {
         let known = self.known.iter().find(|(q, _)| *q == question).map(|(_, answer)| *answer);
         known.ok_or(question)
     }
 
-    fn which(&self, name: String, ty: Type) -> Asked<Sym> {
+    fn which(&self, name: String, ty: Type) -> AskedLiteral<SymbolicTerm> {
         let values: Vec<Value> = match ty {
             Type::Bool => vec![Value::Bool(false), Value::Bool(true)],
             Type::Int { lo, hi } if hi.saturating_sub(lo) < LARGE => (lo..=hi).map(Value::Int).collect(),
             Type::Enum(of) => of.values().iter().map(|v| Value::Symbol(*v)).collect(),
-            Type::Int { .. } | Type::Float(_) | Type::Text | Type::List(_) => return Ok(Sym::Named(name)),
+            Type::Int { .. } | Type::Float(_) | Type::Text | Type::List(_) => {
+                return Ok(SymbolicTerm::Named(name));
+            }
         };
-        let answer = self.ask(Question::Which(name, values.clone()))?;
-        Ok(Sym::Value(values[answer]))
+        let answer = self.ask(ContextQuestion::Which(name, values.clone()))?;
+        Ok(SymbolicTerm::Value(values[answer]))
     }
 
     /// Whether a fact is held; what follows from the other answers is not asked.
-    fn held(&self, belief: &str, args: &[Option<String>]) -> Asked<bool> {
+    fn held(&self, belief: &str, args: &[Option<String>]) -> AskedLiteral<bool> {
         let covers = |general: &[Option<String>], special: &[Option<String>]| {
             general.iter().zip(special).all(|(g, s)| g.is_none() || g == s)
         };
         for (question, answer) in &self.known {
-            if let Question::Held(name, known) = question
+            if let ContextQuestion::Held(name, known) = question
                 && name == belief
             {
                 match answer {
@@ -108,31 +110,32 @@ impl World {
                 }
             }
         }
-        Ok(self.ask(Question::Held(belief.to_owned(), args.to_vec()))? == 1)
+        Ok(self.ask(ContextQuestion::Held(belief.to_owned(), args.to_vec()))? == 1)
     }
 
-    fn compare(&self, a: &Sym, b: &Sym) -> Asked<Ordering> {
+    fn compare(&self, a: &SymbolicTerm, b: &SymbolicTerm) -> AskedLiteral<Ordering> {
         match (a, b) {
-            (Sym::Value(a), Sym::Value(b)) => Ok(order(*a, *b)),
-            (Sym::Named(a), Sym::Named(b)) if a == b => Ok(Ordering::Equal),
-            (Sym::Named(a), Sym::Named(b)) if a > b => Ok(self.between(b, a)?.reverse()),
-            (Sym::Named(a), Sym::Named(b)) => self.between(a, b),
-            (Sym::Named(a), Sym::Value(b)) => self.against(a, *b),
-            (Sym::Value(a), Sym::Named(b)) => Ok(self.against(b, *a)?.reverse()),
+            (SymbolicTerm::Value(a), SymbolicTerm::Value(b)) => Ok(order(*a, *b)),
+            (SymbolicTerm::Named(a), SymbolicTerm::Named(b)) if a == b => Ok(Ordering::Equal),
+            (SymbolicTerm::Named(a), SymbolicTerm::Named(b)) if a > b => Ok(self.between(b, a)?.reverse()),
+            (SymbolicTerm::Named(a), SymbolicTerm::Named(b)) => self.between(a, b),
+            (SymbolicTerm::Named(a), SymbolicTerm::Value(b)) => self.against(a, *b),
+            (SymbolicTerm::Value(a), SymbolicTerm::Named(b)) => Ok(self.against(b, *a)?.reverse()),
         }
     }
 
-    fn between(&self, a: &str, b: &str) -> Asked<Ordering> {
-        Ok(ORDERS[self.ask(Question::Between(a.to_owned(), b.to_owned()))?])
+    fn between(&self, a: &str, b: &str) -> AskedLiteral<Ordering> {
+        Ok(ORDERS[self.ask(ContextQuestion::Between(a.to_owned(), b.to_owned()))?])
     }
 
-    fn against(&self, name: &str, value: Value) -> Asked<Ordering> {
+    fn against(&self, name: &str, value: Value) -> AskedLiteral<Ordering> {
         let Some(number) = value.as_f64() else {
-            let same = self.ask(Question::Holds(name.to_owned()))? == usize::from(value == Value::Bool(true));
+            let same =
+                self.ask(ContextQuestion::Holds(name.to_owned()))? == usize::from(value == Value::Bool(true));
             return Ok(if same { Ordering::Equal } else { Ordering::Less });
         };
         for (question, answer) in &self.known {
-            if let Question::Against(known, bound) = question
+            if let ContextQuestion::Against(known, bound) = question
                 && known == name
             {
                 match ORDERS[*answer] {
@@ -143,7 +146,7 @@ impl World {
                 }
             }
         }
-        Ok(ORDERS[self.ask(Question::Against(name.to_owned(), number))?])
+        Ok(ORDERS[self.ask(ContextQuestion::Against(name.to_owned(), number))?])
     }
 }
 
@@ -156,7 +159,7 @@ fn order(a: Value, b: Value) -> Ordering {
 }
 
 /// Whether something is so in every world.
-fn always(is_so: &dyn Fn(&World) -> Asked<bool>, world: &mut World) -> bool {
+fn always(is_so: &dyn Fn(&PossibleWorld) -> AskedLiteral<bool>, world: &mut PossibleWorld) -> bool {
     if world.budget == 0 {
         return true;
     }
@@ -173,10 +176,10 @@ fn always(is_so: &dyn Fn(&World) -> Asked<bool>, world: &mut World) -> bool {
 }
 
 /// Whether an achieve or query step has a plan or fact whenever it is reached.
-pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> bool {
+pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> bool {
     let answers = match &plan.body[at].kind {
-        StepKind::Achieve { goal, .. } => facts.plans(TriggerOn::GoalAdded(*goal)).all(is_simple),
-        StepKind::Query(literal) => is_simple_literal(literal),
+        TypedStepKind::Achieve { goal, .. } => facts.plans(TriggerOn::GoalAdded(*goal)).all(is_simple),
+        TypedStepKind::Query(literal) => is_simple_literal(literal),
         _ => true,
     };
     if at > LONG || !facts.work(1) {
@@ -185,67 +188,68 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> boo
     if !answers || !is_simple(plan) || !plan.body[..at].iter().all(is_simple_step) {
         return true;
     }
-    let is_so = |world: &World| {
+    let is_so = |world: &PossibleWorld| {
         if !facts.work(1 + at) {
             return Ok(true);
         }
-        let mut here = Place::enter(facts, plan, world);
+        let mut here = ContextPlace::enter(facts, plan, world);
         if !here.selected(plan, at)? {
             // This plan is not the one that runs in such a world.
             return Ok(true);
         }
         here.facts_since(plan, at)?;
         match &plan.body[at].kind {
-            StepKind::Achieve { goal, args, within: _ } => {
-                let args: Vec<Sym> = args.iter().map(|e| here.sym(e)).collect::<Asked<_>>()?;
+            TypedStepKind::Achieve { goal, args, within: _ } => {
+                let args: Vec<SymbolicTerm> =
+                    args.iter().map(|e| here.sym(e)).collect::<AskedLiteral<_>>()?;
                 here.has_plan(*goal, &args)
             }
-            StepKind::Query(l) => here.literal(l.belief, &l.args),
-            StepKind::Do { .. }
-            | StepKind::Spawn { .. }
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::If { .. }
-            | StepKind::While { .. }
-            | StepKind::For { .. }
-            | StepKind::Fork { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => Ok(true),
+            TypedStepKind::Query(l) => here.literal(l.belief, &l.args),
+            TypedStepKind::Do { .. }
+            | TypedStepKind::Spawn { .. }
+            | TypedStepKind::Test(_)
+            | TypedStepKind::Add(_)
+            | TypedStepKind::Remove(_)
+            | TypedStepKind::Replace(_)
+            | TypedStepKind::Abolish(_)
+            | TypedStepKind::Await { .. }
+            | TypedStepKind::Wait { .. }
+            | TypedStepKind::If { .. }
+            | TypedStepKind::While { .. }
+            | TypedStepKind::For { .. }
+            | TypedStepKind::Fork { .. }
+            | TypedStepKind::Send { .. }
+            | TypedStepKind::Ask { .. }
+            | TypedStepKind::AskAll { .. }
+            | TypedStepKind::Print { .. }
+            | TypedStepKind::Control { .. }
+            | TypedStepKind::Fail => Ok(true),
         }
     };
-    always(&is_so, &mut World { known: Vec::new(), budget: BUDGET })
+    always(&is_so, &mut PossibleWorld { known: Vec::new(), budget: BUDGET })
 }
 
 /// A plan at a moment in a world.
-struct Place<'a> {
+struct ContextPlace<'a> {
     facts: &'a AgentFacts<'a>,
-    world: &'a World,
+    world: &'a PossibleWorld,
     /// Its name for what its variables stand for.
     name: String,
-    vars: Vec<Option<Sym>>,
+    vars: Vec<Option<SymbolicTerm>>,
     /// Beliefs that have changed since are called by another name.
     past: Vec<BeliefId>,
     /// Facts that its own steps have added.
-    added: Vec<(BeliefId, Vec<Sym>)>,
+    added: Vec<(BeliefId, Vec<SymbolicTerm>)>,
 }
 
-impl<'a> Place<'a> {
-    fn enter(facts: &'a AgentFacts<'a>, plan: &Plan, world: &'a World) -> Self {
+impl<'a> ContextPlace<'a> {
+    fn enter(facts: &'a AgentFacts<'a>, plan: &TypedPlan, world: &'a PossibleWorld) -> Self {
         let vars = vec![None; plan.vars.len()];
         Self { facts, world, name: plan.label.clone(), vars, past: Vec::new(), added: Vec::new() }
     }
 
     /// Binds the variables of a plan that runs; `false` if it does not. Until step `at`, beliefs may change.
-    fn selected(&mut self, plan: &Plan, at: usize) -> Asked<bool> {
+    fn selected(&mut self, plan: &TypedPlan, at: usize) -> AskedLiteral<bool> {
         self.head(plan)?;
         self.past = changed(self.facts, plan, at);
         let holds = self.formula(&plan.context)?;
@@ -253,8 +257,8 @@ impl<'a> Place<'a> {
         Ok(holds)
     }
 
-    fn head(&mut self, plan: &Plan) -> Asked<()> {
-        let params: &[Param] = match plan.trigger.on {
+    fn head(&mut self, plan: &TypedPlan) -> AskedLiteral<()> {
+        let params: &[Parameter] = match plan.trigger.on {
             TriggerOn::BeliefAdded(b)
             | TriggerOn::BeliefRemoved(b)
             | TriggerOn::TestAdded(b)
@@ -263,13 +267,13 @@ impl<'a> Place<'a> {
             TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
         };
         for (i, arg) in plan.trigger.args.iter().enumerate() {
-            if let Arg::Var(var) = arg
+            if let TypedTerm::Var(var) = arg
                 && self.vars[usize::from(*var)].is_none()
             {
                 let name = format!("{}.{i}", self.name);
                 let value = match params.get(i) {
                     Some(param) => self.world.which(name, param.ty)?,
-                    None => Sym::Named(name),
+                    None => SymbolicTerm::Named(name),
                 };
                 self.vars[usize::from(*var)] = Some(value);
             }
@@ -278,48 +282,51 @@ impl<'a> Place<'a> {
     }
 
     /// What the plan's own steps before `at` have added, and what its queries have found.
-    fn facts_since(&mut self, plan: &Plan, at: usize) -> Asked<()> {
+    fn facts_since(&mut self, plan: &TypedPlan, at: usize) -> AskedLiteral<()> {
         for step in &plan.body[..at] {
             match &step.kind {
-                StepKind::Query(literal) => {
+                TypedStepKind::Query(literal) => {
                     for var in super::plan_terms::vars_of(&literal.args) {
                         let name = format!("{}.{var}", self.name);
-                        self.vars[usize::from(var)].get_or_insert(Sym::Named(name));
+                        self.vars[usize::from(var)].get_or_insert(SymbolicTerm::Named(name));
                     }
                 }
-                StepKind::Add(made) | StepKind::Replace(made) => {
-                    let args: Vec<Sym> = made.args.iter().map(|e| self.sym(e)).collect::<Asked<_>>()?;
+                TypedStepKind::Add(made) | TypedStepKind::Replace(made) => {
+                    let args: Vec<SymbolicTerm> =
+                        made.args.iter().map(|e| self.sym(e)).collect::<AskedLiteral<_>>()?;
                     self.added.push((made.belief, args));
                 }
-                StepKind::Remove(l) | StepKind::Abolish(l) => self.added.retain(|(b, _)| *b != l.belief),
-                StepKind::Spawn { .. } | StepKind::Print { .. } => {}
+                TypedStepKind::Remove(l) | TypedStepKind::Abolish(l) => {
+                    self.added.retain(|(b, _)| *b != l.belief)
+                }
+                TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => {}
                 // Time may pass. Others than these are not simple.
-                StepKind::Do { .. }
-                | StepKind::Achieve { .. }
-                | StepKind::Test(_)
-                | StepKind::Await { .. }
-                | StepKind::Wait { .. }
-                | StepKind::If { .. }
-                | StepKind::While { .. }
-                | StepKind::For { .. }
-                | StepKind::Fork { .. }
-                | StepKind::Send { .. }
-                | StepKind::Ask { .. }
-                | StepKind::AskAll { .. }
-                | StepKind::Control { .. }
-                | StepKind::Fail => self.added.clear(),
+                TypedStepKind::Do { .. }
+                | TypedStepKind::Achieve { .. }
+                | TypedStepKind::Test(_)
+                | TypedStepKind::Await { .. }
+                | TypedStepKind::Wait { .. }
+                | TypedStepKind::If { .. }
+                | TypedStepKind::While { .. }
+                | TypedStepKind::For { .. }
+                | TypedStepKind::Fork { .. }
+                | TypedStepKind::Send { .. }
+                | TypedStepKind::Ask { .. }
+                | TypedStepKind::AskAll { .. }
+                | TypedStepKind::Control { .. }
+                | TypedStepKind::Fail => self.added.clear(),
             }
         }
         Ok(())
     }
 
     /// Whether some plan for the goal is applicable.
-    fn has_plan(&self, goal: GoalId, args: &[Sym]) -> Asked<bool> {
+    fn has_plan(&self, goal: GoalId, args: &[SymbolicTerm]) -> AskedLiteral<bool> {
         for plan in self.facts.plans(TriggerOn::GoalAdded(goal)) {
             if !self.facts.work(1) {
                 return Ok(true);
             }
-            let mut callee = Place {
+            let mut callee = ContextPlace {
                 name: format!("{}.{}", self.name, plan.label),
                 vars: vec![None; plan.vars.len()],
                 past: Vec::new(),
@@ -333,18 +340,18 @@ impl<'a> Place<'a> {
         Ok(false)
     }
 
-    fn matches(&mut self, args: &[Arg], values: &[Sym]) -> Asked<bool> {
+    fn matches(&mut self, args: &[TypedTerm], values: &[SymbolicTerm]) -> AskedLiteral<bool> {
         for (arg, value) in args.iter().zip(values) {
             let wanted = match arg {
-                Arg::Any | Arg::List(..) => continue,
-                Arg::Var(var) => match &self.vars[usize::from(*var)] {
+                TypedTerm::Any | TypedTerm::List(..) => continue,
+                TypedTerm::Var(var) => match &self.vars[usize::from(*var)] {
                     Some(known) => known.clone(),
                     None => {
                         self.vars[usize::from(*var)] = Some(value.clone());
                         continue;
                     }
                 },
-                Arg::Expr(e) => self.sym(e)?,
+                TypedTerm::Expr(e) => self.sym(e)?,
             };
             if self.world.compare(&wanted, value)? != Ordering::Equal {
                 return Ok(false);
@@ -353,7 +360,7 @@ impl<'a> Place<'a> {
         Ok(true)
     }
 
-    fn formula(&mut self, context: &Context) -> Asked<bool> {
+    fn formula(&mut self, context: &TypedContext) -> AskedLiteral<bool> {
         let Some(all) = alternatives(context) else { return Ok(true) };
         for parts in all {
             let before = self.vars.clone();
@@ -365,20 +372,20 @@ impl<'a> Place<'a> {
         Ok(false)
     }
 
-    fn conjunction(&mut self, parts: &[&Context]) -> Asked<bool> {
+    fn conjunction(&mut self, parts: &[&TypedContext]) -> AskedLiteral<bool> {
         for part in parts {
             let holds = match part {
-                Context::Belief(l) => self.literal(l.belief, &l.args)?,
-                Context::Not(inner) => {
+                TypedContext::Belief(l) => self.literal(l.belief, &l.args)?,
+                TypedContext::Not(inner) => {
                     let before = self.vars.clone();
                     let holds = self.formula(inner)?;
                     self.vars = before;
                     !holds
                 }
-                Context::Test(e) => self.test(e)?,
-                Context::True | Context::And(_) | Context::Or(_) => self.formula(part)?,
+                TypedContext::Test(e) => self.test(e)?,
+                TypedContext::True | TypedContext::And(_) | TypedContext::Or(_) => self.formula(part)?,
                 // Not simple.
-                Context::Unify(..) | Context::Internal(..) => true,
+                TypedContext::Unify(..) | TypedContext::Internal(..) => true,
             };
             if !holds {
                 return Ok(false);
@@ -387,8 +394,9 @@ impl<'a> Place<'a> {
         Ok(true)
     }
 
-    fn literal(&mut self, belief: BeliefId, args: &[Arg]) -> Asked<bool> {
-        let known: Vec<Option<Sym>> = args.iter().map(|arg| self.known(arg)).collect::<Asked<_>>()?;
+    fn literal(&mut self, belief: BeliefId, args: &[TypedTerm]) -> AskedLiteral<bool> {
+        let known: Vec<Option<SymbolicTerm>> =
+            args.iter().map(|arg| self.known(arg)).collect::<AskedLiteral<_>>()?;
         let now = self.belief_name(belief);
         for (b, fact) in &self.added {
             if *b == belief && known.iter().zip(fact).all(|(k, f)| k.as_ref().is_none_or(|k| k == f)) {
@@ -400,27 +408,28 @@ impl<'a> Place<'a> {
             known.iter().enumerate().all(|(i, k)| k.is_none() || Some(i) == except) && distinct(args)
         };
         let params = &self.facts.belief(belief).params;
-        let fact = |world: &World, name: &str| -> Asked<Vec<Sym>> {
+        let fact = |world: &PossibleWorld, name: &str| -> AskedLiteral<Vec<SymbolicTerm>> {
             let values = params.iter().enumerate();
             values.map(|(i, p)| world.which(format!("{name}.{i}"), p.ty)).collect()
         };
         match self.facts.held(belief) {
-            Held::One => {
+            HeldBeliefs::One => {
                 let fact = fact(self.world, &now)?;
                 self.matches(args, &fact)
             }
-            Held::OnePer(at) if known.get(usize::from(at)).is_some_and(Option::is_some) => {
-                let per = known[usize::from(at)].as_ref().map(Sym::text).unwrap_or_default();
+            HeldBeliefs::OnePer(at) if known.get(usize::from(at)).is_some_and(Option::is_some) => {
+                let per = known[usize::from(at)].as_ref().map(SymbolicTerm::text).unwrap_or_default();
                 let mut fact = fact(self.world, &format!("{now}({per})"))?;
-                fact[usize::from(at)] = known[usize::from(at)].clone().unwrap_or(Sym::Named(per));
+                fact[usize::from(at)] = known[usize::from(at)].clone().unwrap_or(SymbolicTerm::Named(per));
                 self.matches(args, &fact)
             }
-            Held::Some | Held::OnePer(_) if open(None) => {
+            HeldBeliefs::Some | HeldBeliefs::OnePer(_) if open(None) => {
                 self.name_open(args, &now);
                 Ok(true)
             }
-            Held::Some | Held::OnePer(_) | Held::Unknown => {
-                let texts: Vec<Option<String>> = known.iter().map(|k| k.as_ref().map(Sym::text)).collect();
+            HeldBeliefs::Some | HeldBeliefs::OnePer(_) | HeldBeliefs::Unknown => {
+                let texts: Vec<Option<String>> =
+                    known.iter().map(|k| k.as_ref().map(SymbolicTerm::text)).collect();
                 let held = self.world.held(&now, &texts)?;
                 if held {
                     let shown: Vec<&str> = texts.iter().map(|t| t.as_deref().unwrap_or("_")).collect();
@@ -437,25 +446,26 @@ impl<'a> Place<'a> {
         if self.past.contains(&belief) { format!("{name}'") } else { name.clone() }
     }
 
-    fn known(&self, arg: &Arg) -> Asked<Option<Sym>> {
+    fn known(&self, arg: &TypedTerm) -> AskedLiteral<Option<SymbolicTerm>> {
         match arg {
-            Arg::Any | Arg::List(..) => Ok(None),
-            Arg::Var(var) => Ok(self.vars[usize::from(*var)].clone()),
-            Arg::Expr(e) => self.sym(e).map(Some),
+            TypedTerm::Any | TypedTerm::List(..) => Ok(None),
+            TypedTerm::Var(var) => Ok(self.vars[usize::from(*var)].clone()),
+            TypedTerm::Expr(e) => self.sym(e).map(Some),
         }
     }
 
     /// Gives the open variables of a literal names.
-    fn name_open(&mut self, args: &[Arg], fact: &str) {
+    fn name_open(&mut self, args: &[TypedTerm], fact: &str) {
         for (i, arg) in args.iter().enumerate() {
-            if let Arg::Var(var) = arg {
-                self.vars[usize::from(*var)].get_or_insert_with(|| Sym::Named(format!("{fact}.{i}")));
+            if let TypedTerm::Var(var) = arg {
+                self.vars[usize::from(*var)]
+                    .get_or_insert_with(|| SymbolicTerm::Named(format!("{fact}.{i}")));
             }
         }
     }
 
-    fn test(&self, e: &Expr) -> Asked<bool> {
-        if let ExprKind::Binary(op, a, b) = &e.kind {
+    fn test(&self, e: &TypedExpr) -> AskedLiteral<bool> {
+        if let TypedExprKind::Binary(op, a, b) = &e.kind {
             let compared =
                 |holds: fn(Ordering) -> bool| Ok(holds(self.world.compare(&self.sym(a)?, &self.sym(b)?)?));
             match op {
@@ -470,82 +480,86 @@ impl<'a> Place<'a> {
                 BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {}
             }
         }
-        if let ExprKind::Unary(UnaryOp::Not, a) = &e.kind {
+        if let TypedExprKind::Unary(UnaryOp::Not, a) = &e.kind {
             return Ok(!self.test(a)?);
         }
         match self.sym(e)? {
-            Sym::Value(value) => Ok(value == Value::Bool(true)),
-            Sym::Named(name) => Ok(self.world.ask(Question::Holds(name))? == 1),
+            SymbolicTerm::Value(value) => Ok(value == Value::Bool(true)),
+            SymbolicTerm::Named(name) => Ok(self.world.ask(ContextQuestion::Holds(name))? == 1),
         }
     }
 
     /// The value of an expression, or a name that is the same for the same expression over the same values.
-    fn sym(&self, e: &Expr) -> Asked<Sym> {
+    fn sym(&self, e: &TypedExpr) -> AskedLiteral<SymbolicTerm> {
         let value = |var: u16| match &self.vars[usize::from(var)] {
-            Some(Sym::Value(value)) => Some(*value),
-            Some(Sym::Named(_)) | None => None,
+            Some(SymbolicTerm::Value(value)) => Some(*value),
+            Some(SymbolicTerm::Named(_)) | None => None,
         };
         if let Some(value) = fold(e, &value) {
-            return Ok(Sym::Value(value));
+            return Ok(SymbolicTerm::Value(value));
         }
-        let all = |parts: &[&Expr]| -> Asked<String> {
-            let texts: Vec<String> = parts.iter().map(|p| Ok(self.sym(p)?.text())).collect::<Asked<_>>()?;
+        let all = |parts: &[&TypedExpr]| -> AskedLiteral<String> {
+            let texts: Vec<String> =
+                parts.iter().map(|p| Ok(self.sym(p)?.text())).collect::<AskedLiteral<_>>()?;
             Ok(texts.join(", "))
         };
-        Ok(Sym::Named(match &e.kind {
-            ExprKind::Leaf(Leaf::Local(var)) => match &self.vars[usize::from(*var)] {
+        Ok(SymbolicTerm::Named(match &e.kind {
+            TypedExprKind::Leaf(VariableRef::Local(var)) => match &self.vars[usize::from(*var)] {
                 Some(sym) => return Ok(sym.clone()),
                 None => format!("{}.{var}", self.name),
             },
-            ExprKind::Unary(op, a) => format!("{op:?}({})", all(&[a])?),
-            ExprKind::Binary(op, a, b) => format!("{op:?}({})", all(&[a, b])?),
-            ExprKind::If(c, a, b) => format!("if({})", all(&[c, a, b])?),
-            ExprKind::Call(f, args) => format!("{f:?}({})", all(&args.iter().collect::<Vec<_>>())?),
-            ExprKind::List(items, rest) => {
+            TypedExprKind::Unary(op, a) => format!("{op:?}({})", all(&[a])?),
+            TypedExprKind::Binary(op, a, b) => format!("{op:?}({})", all(&[a, b])?),
+            TypedExprKind::If(c, a, b) => format!("if({})", all(&[c, a, b])?),
+            TypedExprKind::Call(f, args) => format!("{f:?}({})", all(&args.iter().collect::<Vec<_>>())?),
+            TypedExprKind::List(items, rest) => {
                 format!("list({})", all(&items.iter().chain(rest.as_deref()).collect::<Vec<_>>())?)
             }
             // Elements and functions are automata's alone.
-            ExprKind::Const(_)
-            | ExprKind::Leaf(_)
-            | ExprKind::Term(_)
-            | ExprKind::Element(_)
-            | ExprKind::Apply(..)
-            | ExprKind::Error => "?".to_owned(),
+            TypedExprKind::Const(_)
+            | TypedExprKind::Leaf(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Element(_)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error => "?".to_owned(),
         }))
     }
 }
 
 /// No variable comes twice.
-fn distinct(args: &[Arg]) -> bool {
+fn distinct(args: &[TypedTerm]) -> bool {
     let vars: Vec<u16> = super::plan_terms::vars_of(args);
     vars.iter().enumerate().all(|(i, var)| !vars[..i].contains(var))
 }
 
 /// The beliefs that may have changed between the selection of the plan and its step `at`.
-fn changed(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Vec<BeliefId> {
+fn changed(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> Vec<BeliefId> {
     let mut all: Vec<BeliefId> = Vec::new();
     for step in &plan.body[..at] {
         match &step.kind {
-            StepKind::Query(l) if facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none() => {}
-            StepKind::Spawn { .. } | StepKind::Print { .. } => {}
-            StepKind::Add(_) | StepKind::Remove(_) | StepKind::Replace(_) | StepKind::Abolish(_) => {
-                all.extend(change(step).map(|c: Change<'_>| c.belief()));
+            TypedStepKind::Query(l) if facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none() => {}
+            TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => {}
+            TypedStepKind::Add(_)
+            | TypedStepKind::Remove(_)
+            | TypedStepKind::Replace(_)
+            | TypedStepKind::Abolish(_) => {
+                all.extend(change(step).map(|c: BeliefChange<'_>| c.belief()));
             }
-            StepKind::Do { .. }
-            | StepKind::Achieve { .. }
-            | StepKind::Query(_)
-            | StepKind::Test(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::If { .. }
-            | StepKind::While { .. }
-            | StepKind::For { .. }
-            | StepKind::Fork { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => {
+            TypedStepKind::Do { .. }
+            | TypedStepKind::Achieve { .. }
+            | TypedStepKind::Query(_)
+            | TypedStepKind::Test(_)
+            | TypedStepKind::Await { .. }
+            | TypedStepKind::Wait { .. }
+            | TypedStepKind::If { .. }
+            | TypedStepKind::While { .. }
+            | TypedStepKind::For { .. }
+            | TypedStepKind::Fork { .. }
+            | TypedStepKind::Send { .. }
+            | TypedStepKind::Ask { .. }
+            | TypedStepKind::AskAll { .. }
+            | TypedStepKind::Control { .. }
+            | TypedStepKind::Fail => {
                 return facts.changed().collect();
             }
         }

@@ -1,23 +1,23 @@
 //! HR0404: a belief is tested that never holds.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
     agent_facts::{AgentFacts, agents, all_steps, any_args, literals},
     dead_plan::never_runs,
-    facts::Facts,
+    facts::ScenarioFacts,
 };
-use crate::{BeliefId, Scenario, StepKind, TriggerOn};
+use crate::{BeliefId, Scenario, TriggerOn, TypedStepKind};
 
 /// A place that tests a belief.
-struct Read {
+struct BeliefRead {
     span: Span,
     /// The name in it, where it is known.
     name: Option<Span>,
     negated: bool,
 }
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         let ids = (0..).map(BeliefId).take(facts.agent.beliefs.len());
         let never: Vec<BeliefId> = ids.filter(|b| !facts.comes_about(*b)).collect();
@@ -36,12 +36,12 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
 }
 
 /// By belief, the places that test it.
-fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<Read>> {
-    let mut all: Vec<Vec<Read>> = facts.agent.beliefs.iter().map(|_| Vec::new()).collect();
+fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<BeliefRead>> {
+    let mut all: Vec<Vec<BeliefRead>> = facts.agent.beliefs.iter().map(|_| Vec::new()).collect();
     let mut read_in = |formula| {
         for l in literals(formula) {
             let name = Some(l.name_span(&facts.belief(l.belief).name));
-            all[usize::from(l.belief.0)].push(Read { span: l.span, name, negated: l.negated });
+            all[usize::from(l.belief.0)].push(BeliefRead { span: l.span, name, negated: l.negated });
         }
     };
     let mut queries = Vec::new();
@@ -50,10 +50,10 @@ fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<Read>> {
         [&plan.context].into_iter().chain(steps.iter().filter_map(|s| s.condition())).for_each(&mut read_in);
         for step in steps {
             // A plan for the query may answer it without a fact.
-            if let StepKind::Query(l) = &step.kind
+            if let TypedStepKind::Query(l) = &step.kind
                 && facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none()
             {
-                queries.push((l.belief, Read { span: step.origin, name: None, negated: false }));
+                queries.push((l.belief, BeliefRead { span: step.origin, name: None, negated: false }));
             }
         }
     }
@@ -70,7 +70,7 @@ fn reads(facts: &AgentFacts<'_>) -> Vec<Vec<Read>> {
 fn never_added(
     facts: &AgentFacts<'_>,
     belief: BeliefId,
-    reads: &[Read],
+    reads: &[BeliefRead],
     circular: bool,
 ) -> Option<Diagnostic> {
     let first = reads.iter().find(|r| !r.negated).or(reads.first())?;
@@ -86,7 +86,7 @@ fn never_added(
     } else {
         (why, "this never holds")
     };
-    let mut issue = Diagnostic::warning(Code::BELIEF_NEVER_ADDED, first.span, message).here(here);
+    let mut issue = Diagnostic::warning(DiagnosticCode::BELIEF_NEVER_ADDED, first.span, message).here(here);
     for read in reads.iter().filter(|r| r.span != first.span) {
         issue = issue.label(read.span, "tested here too");
     }

@@ -1,20 +1,20 @@
 //! HR0514: channels over which nothing can happen, because one side of them has no edge. HR0107: those that have no side.
 
 use hrdsl_source::Span;
-use hrdsl_source::{Code, Diagnostic, FileId};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId};
 
-use super::facts::Facts;
-use crate::{AutomatonId, Channel, ChannelId, ChannelKind, Party, Scenario, Sync};
+use super::facts::ScenarioFacts;
+use crate::{AutomatonId, Channel, ChannelId, ChannelKind, ChannelParticipant, Scenario, TypedSync};
 
 /// The automata with edges over one channel, in order, each once.
 #[derive(Default)]
-struct Sides {
+struct ChannelSides {
     offer: Vec<AutomatonId>,
     accept: Vec<AutomatonId>,
     join: Vec<AutomatonId>,
 }
 
-impl Sides {
+impl ChannelSides {
     fn of(scenario: &Scenario) -> Vec<Self> {
         let mut all: Vec<Self> = scenario.channels.iter().map(|_| Self::default()).collect();
         for (id, automaton) in (0..=u16::MAX).map(AutomatonId).zip(&scenario.automata) {
@@ -22,10 +22,10 @@ impl Sides {
                 let Some(ChannelId(channel)) = edge.sync.channel() else { continue };
                 let Some(sides) = all.get_mut(usize::from(channel)) else { continue };
                 let side = match edge.sync {
-                    Sync::Offer { .. } => &mut sides.offer,
-                    Sync::Accept { .. } => &mut sides.accept,
-                    Sync::Join { .. } => &mut sides.join,
-                    Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => continue,
+                    TypedSync::Offer { .. } => &mut sides.offer,
+                    TypedSync::Accept { .. } => &mut sides.accept,
+                    TypedSync::Join { .. } => &mut sides.join,
+                    TypedSync::Internal | TypedSync::Send { .. } | TypedSync::Receive { .. } => continue,
                 };
                 if side.last() != Some(&id) {
                     side.push(id);
@@ -40,8 +40,8 @@ impl Sides {
     }
 }
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
-    let sides = Sides::of(scenario);
+pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
+    let sides = ChannelSides::of(scenario);
     let places = scenario.places.channels.iter();
     for ((channel, place), sides) in scenario.channels.iter().zip(places).zip(&sides) {
         if place.name.file != FileId(0) {
@@ -66,8 +66,9 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
 
 fn unused(channel: &Channel, at: Span) -> Diagnostic {
     let name = &channel.name;
-    let issue = Diagnostic::warning(Code::UNUSED, at, format!("the channel `{name}` is never used"))
-        .help("use it, or delete it");
+    let issue =
+        Diagnostic::warning(DiagnosticCode::UNUSED, at, format!("the channel `{name}` is never used"))
+            .help("use it, or delete it");
     // One of several that are declared together cannot simply go.
     if channel.origin == at {
         return issue;
@@ -76,7 +77,11 @@ fn unused(channel: &Channel, at: Span) -> Diagnostic {
 }
 
 /// A binary synchronisation or broadcast that only some edges offer, only some accept, or only one automaton does both.
-fn one_side(scenario: &Scenario, (channel, at): (&Channel, Span), sides: &Sides) -> Option<Diagnostic> {
+fn one_side(
+    scenario: &Scenario,
+    (channel, at): (&Channel, Span),
+    sides: &ChannelSides,
+) -> Option<Diagnostic> {
     let name = &channel.name;
     let (message, help) = match (sides.offer.as_slice(), sides.accept.as_slice()) {
         ([], _) => (format!("nobody offers the channel `{name}`"), format!("let an edge do so: `do {name}`")),
@@ -90,15 +95,15 @@ fn one_side(scenario: &Scenario, (channel, at): (&Channel, Span), sides: &Sides)
         }
         ([_, ..], [_, ..]) => return None,
     };
-    Some(Diagnostic::warning(Code::ONE_SIDED_CHANNEL, at, message).help(help))
+    Some(Diagnostic::warning(DiagnosticCode::ONE_SIDED_CHANNEL, at, message).help(help))
 }
 
-fn no_part(scenario: &Scenario, channel: &Channel, party: &Party, at: Span) -> Diagnostic {
+fn no_part(scenario: &Scenario, channel: &Channel, party: &ChannelParticipant, at: Span) -> Diagnostic {
     let (name, of) = (&channel.name, usize::from(party.automaton.0));
     let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
     let message = format!("`{automaton}` has no edge for the multi-way channel `{name}`");
     let why = if party.optional { "it never takes part" } else { "nobody can take part without it" };
-    Diagnostic::warning(Code::ONE_SIDED_CHANNEL, at, message)
+    Diagnostic::warning(DiagnosticCode::ONE_SIDED_CHANNEL, at, message)
         .here(why)
         .help(format!("give it an edge with `on {name}`, or take it out of the participants"))
 }

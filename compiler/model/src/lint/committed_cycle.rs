@@ -1,12 +1,12 @@
 //! HR0507: a cycle of committed and urgent locations that an automaton can go round for ever at one instant.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 use hrdsl_syntax::ast::LocationKind;
 
-use super::facts::Facts;
-use crate::{Automaton, Edge, LocationId, Scenario, Sync, Time, Update};
+use super::facts::ScenarioFacts;
+use crate::{LocationId, Scenario, TypedAutomaton, TypedEdge, TypedSync, TypedTime, TypedUpdate};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let instant = |l: LocationId| {
@@ -26,17 +26,17 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
 }
 
 /// Nothing holds the edge up, and nothing is another afterwards.
-fn is_free(edge: &Edge) -> bool {
-    edge.sync == Sync::Internal
+fn is_free(edge: &TypedEdge) -> bool {
+    edge.sync == TypedSync::Internal
         && edge.guard.is_none()
         && edge.clock_guard.is_empty()
         && edge
             .updates
             .iter()
-            .all(|u| matches!(u, Update::Reset { from: None, to, .. } if *to == Time::default()))
+            .all(|u| matches!(u, TypedUpdate::Reset { from: None, to, .. } if *to == TypedTime::default()))
 }
 
-fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize]) -> Diagnostic {
+fn said(scenario: &Scenario, index: usize, automaton: &TypedAutomaton, cycle: &[usize]) -> Diagnostic {
     let names: Vec<&str> =
         cycle.iter().chain(&cycle[..1]).map(|l| automaton.locations[*l].name.as_str()).collect();
     let places = scenario.places.automata.get(index);
@@ -44,7 +44,7 @@ fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize
     let span =
         places.and_then(|p| p.locations.get(first)).copied().unwrap_or(automaton.locations[first].origin);
     let message = format!("no time passes in the cycle `{}`", names.join(" -> "));
-    Diagnostic::warning(Code::NO_TIME_PASSES_HERE, span, message)
+    Diagnostic::warning(DiagnosticCode::NO_TIME_PASSES_HERE, span, message)
         .here("it can be gone round for ever at one instant")
         .help("let one of its locations be a plain `location`, or guard an edge")
 }
@@ -52,19 +52,19 @@ fn said(scenario: &Scenario, index: usize, automaton: &Automaton, cycle: &[usize
 /// Disjoint cycles of a graph: each as its nodes, the first in the text at the front.
 fn cycles(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
     #[derive(Clone, Copy, PartialEq)]
-    enum Mark {
+    enum VisitMark {
         New,
         Open,
         Done,
     }
-    let mut marks = vec![Mark::New; next.len()];
+    let mut marks = vec![VisitMark::New; next.len()];
     let mut in_cycle = vec![false; next.len()];
     let mut found = Vec::new();
     for root in 0..next.len() {
-        if marks[root] != Mark::New {
+        if marks[root] != VisitMark::New {
             continue;
         }
-        marks[root] = Mark::Open;
+        marks[root] = VisitMark::Open;
         // The way from the root, each node with how many of its edges have been followed.
         let mut path = vec![(root, 0)];
         while let Some((node, followed)) = path.last_mut() {
@@ -72,14 +72,14 @@ fn cycles(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
             *followed += 1;
             match next[from].get(edge) {
                 None => {
-                    marks[from] = Mark::Done;
+                    marks[from] = VisitMark::Done;
                     path.pop();
                 }
-                Some(&to) if marks[to] == Mark::New => {
-                    marks[to] = Mark::Open;
+                Some(&to) if marks[to] == VisitMark::New => {
+                    marks[to] = VisitMark::Open;
                     path.push((to, 0));
                 }
-                Some(&to) if marks[to] == Mark::Open => {
+                Some(&to) if marks[to] == VisitMark::Open => {
                     if in_cycle[from] || in_cycle[to] {
                         continue;
                     }

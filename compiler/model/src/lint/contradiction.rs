@@ -6,13 +6,16 @@ use hrdsl_source::Span;
 
 use super::{
     agent_facts::AgentFacts,
-    plan_terms::{Term, alternatives, bound_before, of_args, same_expr, same_value},
+    plan_terms::{PlanTerm, alternatives, bound_before, of_args, same_expr, same_value},
 };
-use crate::{Arg, BinaryOp, Context, Expr, ExprKind, Leaf, Param, Plan, TriggerOn, Type};
+use crate::{
+    BinaryOp, Parameter, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan, TypedTerm,
+    VariableRef,
+};
 
 /// Why a context can never hold.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Contradiction {
+pub(crate) struct FoundContradiction {
     pub span: Span,
     pub why: String,
     /// What it clashes with.
@@ -20,7 +23,7 @@ pub(crate) struct Contradiction {
 }
 
 /// Why no alternative of the plan's context can hold: what is wrong with the first.
-pub(crate) fn of(facts: &AgentFacts<'_>, plan: &Plan) -> Option<Contradiction> {
+pub(crate) fn of(facts: &AgentFacts<'_>, plan: &TypedPlan) -> Option<FoundContradiction> {
     let mut first = None;
     for parts in alternatives(&plan.context)? {
         let found = in_conjunction(facts, plan, &parts)?;
@@ -29,7 +32,11 @@ pub(crate) fn of(facts: &AgentFacts<'_>, plan: &Plan) -> Option<Contradiction> {
     first
 }
 
-fn in_conjunction(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
+fn in_conjunction(
+    facts: &AgentFacts<'_>,
+    plan: &TypedPlan,
+    parts: &[&TypedContext],
+) -> Option<FoundContradiction> {
     constant(parts)
         .or_else(|| negated_belief(plan, parts))
         .or_else(|| negated_test(parts))
@@ -37,28 +44,28 @@ fn in_conjunction(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Op
         .or_else(|| out_of_range(facts, plan, parts))
 }
 
-fn constant(parts: &[&Context]) -> Option<Contradiction> {
+fn constant(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     parts.iter().find_map(|part| {
         let (e, fails) = match part {
-            Context::Test(e) => (e, false),
-            Context::Not(inner) => match inner.as_ref() {
-                Context::Test(e) => (e, true),
-                Context::True
-                | Context::Belief(..)
-                | Context::Not(_)
-                | Context::And(_)
-                | Context::Or(_)
-                | Context::Unify(..)
-                | Context::Internal(..) => return None,
+            TypedContext::Test(e) => (e, false),
+            TypedContext::Not(inner) => match inner.as_ref() {
+                TypedContext::Test(e) => (e, true),
+                TypedContext::True
+                | TypedContext::Belief(..)
+                | TypedContext::Not(_)
+                | TypedContext::And(_)
+                | TypedContext::Or(_)
+                | TypedContext::Unify(..)
+                | TypedContext::Internal(..) => return None,
             },
-            Context::True
-            | Context::Belief(..)
-            | Context::And(_)
-            | Context::Or(_)
-            | Context::Unify(..)
-            | Context::Internal(..) => return None,
+            TypedContext::True
+            | TypedContext::Belief(..)
+            | TypedContext::And(_)
+            | TypedContext::Or(_)
+            | TypedContext::Unify(..)
+            | TypedContext::Internal(..) => return None,
         };
-        (e.constant() == Some(crate::Value::Bool(fails))).then(|| Contradiction {
+        (e.constant() == Some(crate::Value::Bool(fails))).then(|| FoundContradiction {
             span: e.span,
             why: format!("this is always {fails}"),
             with: None,
@@ -67,95 +74,97 @@ fn constant(parts: &[&Context]) -> Option<Contradiction> {
 }
 
 /// `b(X) && not b(X)`
-fn negated_belief(plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
+fn negated_belief(plan: &TypedPlan, parts: &[&TypedContext]) -> Option<FoundContradiction> {
     let bound = bound_before(plan, parts);
     parts.iter().zip(&bound).find_map(|(part, bound)| {
-        let Context::Not(inner) = part else { return None };
+        let TypedContext::Not(inner) = part else { return None };
         // One with annotations may be absent while others are held.
-        let Context::Belief(denied) = inner.as_ref() else { return None };
+        let TypedContext::Belief(denied) = inner.as_ref() else { return None };
         if !denied.annotations.is_empty() {
             return None;
         }
         parts.iter().find_map(|part| match part {
-            Context::Belief(held)
+            TypedContext::Belief(held)
                 if held.belief == denied.belief && denies(&denied.args, &held.args, bound) =>
             {
-                Some(Contradiction {
+                Some(FoundContradiction {
                     span: denied.origin,
                     why: "this cannot be absent".to_owned(),
                     with: Some((held.origin, "since the context needs it here".to_owned())),
                 })
             }
-            Context::Belief(..)
-            | Context::True
-            | Context::Not(_)
-            | Context::And(_)
-            | Context::Or(_)
-            | Context::Test(_)
-            | Context::Unify(..)
-            | Context::Internal(..) => None,
+            TypedContext::Belief(..)
+            | TypedContext::True
+            | TypedContext::Not(_)
+            | TypedContext::And(_)
+            | TypedContext::Or(_)
+            | TypedContext::Test(_)
+            | TypedContext::Unify(..)
+            | TypedContext::Internal(..) => None,
         })
     })
 }
 
 /// Whether a fact that matches `held` matches what is denied. A variable that is not bound before the negation stands
 /// for any value in it.
-fn denies(denied: &[Arg], held: &[Arg], bound: &[u16]) -> bool {
-    let mut own: Vec<(u16, Term<'_>)> = Vec::new();
+fn denies(denied: &[TypedTerm], held: &[TypedTerm], bound: &[u16]) -> bool {
+    let mut own: Vec<(u16, PlanTerm<'_>)> = Vec::new();
     of_args(denied).into_iter().zip(of_args(held)).all(|(denied, held)| match (denied, held) {
-        (Term::Any, _) => true,
-        (Term::Var(a), held) if !bound.contains(&a) => match own.iter().find(|(var, _)| *var == a) {
+        (PlanTerm::Any, _) => true,
+        (PlanTerm::Var(a), held) if !bound.contains(&a) => match own.iter().find(|(var, _)| *var == a) {
             Some((_, before)) => same_term(*before, held),
             None => {
                 own.push((a, held));
                 true
             }
         },
-        (denied @ (Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part), held) => {
+        (denied @ (PlanTerm::Var(_) | PlanTerm::Const(_) | PlanTerm::Other(_) | PlanTerm::Part), held) => {
             same_term(denied, held)
         }
     })
 }
 
-fn same_term(a: Term<'_>, b: Term<'_>) -> bool {
+fn same_term(a: PlanTerm<'_>, b: PlanTerm<'_>) -> bool {
     match (a, b) {
-        (Term::Var(a), Term::Var(b)) => a == b,
-        (Term::Const(a), Term::Const(b)) => same_value(a, b),
-        (Term::Other(a), Term::Other(b)) => alike(a, b),
-        (Term::Any | Term::Var(_) | Term::Const(_) | Term::Other(_) | Term::Part, _) => false,
+        (PlanTerm::Var(a), PlanTerm::Var(b)) => a == b,
+        (PlanTerm::Const(a), PlanTerm::Const(b)) => same_value(a, b),
+        (PlanTerm::Other(a), PlanTerm::Other(b)) => alike(a, b),
+        (PlanTerm::Any | PlanTerm::Var(_) | PlanTerm::Const(_) | PlanTerm::Other(_) | PlanTerm::Part, _) => {
+            false
+        }
     }
 }
 
-fn alike(a: &Expr, b: &Expr) -> bool {
+fn alike(a: &TypedExpr, b: &TypedExpr) -> bool {
     same_expr(a, b, &mut |a, b| a == b)
 }
 
 /// The tests of a conjunction, with whether they must hold.
-fn tests<'a>(parts: &[&'a Context]) -> Vec<(&'a Expr, bool)> {
-    let test = |part: &&'a Context| match *part {
-        Context::Test(e) => Some((e, true)),
-        Context::Not(inner) => match inner.as_ref() {
-            Context::Test(e) => Some((e, false)),
-            Context::True
-            | Context::Belief(..)
-            | Context::Not(_)
-            | Context::And(_)
-            | Context::Or(_)
-            | Context::Unify(..)
-            | Context::Internal(..) => None,
+fn tests<'a>(parts: &[&'a TypedContext]) -> Vec<(&'a TypedExpr, bool)> {
+    let test = |part: &&'a TypedContext| match *part {
+        TypedContext::Test(e) => Some((e, true)),
+        TypedContext::Not(inner) => match inner.as_ref() {
+            TypedContext::Test(e) => Some((e, false)),
+            TypedContext::True
+            | TypedContext::Belief(..)
+            | TypedContext::Not(_)
+            | TypedContext::And(_)
+            | TypedContext::Or(_)
+            | TypedContext::Unify(..)
+            | TypedContext::Internal(..) => None,
         },
-        Context::True
-        | Context::Belief(..)
-        | Context::And(_)
-        | Context::Or(_)
-        | Context::Unify(..)
-        | Context::Internal(..) => None,
+        TypedContext::True
+        | TypedContext::Belief(..)
+        | TypedContext::And(_)
+        | TypedContext::Or(_)
+        | TypedContext::Unify(..)
+        | TypedContext::Internal(..) => None,
     };
     parts.iter().filter_map(test).collect()
 }
 
 /// `X && not X`
-fn negated_test(parts: &[&Context]) -> Option<Contradiction> {
+fn negated_test(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     let tests = tests(parts);
     tests.iter().enumerate().find_map(|(i, (e, holds))| {
         let (other, _) = tests[..i].iter().find(|(other, held)| held != holds && alike(e, other))?;
@@ -163,8 +172,8 @@ fn negated_test(parts: &[&Context]) -> Option<Contradiction> {
     })
 }
 
-fn clash(span: Span, with: Span) -> Contradiction {
-    Contradiction {
+fn clash(span: Span, with: Span) -> FoundContradiction {
+    FoundContradiction {
         span,
         why: "these two are never true together".to_owned(),
         with: Some((with, "with this".to_owned())),
@@ -176,15 +185,15 @@ const EQUAL: u8 = 2;
 const MORE: u8 = 4;
 
 /// A comparison: the orders of its operands for which it holds.
-struct Comparison<'a> {
-    left: &'a Expr,
-    right: &'a Expr,
+struct VarComparison<'a> {
+    left: &'a TypedExpr,
+    right: &'a TypedExpr,
     orders: u8,
     span: Span,
 }
 
-fn comparison(e: &Expr, holds: bool) -> Option<Comparison<'_>> {
-    let ExprKind::Binary(op, left, right) = &e.kind else { return None };
+fn comparison(e: &TypedExpr, holds: bool) -> Option<VarComparison<'_>> {
+    let TypedExprKind::Binary(op, left, right) = &e.kind else { return None };
     let orders = match op {
         BinaryOp::Lt => LESS,
         BinaryOp::Le => LESS | EQUAL,
@@ -201,7 +210,7 @@ fn comparison(e: &Expr, holds: bool) -> Option<Comparison<'_>> {
         | BinaryOp::Or => return None,
     };
     let orders = if holds { orders } else { !orders & (LESS | EQUAL | MORE) };
-    Some(Comparison { left, right, orders, span: e.span })
+    Some(VarComparison { left, right, orders, span: e.span })
 }
 
 /// The orders with the operands exchanged.
@@ -209,17 +218,17 @@ fn mirrored(orders: u8) -> u8 {
     (orders & EQUAL) | if orders & LESS > 0 { MORE } else { 0 } | if orders & MORE > 0 { LESS } else { 0 }
 }
 
-fn comparisons<'a>(parts: &[&'a Context]) -> Vec<Comparison<'a>> {
+fn comparisons<'a>(parts: &[&'a TypedContext]) -> Vec<VarComparison<'a>> {
     tests(parts).into_iter().filter_map(|(e, holds)| comparison(e, holds)).collect()
 }
 
 /// `N < M && N > M`
-fn excluded(parts: &[&Context]) -> Option<Contradiction> {
+fn excluded(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     let all = comparisons(parts);
     all.iter().enumerate().find_map(|(i, c)| {
         if alike(c.left, c.right) && c.orders & EQUAL == 0 {
             let why = "nothing differs from itself".to_owned();
-            return Some(Contradiction { span: c.span, why, with: None });
+            return Some(FoundContradiction { span: c.span, why, with: None });
         }
         let other = all[..i].iter().find(|d| {
             (alike(c.left, d.left) && alike(c.right, d.right) && c.orders & d.orders == 0)
@@ -231,7 +240,7 @@ fn excluded(parts: &[&Context]) -> Option<Contradiction> {
 
 /// The values that a variable can have.
 #[derive(Clone, Debug)]
-struct Interval {
+struct BoundInterval {
     /// The end, whether it is left out, and what says so.
     lo: (f64, bool, Option<Span>),
     hi: (f64, bool, Option<Span>),
@@ -241,14 +250,14 @@ struct Interval {
     declared: Option<(i64, i64, Span)>,
 }
 
-impl Default for Interval {
+impl Default for BoundInterval {
     fn default() -> Self {
         let (lo, hi) = ((f64::NEG_INFINITY, true, None), (f64::INFINITY, true, None));
         Self { lo, hi, whole: false, not: Vec::new(), declared: None }
     }
 }
 
-impl Interval {
+impl BoundInterval {
     fn declare(&mut self, ty: Type, span: Span) {
         let Type::Int { lo, hi } = ty else { return };
         self.whole = true;
@@ -285,7 +294,7 @@ impl Interval {
     }
 
     /// What leaves no value, besides `last`.
-    fn empty(&self, last: Span) -> Option<Contradiction> {
+    fn empty(&self, last: Span) -> Option<FoundContradiction> {
         let (mut lo, mut hi) = (self.lo.0, self.hi.0);
         if self.whole {
             lo = if self.lo.1 { lo.floor() + 1.0 } else { lo.ceil() };
@@ -299,7 +308,7 @@ impl Interval {
         let mut others = [self.lo.2, self.hi.2, excluded.map(|e| e.1)].into_iter().flatten();
         let with = others.find(|span| *span != last)?;
         Some(match self.declared {
-            Some((lo, hi, at)) if at == with => Contradiction {
+            Some((lo, hi, at)) if at == with => FoundContradiction {
                 span: last,
                 why: "this is never true".to_owned(),
                 with: Some((at, format!("the value is within {lo}..{hi} here"))),
@@ -310,10 +319,14 @@ impl Interval {
 }
 
 /// `N < 1 && N > 3`, or a bound outside the range that the belief declares.
-fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Option<Contradiction> {
-    let mut values: BTreeMap<u16, Interval> = BTreeMap::new();
+fn out_of_range(
+    facts: &AgentFacts<'_>,
+    plan: &TypedPlan,
+    parts: &[&TypedContext],
+) -> Option<FoundContradiction> {
+    let mut values: BTreeMap<u16, BoundInterval> = BTreeMap::new();
     let params = |belief: crate::BeliefId| facts.belief(belief).params.as_slice();
-    let head: &[Param] = match plan.trigger.on {
+    let head: &[Parameter] = match plan.trigger.on {
         TriggerOn::BeliefAdded(b)
         | TriggerOn::BeliefRemoved(b)
         | TriggerOn::TestAdded(b)
@@ -323,14 +336,15 @@ fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Opti
     };
     declare(&mut values, &plan.trigger.args, head, plan.trigger.origin);
     for part in parts {
-        if let Context::Belief(l) = part {
+        if let TypedContext::Belief(l) = part {
             declare(&mut values, &l.args, params(l.belief), l.origin);
         }
     }
     for c in comparisons(parts) {
         let sides = [(c.left, c.right, c.orders), (c.right, c.left, mirrored(c.orders))];
         for (var, number, orders) in sides {
-            let (ExprKind::Leaf(Leaf::Local(var)), Some(number)) = (&var.kind, constant_number(number))
+            let (TypedExprKind::Leaf(VariableRef::Local(var)), Some(number)) =
+                (&var.kind, constant_number(number))
             else {
                 continue;
             };
@@ -344,13 +358,13 @@ fn out_of_range(facts: &AgentFacts<'_>, plan: &Plan, parts: &[&Context]) -> Opti
     None
 }
 
-fn constant_number(e: &Expr) -> Option<f64> {
+fn constant_number(e: &TypedExpr) -> Option<f64> {
     e.constant().and_then(crate::Value::as_f64)
 }
 
-fn declare(values: &mut BTreeMap<u16, Interval>, args: &[Arg], params: &[Param], span: Span) {
+fn declare(values: &mut BTreeMap<u16, BoundInterval>, args: &[TypedTerm], params: &[Parameter], span: Span) {
     for (arg, param) in args.iter().zip(params) {
-        if let Arg::Var(var) = arg {
+        if let TypedTerm::Var(var) = arg {
             values.entry(*var).or_default().declare(param.ty, span);
         }
     }

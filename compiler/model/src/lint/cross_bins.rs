@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::facts::Facts;
-use crate::{Condition, Cross, CrossBin, PointId, Scenario};
+use super::facts::ScenarioFacts;
+use crate::{BinCondition, CoverCross, CoverpointId, CrossBin, Scenario};
 
 /// Beyond so many combinations of points' bins nothing is said.
 const COMBINATIONS: usize = 1 << 14;
@@ -13,22 +13,22 @@ const COMBINATIONS: usize = 1 << 14;
 const WORK: usize = 1 << 21;
 
 /// HR0703
-pub(crate) fn empty<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn empty<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for cross in &scenario.crosses {
-        let Some(table) = Table::of(scenario, cross) else { continue };
+        let Some(table) = BinTable::of(scenario, cross) else { continue };
         for (CrossBin { name, origin, .. }, set) in cross.bins.iter().zip(&table.bins) {
             let contradicts = !set.contains(&true);
             if contradicts {
                 let message = format!("no test can fall into the bin `{name}`: its condition is never true");
                 issues.push(
-                    Diagnostic::warning(Code::EMPTY_BIN, *origin, message)
+                    Diagnostic::warning(DiagnosticCode::EMPTY_BIN, *origin, message)
                         .help("a point's number is in one of its bins only: join alternatives by `||`")
                         .fix(format!("delete the bin `{name}`"), *origin, "", false),
                 );
             } else if !table.counted(set).any(|c| c) {
                 let message = format!("no test can fall into the bin `{name}`: all of it is ignored");
                 issues.push(
-                    Diagnostic::warning(Code::EMPTY_BIN, *origin, message)
+                    Diagnostic::warning(DiagnosticCode::EMPTY_BIN, *origin, message)
                         .help("delete the bin, or ignore less")
                         .fix(format!("delete the bin `{name}`"), *origin, "", false),
                 );
@@ -38,9 +38,9 @@ pub(crate) fn empty<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
 }
 
 /// HR0704
-pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for cross in &scenario.crosses {
-        let Some(table) = Table::of(scenario, cross) else { continue };
+        let Some(table) = BinTable::of(scenario, cross) else { continue };
         let mut first: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
         for (i, set) in table.bins.iter().enumerate() {
             let counted: Vec<bool> = table.counted(set).collect();
@@ -52,7 +52,7 @@ pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
                 let (bin, other) = (&cross.bins[i], &cross.bins[same]);
                 let message = format!("the bins `{}` and `{}` hold the same tests", bin.name, other.name);
                 issues.push(
-                    Diagnostic::warning(Code::EQUAL_BINS, bin.origin, message)
+                    Diagnostic::warning(DiagnosticCode::EQUAL_BINS, bin.origin, message)
                         .label(other.origin, "the same combinations")
                         .help("change one of the conditions, or delete one of the bins"),
                 );
@@ -62,16 +62,16 @@ pub(crate) fn equal<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
 }
 
 /// The truth of each bin's condition in each combination of the points' bins.
-struct Table {
+struct BinTable {
     bins: Vec<Vec<bool>>,
     ignored: Vec<bool>,
 }
 
-impl Table {
+impl BinTable {
     /// `None`: there are too many combinations to look at.
-    fn of(scenario: &Scenario, cross: &Cross) -> Option<Self> {
+    fn of(scenario: &Scenario, cross: &CoverCross) -> Option<Self> {
         let conditions = || cross.bins.iter().map(|b| &b.when).chain(&cross.ignore);
-        let mut points: Vec<PointId> = Vec::new();
+        let mut points: Vec<CoverpointId> = Vec::new();
         conditions().for_each(|c| mentioned(c, &mut points));
         points.sort_unstable();
         points.dedup();
@@ -99,7 +99,7 @@ impl Table {
 }
 
 /// How many bins a point has, and one more if a number can fall into none of them.
-fn choices(scenario: &Scenario, point: PointId) -> usize {
+fn choices(scenario: &Scenario, point: CoverpointId) -> usize {
     let Some(point) = scenario.points.get(usize::from(point.0)) else { return 1 };
     let mut bins: Vec<(i64, Option<i64>)> = point.bins.iter().map(|b| (b.lo, b.hi)).collect();
     bins.sort_unstable();
@@ -113,7 +113,7 @@ fn choices(scenario: &Scenario, point: PointId) -> usize {
 }
 
 /// The n-th combination: for each point the bin, which is beyond the last for a number in none.
-fn combination(mut n: usize, points: &[PointId], sizes: &[usize]) -> Vec<(PointId, usize)> {
+fn combination(mut n: usize, points: &[CoverpointId], sizes: &[usize]) -> Vec<(CoverpointId, usize)> {
     let mut chosen = Vec::with_capacity(points.len());
     for (point, size) in points.iter().zip(sizes) {
         chosen.push((*point, n % size));
@@ -122,30 +122,30 @@ fn combination(mut n: usize, points: &[PointId], sizes: &[usize]) -> Vec<(PointI
     chosen
 }
 
-fn mentioned(c: &Condition, points: &mut Vec<PointId>) {
+fn mentioned(c: &BinCondition, points: &mut Vec<CoverpointId>) {
     match c {
-        Condition::In { point, .. } => points.push(*point),
-        Condition::Not(c) => mentioned(c, points),
-        Condition::And(cs) | Condition::Or(cs) => cs.iter().for_each(|c| mentioned(c, points)),
+        BinCondition::In { point, .. } => points.push(*point),
+        BinCondition::Not(c) => mentioned(c, points),
+        BinCondition::And(cs) | BinCondition::Or(cs) => cs.iter().for_each(|c| mentioned(c, points)),
     }
 }
 
-fn size(c: &Condition) -> usize {
+fn size(c: &BinCondition) -> usize {
     match c {
-        Condition::In { .. } => 1,
-        Condition::Not(c) => 1 + size(c),
-        Condition::And(cs) | Condition::Or(cs) => 1 + cs.iter().map(size).sum::<usize>(),
+        BinCondition::In { .. } => 1,
+        BinCondition::Not(c) => 1 + size(c),
+        BinCondition::And(cs) | BinCondition::Or(cs) => 1 + cs.iter().map(size).sum::<usize>(),
     }
 }
 
-fn holds(c: &Condition, chosen: &[(PointId, usize)]) -> bool {
+fn holds(c: &BinCondition, chosen: &[(CoverpointId, usize)]) -> bool {
     match c {
-        Condition::In { point, bin } => {
+        BinCondition::In { point, bin } => {
             let at = chosen.binary_search_by_key(point, |(p, _)| *p);
             at.is_ok_and(|at| chosen[at].1 == usize::from(*bin))
         }
-        Condition::Not(c) => !holds(c, chosen),
-        Condition::And(cs) => cs.iter().all(|c| holds(c, chosen)),
-        Condition::Or(cs) => cs.iter().any(|c| holds(c, chosen)),
+        BinCondition::Not(c) => !holds(c, chosen),
+        BinCondition::And(cs) => cs.iter().all(|c| holds(c, chosen)),
+        BinCondition::Or(cs) => cs.iter().any(|c| holds(c, chosen)),
     }
 }

@@ -1,22 +1,23 @@
 //! HR0408: a plan whose trigger never happens, or whose context never holds.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::{
     agent_facts::{AgentFacts, agents},
     contradiction,
-    facts::Facts,
+    facts::ScenarioFacts,
 };
-use crate::{BeliefId, Plan, Scenario, TriggerOn};
+use crate::{BeliefId, Scenario, TriggerOn, TypedPlan};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         for plan in facts.agent.plans.iter().filter(|p| !facts.is_unadopted(p)) {
             if facts.is_dead_trigger(plan) {
                 issues.push(dead_trigger(&facts, plan));
             } else if let Some(found) = contradiction::of(&facts, plan) {
                 let message = "this plan never runs: its context cannot hold";
-                let mut issue = Diagnostic::warning(Code::DEAD_PLAN, found.span, message).here(found.why);
+                let mut issue =
+                    Diagnostic::warning(DiagnosticCode::DEAD_PLAN, found.span, message).here(found.why);
                 if let Some((span, text)) = found.with {
                     issue = issue.label(span, text);
                 }
@@ -27,13 +28,17 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
 }
 
 /// A plan that has a diagnostic for that, here or as one that nothing adopts.
-pub(crate) fn never_runs(facts: &AgentFacts<'_>, plan: &Plan) -> bool {
+pub(crate) fn never_runs(facts: &AgentFacts<'_>, plan: &TypedPlan) -> bool {
     facts.is_unadopted(plan) || facts.is_dead_trigger(plan) || contradiction::of(facts, plan).is_some()
 }
 
-fn dead_trigger(facts: &AgentFacts<'_>, plan: &Plan) -> Diagnostic {
+fn dead_trigger(facts: &AgentFacts<'_>, plan: &TypedPlan) -> Diagnostic {
     let warning = |why: &str| {
-        Diagnostic::warning(Code::DEAD_PLAN, plan.trigger.origin, format!("this plan never runs: {why}"))
+        Diagnostic::warning(
+            DiagnosticCode::DEAD_PLAN,
+            plan.trigger.origin,
+            format!("this plan never runs: {why}"),
+        )
     };
     let of = |belief: BeliefId| facts.belief(belief).name.as_str();
     match plan.trigger.on {

@@ -2,42 +2,42 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
-    agent_facts::{AgentFacts, Change, agents, all_steps, change, literals},
-    facts::Facts,
-    plan_terms::{Term, may_unify, of_args},
+    agent_facts::{AgentFacts, BeliefChange, agents, all_steps, change, literals},
+    facts::ScenarioFacts,
+    plan_terms::{PlanTerm, may_unify, of_args},
 };
-use crate::{Arg, BeliefId, GoalId, Plan, Scenario, StepKind, TriggerOn, Value};
+use crate::{BeliefId, GoalId, Scenario, TriggerOn, TypedPlan, TypedStepKind, TypedTerm, Value};
 
 /// Sub-goals of sub-goals that are looked into.
 const FAR: usize = 400;
 
 /// A belief that a plan is about: of its trigger, or one that its context needs.
-struct Handled<'a> {
+struct HandledBeliefs<'a> {
     belief: BeliefId,
-    args: &'a [Arg],
-    terms: Vec<Term<'a>>,
+    args: &'a [TypedTerm],
+    terms: Vec<PlanTerm<'a>>,
     span: Span,
 }
 
-impl Handled<'_> {
-    fn meets(&self, belief: BeliefId, args: &[Term<'_>], apart: bool) -> bool {
+impl HandledBeliefs<'_> {
+    fn meets(&self, belief: BeliefId, args: &[PlanTerm<'_>], apart: bool) -> bool {
         self.belief == belief && may_unify(&self.terms, args, apart)
     }
 
     /// As it is written, if that is known.
-    fn text(&self, facts: &AgentFacts<'_>, plan: &Plan) -> Option<String> {
-        let arg = |arg: &Arg| match Term::of_arg(arg) {
-            Term::Any => Some("_".to_owned()),
-            Term::Var(var) => plan.vars.get(usize::from(var)).cloned(),
-            Term::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => {
+    fn text(&self, facts: &AgentFacts<'_>, plan: &TypedPlan) -> Option<String> {
+        let arg = |arg: &TypedTerm| match PlanTerm::of_arg(arg) {
+            PlanTerm::Any => Some("_".to_owned()),
+            PlanTerm::Var(var) => plan.vars.get(usize::from(var)).cloned(),
+            PlanTerm::Const(value @ (Value::Bool(_) | Value::Int(_) | Value::Symbol(_))) => {
                 Some(value.to_string())
             }
-            Term::Const(Value::Float(_) | Value::Text(_) | Value::List(_)) | Term::Other(_) | Term::Part => {
-                None
-            }
+            PlanTerm::Const(Value::Float(_) | Value::Text(_) | Value::List(_))
+            | PlanTerm::Other(_)
+            | PlanTerm::Part => None,
         };
         let args: Vec<String> = self.args.iter().map(arg).collect::<Option<_>>()?;
         let name = &facts.belief(self.belief).name;
@@ -45,7 +45,7 @@ impl Handled<'_> {
     }
 }
 
-fn handled(plan: &Plan) -> Vec<Handled<'_>> {
+fn handled(plan: &TypedPlan) -> Vec<HandledBeliefs<'_>> {
     let trigger = match plan.trigger.on {
         TriggerOn::BeliefAdded(b) => Some((b, plan.trigger.args.as_slice(), plan.trigger.origin)),
         TriggerOn::BeliefRemoved(_)
@@ -57,21 +57,21 @@ fn handled(plan: &Plan) -> Vec<Handled<'_>> {
     };
     let context = literals(&plan.context).into_iter().filter(|l| !l.negated);
     let all = trigger.into_iter().chain(context.map(|l| (l.belief, l.args, l.span)));
-    all.map(|(belief, args, span)| Handled { belief, args, terms: of_args(args), span }).collect()
+    all.map(|(belief, args, span)| HandledBeliefs { belief, args, terms: of_args(args), span }).collect()
 }
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         for plan in &facts.agent.plans {
             // Blocks, and removals of what others have told, are no copies of anything.
             let has_blocks = plan.body.iter().any(|s| !s.blocks().is_empty());
             for (at, step) in plan.body.iter().enumerate().filter(|_| !has_blocks) {
-                let plain = matches!(&step.kind, StepKind::Remove(l) if l.annotations.is_empty());
+                let plain = matches!(&step.kind, TypedStepKind::Remove(l) if l.annotations.is_empty());
                 if !plain || !facts.work(facts.size()) {
                     continue;
                 }
-                if let Some(Change::Removes(belief, args)) = change(step) {
-                    let dropped = Dropped { facts, plan, at, belief, args };
+                if let Some(BeliefChange::Removes(belief, args)) = change(step) {
+                    let dropped = DroppedBelief { facts, plan, at, belief, args };
                     issues.extend(dropped.issue(step.origin));
                 }
             }
@@ -80,15 +80,15 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
 }
 
 /// A plan's step that drops a belief.
-struct Dropped<'a> {
+struct DroppedBelief<'a> {
     facts: AgentFacts<'a>,
-    plan: &'a Plan,
+    plan: &'a TypedPlan,
     at: usize,
     belief: BeliefId,
-    args: Vec<Term<'a>>,
+    args: Vec<PlanTerm<'a>>,
 }
 
-impl<'a> Dropped<'a> {
+impl<'a> DroppedBelief<'a> {
     fn issue(&self, span: Span) -> Option<Diagnostic> {
         let own = handled(self.plan);
         if own.iter().any(|h| h.meets(self.belief, &self.args, false))
@@ -109,7 +109,7 @@ impl<'a> Dropped<'a> {
         let message =
             format!("this drops a `{name}` that another plan handles, and the plan keeps its own belief");
         let theirs = handled(other).into_iter().find(|h| h.meets(self.belief, &self.args, true))?;
-        let issue = Diagnostic::warning(Code::DROPS_ANOTHERS_BELIEF, span, message)
+        let issue = Diagnostic::warning(DiagnosticCode::DROPS_ANOTHERS_BELIEF, span, message)
             .label(kept.span, "the plan handles this belief, and nothing drops it")
             .label(theirs.span, "this plan handles the dropped belief, and drops it itself");
         let kept = kept.text(&self.facts, self.plan);
@@ -125,14 +125,14 @@ impl<'a> Dropped<'a> {
     }
 
     /// Whether the plan looks like a copy of `other`, whose belief it drops in place of `kept`.
-    fn is_copied(&self, kept: &Handled<'_>, other: &'a Plan) -> bool {
+    fn is_copied(&self, kept: &HandledBeliefs<'_>, other: &'a TypedPlan) -> bool {
         let owns = !std::ptr::eq(other, self.plan)
             && handled(other).iter().any(|h| h.meets(self.belief, &self.args, true) && consumes(other, h));
         owns && (kept.belief == self.belief || self.same_part(kept, other))
     }
 
     /// Whether neither this plan nor another one that handles the belief uses it up.
-    fn keeps(&self, kept: &Handled<'_>) -> bool {
+    fn keeps(&self, kept: &HandledBeliefs<'_>) -> bool {
         !consumes(self.plan, kept)
             && !self
                 .facts
@@ -144,16 +144,13 @@ impl<'a> Dropped<'a> {
 
     /// Beliefs of different names are taken for copies of each other if they play the same part: both or neither are the
     /// trigger, of triggers of one kind, and they come about alike. What a suite chooses is most often asked, not used up.
-    fn same_part(&self, kept: &Handled<'_>, other: &Plan) -> bool {
-        let is_trigger = |plan: &Plan, belief| plan.trigger.on == TriggerOn::BeliefAdded(belief);
+    fn same_part(&self, kept: &HandledBeliefs<'_>, other: &TypedPlan) -> bool {
+        let is_trigger = |plan: &TypedPlan, belief| plan.trigger.on == TriggerOn::BeliefAdded(belief);
         let alike =
             std::mem::discriminant(&self.plan.trigger.on) == std::mem::discriminant(&other.trigger.on);
-        let state = self
-            .plan
-            .body
-            .iter()
-            .filter_map(change)
-            .any(|c| c.belief() == self.belief && matches!(c, Change::Adds(..) | Change::Replaces(..)));
+        let state = self.plan.body.iter().filter_map(change).any(|c| {
+            c.belief() == self.belief && matches!(c, BeliefChange::Adds(..) | BeliefChange::Replaces(..))
+        });
         let given = |b| self.facts.is_given(b);
         let added = |b| self.facts.is_added(b);
         alike
@@ -167,26 +164,28 @@ impl<'a> Dropped<'a> {
         let mut seen = BTreeSet::new();
         let before = &self.plan.body[..self.at];
         before.iter().any(|step| match step.kind {
-            StepKind::Achieve { goal, .. } | StepKind::Spawn { goal, .. } => self.goal_makes(goal, &mut seen),
-            StepKind::Do { .. }
-            | StepKind::Query(_)
-            | StepKind::Test(_)
-            | StepKind::Add(_)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Abolish(_)
-            | StepKind::Await { .. }
-            | StepKind::Wait { .. }
-            | StepKind::If { .. }
-            | StepKind::While { .. }
-            | StepKind::For { .. }
-            | StepKind::Fork { .. }
-            | StepKind::Send { .. }
-            | StepKind::Ask { .. }
-            | StepKind::AskAll { .. }
-            | StepKind::Print { .. }
-            | StepKind::Control { .. }
-            | StepKind::Fail => false,
+            TypedStepKind::Achieve { goal, .. } | TypedStepKind::Spawn { goal, .. } => {
+                self.goal_makes(goal, &mut seen)
+            }
+            TypedStepKind::Do { .. }
+            | TypedStepKind::Query(_)
+            | TypedStepKind::Test(_)
+            | TypedStepKind::Add(_)
+            | TypedStepKind::Remove(_)
+            | TypedStepKind::Replace(_)
+            | TypedStepKind::Abolish(_)
+            | TypedStepKind::Await { .. }
+            | TypedStepKind::Wait { .. }
+            | TypedStepKind::If { .. }
+            | TypedStepKind::While { .. }
+            | TypedStepKind::For { .. }
+            | TypedStepKind::Fork { .. }
+            | TypedStepKind::Send { .. }
+            | TypedStepKind::Ask { .. }
+            | TypedStepKind::AskAll { .. }
+            | TypedStepKind::Print { .. }
+            | TypedStepKind::Control { .. }
+            | TypedStepKind::Fail => false,
         })
     }
 
@@ -202,28 +201,28 @@ impl<'a> Dropped<'a> {
             |plan| {
                 makes(plan, plan.body.len(), self.belief, &self.args, true)
                     || all_steps(&plan.body).into_iter().any(|step| match step.kind {
-                        StepKind::Achieve { goal, .. } | StepKind::Spawn { goal, .. } => {
+                        TypedStepKind::Achieve { goal, .. } | TypedStepKind::Spawn { goal, .. } => {
                             self.goal_makes(goal, seen)
                         }
-                        StepKind::Do { .. }
-                        | StepKind::Query(_)
-                        | StepKind::Test(_)
-                        | StepKind::Add(_)
-                        | StepKind::Remove(_)
-                        | StepKind::Replace(_)
-                        | StepKind::Abolish(_)
-                        | StepKind::Await { .. }
-                        | StepKind::Wait { .. }
-                        | StepKind::If { .. }
-                        | StepKind::While { .. }
-                        | StepKind::For { .. }
-                        | StepKind::Fork { .. }
-                        | StepKind::Send { .. }
-                        | StepKind::Ask { .. }
-                        | StepKind::AskAll { .. }
-                        | StepKind::Print { .. }
-                        | StepKind::Control { .. }
-                        | StepKind::Fail => false,
+                        TypedStepKind::Do { .. }
+                        | TypedStepKind::Query(_)
+                        | TypedStepKind::Test(_)
+                        | TypedStepKind::Add(_)
+                        | TypedStepKind::Remove(_)
+                        | TypedStepKind::Replace(_)
+                        | TypedStepKind::Abolish(_)
+                        | TypedStepKind::Await { .. }
+                        | TypedStepKind::Wait { .. }
+                        | TypedStepKind::If { .. }
+                        | TypedStepKind::While { .. }
+                        | TypedStepKind::For { .. }
+                        | TypedStepKind::Fork { .. }
+                        | TypedStepKind::Send { .. }
+                        | TypedStepKind::Ask { .. }
+                        | TypedStepKind::AskAll { .. }
+                        | TypedStepKind::Print { .. }
+                        | TypedStepKind::Control { .. }
+                        | TypedStepKind::Fail => false,
                     })
             },
         )
@@ -251,27 +250,27 @@ impl<'a> Dropped<'a> {
 }
 
 /// Whether a plan takes away or replaces a belief that it handles.
-fn consumes(plan: &Plan, handled: &Handled<'_>) -> bool {
+fn consumes(plan: &TypedPlan, handled: &HandledBeliefs<'_>) -> bool {
     all_steps(&plan.body).into_iter().filter_map(change).any(|c| match c {
-        Change::Removes(b, args) => handled.meets(b, &args, false),
-        Change::Replaces(b, _) => handled.belief == b,
-        Change::Adds(..) => false,
+        BeliefChange::Removes(b, args) => handled.meets(b, &args, false),
+        BeliefChange::Replaces(b, _) => handled.belief == b,
+        BeliefChange::Adds(..) => false,
     })
 }
 
 /// Whether a step before `at` adds a fact that is dropped, or asks for it.
-fn makes(plan: &Plan, at: usize, belief: BeliefId, args: &[Term<'_>], apart: bool) -> bool {
+fn makes(plan: &TypedPlan, at: usize, belief: BeliefId, args: &[PlanTerm<'_>], apart: bool) -> bool {
     all_steps(&plan.body[..at]).into_iter().any(|step| match (&step.kind, change(step)) {
-        (StepKind::Query(l), _) => l.belief == belief && may_unify(&of_args(&l.args), args, apart),
-        (_, Some(Change::Adds(b, made) | Change::Replaces(b, made))) => {
+        (TypedStepKind::Query(l), _) => l.belief == belief && may_unify(&of_args(&l.args), args, apart),
+        (_, Some(BeliefChange::Adds(b, made) | BeliefChange::Replaces(b, made))) => {
             b == belief && may_unify(&made, args, apart)
         }
-        (_, Some(Change::Removes(..)) | None) => false,
+        (_, Some(BeliefChange::Removes(..)) | None) => false,
     })
 }
 
 /// The plans that adopt the plan's goal; a failure plan goes on after the plans for its goal.
-fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
+fn callers<'a>(facts: &AgentFacts<'a>, plan: &TypedPlan) -> Vec<&'a TypedPlan> {
     let (goal, failed) = match plan.trigger.on {
         TriggerOn::GoalAdded(goal) => (goal, false),
         TriggerOn::GoalFailed(goal) => (goal, true),
@@ -282,7 +281,7 @@ fn callers<'a>(facts: &AgentFacts<'a>, plan: &Plan) -> Vec<&'a Plan> {
             return Vec::new();
         }
     };
-    let mut all: Vec<&Plan> = facts.adopters(goal).collect();
+    let mut all: Vec<&TypedPlan> = facts.adopters(goal).collect();
     all.sort_by_key(|p| p.origin);
     all.dedup_by_key(|p| p.origin);
     if failed {

@@ -6,28 +6,29 @@ use hrdsl_source::Span;
 
 use super::{
     agent_facts::all_steps,
-    agent_index::{AgentIndex, Work, indices},
-    flow::{Flow, flows},
+    agent_index::{AgentIndex, AgentWork, indices},
+    flow::{ValueFlow, flows},
 };
 use crate::{
-    Arg, ArgPattern, EventId, EventPattern, Expr, Method, Pattern, ReceiveArg, Role, Scenario, StepKind,
-    StimulusStep, Sync, TestStep, TriggerOn, Value, world::RuleOn,
+    ArgPattern, EventId, EventPattern, ReceiveArg, RequirementPattern, Role, Scenario, TestStep, TriggerOn,
+    TypedExpr, TypedMethod, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, Value,
+    world::TypedRuleTrigger,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
 const MAKERS: usize = 64;
 
 /// A constant argument in a form that has an order; `None` may be anything.
-type Key = Option<(u8, u64)>;
+type FactKey = Option<(u8, u64)>;
 
 /// An event with arguments that are constant or may be anything.
 #[derive(Clone, Debug)]
-pub(crate) struct Wanted {
+pub(crate) struct WantedFact {
     pub event: EventId,
-    args: Vec<Key>,
+    args: Vec<FactKey>,
 }
 
-impl Wanted {
+impl WantedFact {
     fn new(event: EventId, args: impl Iterator<Item = Option<Value>>) -> Self {
         Self { event, args: args.map(|v| v.map(Value::key)).collect() }
     }
@@ -44,16 +45,16 @@ impl Wanted {
 }
 
 /// A place that goes on only when one of its events happens.
-pub(crate) struct Wait {
+pub(crate) struct EventWait {
     pub span: Span,
-    pub any_of: Vec<Wanted>,
+    pub any_of: Vec<WantedFact>,
 }
 
 /// What is known about one event.
 #[derive(Clone, Debug, Default)]
 struct EventFacts {
     /// By arguments.
-    makers: BTreeSet<Vec<Key>>,
+    makers: BTreeSet<Vec<FactKey>>,
     /// With any arguments.
     freely: bool,
     /// Something in the text reads it.
@@ -65,22 +66,22 @@ struct EventFacts {
 }
 
 /// Answers that are worked out once for all rules.
-pub(crate) struct Facts<'a> {
+pub(crate) struct ScenarioFacts<'a> {
     events: Vec<EventFacts>,
-    pub waits: Vec<Wait>,
+    pub waits: Vec<EventWait>,
     /// The triggers of requirements, by requirement; empty for those without.
-    pub triggers: Vec<Vec<Wanted>>,
+    pub triggers: Vec<Vec<WantedFact>>,
     /// There are suites or tests: what they do not use is not used.
     pub has_tests: bool,
     /// By automaton: the values of its variables.
-    pub flows: Vec<Flow>,
+    pub flows: Vec<ValueFlow>,
     /// By agent.
     pub agents: Vec<AgentIndex<'a>>,
     /// What the rules on plans may still look at.
-    pub work: Work,
+    pub work: AgentWork,
 }
 
-impl<'a> Facts<'a> {
+impl<'a> ScenarioFacts<'a> {
     pub fn of(scenario: &'a Scenario) -> Self {
         let has_tests = !scenario.suites.is_empty() || !scenario.tests.is_empty();
         let events = vec![EventFacts::default(); scenario.events.len()];
@@ -91,7 +92,7 @@ impl<'a> Facts<'a> {
             has_tests,
             flows: flows(scenario),
             agents: indices(scenario),
-            work: Work::default(),
+            work: AgentWork::default(),
         };
         facts.declared(scenario);
         facts.agents(scenario);
@@ -124,13 +125,13 @@ impl<'a> Facts<'a> {
     }
 
     /// Whether nothing can ever make any of these.
-    pub fn in_vain(&self, any_of: &[Wanted]) -> bool {
+    pub fn in_vain(&self, any_of: &[WantedFact]) -> bool {
         !any_of.is_empty() && !any_of.iter().any(|w| self.can_happen(w))
     }
 
-    fn can_happen(&self, wanted: &Wanted) -> bool {
+    fn can_happen(&self, wanted: &WantedFact) -> bool {
         let Some(e) = self.events.get(at(wanted.event)) else { return true };
-        let fits = |makes: &Vec<Key>| {
+        let fits = |makes: &Vec<FactKey>| {
             makes.iter().zip(&wanted.args).all(|(a, b)| a.is_none() || b.is_none() || a == b)
         };
         e.freely || e.makers.iter().any(fits)
@@ -140,7 +141,7 @@ impl<'a> Facts<'a> {
 
     fn makes(&mut self, event: EventId, args: impl Iterator<Item = Option<Value>>) {
         let Some(e) = self.events.get_mut(at(event)).filter(|e| !e.freely) else { return };
-        let args: Vec<Key> = args.map(|v| v.map(Value::key)).collect();
+        let args: Vec<FactKey> = args.map(|v| v.map(Value::key)).collect();
         if args.iter().all(Option::is_none) || e.makers.len() == MAKERS {
             e.freely = true;
         } else {
@@ -148,8 +149,8 @@ impl<'a> Facts<'a> {
         }
     }
 
-    fn makes_exprs(&mut self, event: EventId, args: &[Expr]) {
-        self.makes(event, args.iter().map(Expr::constant));
+    fn makes_exprs(&mut self, event: EventId, args: &[TypedExpr]) {
+        self.makes(event, args.iter().map(TypedExpr::constant));
     }
 
     fn reads(&mut self, event: EventId) {
@@ -158,9 +159,9 @@ impl<'a> Facts<'a> {
         }
     }
 
-    fn waits_for(&mut self, span: Span, any_of: Vec<Wanted>) {
+    fn waits_for(&mut self, span: Span, any_of: Vec<WantedFact>) {
         any_of.iter().for_each(|w| self.reads(w.event));
-        self.waits.push(Wait { span, any_of });
+        self.waits.push(EventWait { span, any_of });
     }
 
     fn declared(&mut self, scenario: &Scenario) {
@@ -188,15 +189,15 @@ impl<'a> Facts<'a> {
         }
     }
 
-    fn steps(&mut self, steps: &[StimulusStep]) {
+    fn steps(&mut self, steps: &[TypedStimulusStep]) {
         for step in steps {
             match step {
-                StimulusStep::Emit { event, args } => self.makes_exprs(*event, args),
-                StimulusStep::If { then, otherwise, .. } => {
+                TypedStimulusStep::Emit { event, args } => self.makes_exprs(*event, args),
+                TypedStimulusStep::If { then, otherwise, .. } => {
                     self.steps(then);
                     self.steps(otherwise);
                 }
-                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
+                TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => {}
             }
         }
     }
@@ -209,36 +210,36 @@ impl<'a> Facts<'a> {
                 if let TriggerOn::Perceived(event) = plan.trigger.on {
                     let span = places.and_then(|p| p.triggers.get(i)).copied().unwrap_or(plan.origin);
                     let args = plan.trigger.args.iter().map(|a| match a {
-                        Arg::Expr(e) => e.constant(),
-                        Arg::Any | Arg::Var(_) | Arg::List(..) => None,
+                        TypedTerm::Expr(e) => e.constant(),
+                        TypedTerm::Any | TypedTerm::Var(_) | TypedTerm::List(..) => None,
                     });
-                    self.waits_for(span, vec![Wanted::new(event, args)]);
+                    self.waits_for(span, vec![WantedFact::new(event, args)]);
                 }
                 for step in all_steps(&plan.body) {
                     match &step.kind {
-                        StepKind::Do { event, args } => self.makes_exprs(*event, args),
-                        StepKind::Await { events, .. } => {
-                            self.waits_for(step.origin, events.iter().map(Wanted::of).collect());
+                        TypedStepKind::Do { event, args } => self.makes_exprs(*event, args),
+                        TypedStepKind::Await { events, .. } => {
+                            self.waits_for(step.origin, events.iter().map(WantedFact::of).collect());
                         }
-                        StepKind::Achieve { .. }
-                        | StepKind::Spawn { .. }
-                        | StepKind::Query(..)
-                        | StepKind::Test(_)
-                        | StepKind::Add(..)
-                        | StepKind::Remove(..)
-                        | StepKind::Replace(..)
-                        | StepKind::Abolish(_)
-                        | StepKind::Wait { .. }
-                        | StepKind::If { .. }
-                        | StepKind::While { .. }
-                        | StepKind::For { .. }
-                        | StepKind::Fork { .. }
-                        | StepKind::Send { .. }
-                        | StepKind::Ask { .. }
-                        | StepKind::AskAll { .. }
-                        | StepKind::Print { .. }
-                        | StepKind::Control { .. }
-                        | StepKind::Fail => {}
+                        TypedStepKind::Achieve { .. }
+                        | TypedStepKind::Spawn { .. }
+                        | TypedStepKind::Query(..)
+                        | TypedStepKind::Test(_)
+                        | TypedStepKind::Add(..)
+                        | TypedStepKind::Remove(..)
+                        | TypedStepKind::Replace(..)
+                        | TypedStepKind::Abolish(_)
+                        | TypedStepKind::Wait { .. }
+                        | TypedStepKind::If { .. }
+                        | TypedStepKind::While { .. }
+                        | TypedStepKind::For { .. }
+                        | TypedStepKind::Fork { .. }
+                        | TypedStepKind::Send { .. }
+                        | TypedStepKind::Ask { .. }
+                        | TypedStepKind::AskAll { .. }
+                        | TypedStepKind::Print { .. }
+                        | TypedStepKind::Control { .. }
+                        | TypedStepKind::Fail => {}
                     }
                 }
             }
@@ -250,15 +251,18 @@ impl<'a> Facts<'a> {
             let places = scenario.places.automata.get(index);
             for (i, edge) in automaton.edges.iter().enumerate() {
                 match &edge.sync {
-                    Sync::Internal | Sync::Offer { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
-                    Sync::Send { event, args } => self.makes_exprs(*event, args),
-                    Sync::Receive { event, args } => {
+                    TypedSync::Internal
+                    | TypedSync::Offer { .. }
+                    | TypedSync::Accept { .. }
+                    | TypedSync::Join { .. } => {}
+                    TypedSync::Send { event, args } => self.makes_exprs(*event, args),
+                    TypedSync::Receive { event, args } => {
                         let span = places.and_then(|p| p.waits.get(i)).copied().unwrap_or(edge.origin);
                         let args = args.iter().map(|a| match a {
                             ReceiveArg::Match(ArgPattern::Is(value)) => Some(*value),
                             ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind => None,
                         });
-                        self.waits_for(span, vec![Wanted::new(*event, args)]);
+                        self.waits_for(span, vec![WantedFact::new(*event, args)]);
                     }
                 }
             }
@@ -268,15 +272,15 @@ impl<'a> Facts<'a> {
     fn judgement(&mut self, scenario: &Scenario) {
         for requirement in &scenario.requirements {
             let (trigger, others): (&[EventPattern], Vec<&EventPattern>) = match &requirement.pattern {
-                Pattern::Causes { trigger, response, .. } => (trigger, response.iter().collect()),
-                Pattern::Forbids { trigger, forbidden, until } => {
+                RequirementPattern::Causes { trigger, response, .. } => (trigger, response.iter().collect()),
+                RequirementPattern::Forbids { trigger, forbidden, until } => {
                     (trigger, forbidden.iter().chain(until).collect())
                 }
-                Pattern::NeverWhile { events, .. } => (events, Vec::new()),
-                Pattern::Globally(_) => (&[], Vec::new()),
+                RequirementPattern::NeverWhile { events, .. } => (events, Vec::new()),
+                RequirementPattern::Globally(_) => (&[], Vec::new()),
             };
             trigger.iter().chain(others).for_each(|p| self.reads(p.event));
-            self.triggers.push(trigger.iter().map(Wanted::of).collect());
+            self.triggers.push(trigger.iter().map(WantedFact::of).collect());
         }
         let counted = scenario.points.iter().flat_map(|p| &p.count);
         for pattern in scenario.assumptions.iter().flat_map(|a| &a.events).chain(counted) {
@@ -288,22 +292,22 @@ impl<'a> Facts<'a> {
         for rule in scenario.world.iter().flat_map(|w| &w.rules) {
             self.makes_exprs(rule.event, &rule.args);
             match &rule.on {
-                RuleOn::Event(pattern) => self.waits_for(rule.span, vec![Wanted::of(pattern)]),
-                RuleOn::Commanded { .. } => {}
+                TypedRuleTrigger::Event(pattern) => self.waits_for(rule.span, vec![WantedFact::of(pattern)]),
+                TypedRuleTrigger::Commanded { .. } => {}
             }
         }
     }
 
     fn suites(&mut self, scenario: &Scenario) {
         for (index, suite) in scenario.suites.iter().enumerate() {
-            let Method::Random { stimuli, awaits, .. } = &suite.method else { continue };
+            let TypedMethod::Random { stimuli, awaits, .. } = &suite.method else { continue };
             for stimulus in stimuli {
                 self.makes(*stimulus, std::iter::empty());
             }
             let places = scenario.places.awaits.get(index);
             for (i, pattern) in awaits.iter().enumerate() {
                 let span = places.and_then(|p| p.get(i)).copied().unwrap_or(suite.origin);
-                self.waits_for(span, vec![Wanted::of(pattern)]);
+                self.waits_for(span, vec![WantedFact::of(pattern)]);
             }
         }
         for step in scenario.tests.iter().flat_map(|t| &t.steps) {

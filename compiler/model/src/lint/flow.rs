@@ -3,9 +3,10 @@
 use std::{collections::VecDeque, rc::Rc};
 
 use crate::{
-    Automaton, Channel, ChannelKind, ClockConstraint, ClockOp, Edge, Event, EventId, Expr, ExprKind,
-    FunctionId, Leaf, LocationId, ReceiveArg, Scenario, Sync, Update, leaves,
-    lint::interval::{Env, Interval},
+    Channel, ChannelKind, ClockOp, EventId, FunctionId, LocationId, ReceiveArg, Scenario, TypedAutomaton,
+    TypedClockConstraint, TypedEdge, TypedEvent, TypedExpr, TypedExprKind, TypedSync, TypedUpdate,
+    VariableRef, leaves,
+    lint::interval::{IntervalEnv, ValueInterval},
 };
 
 /// After so many visits of a location what still grows is taken to reach the end of its range.
@@ -14,15 +15,15 @@ const PATIENCE: u32 = 6;
 const END: u32 = 24;
 
 /// The declared ranges that all automata see.
-struct Ranges {
+struct VarRanges {
     /// Any automaton may set a shared variable at any time.
-    shared: Vec<Interval>,
+    shared: Vec<ValueInterval>,
     /// By event.
-    params: Vec<Vec<Interval>>,
+    params: Vec<Vec<ValueInterval>>,
     /// By function: the variables that it may assign.
-    assigns: Vec<Vec<Leaf>>,
+    assigns: Vec<Vec<VariableRef>>,
     /// By channel.
-    channels: Vec<Vec<Interval>>,
+    channels: Vec<Vec<ValueInterval>>,
     /// By channel: it is a broadcast.
     broadcasts: Vec<bool>,
     /// How many clocks are shared: those come first.
@@ -30,35 +31,35 @@ struct Ranges {
 }
 
 /// What is known about one automaton.
-pub(crate) struct Flow {
-    ranges: Rc<Ranges>,
-    own: Vec<Interval>,
+pub(crate) struct ValueFlow {
+    ranges: Rc<VarRanges>,
+    own: Vec<ValueInterval>,
     /// By location: what holds of the variables there.
-    holds: Vec<Option<Expr>>,
+    holds: Vec<Option<TypedExpr>>,
     /// By location; `None`: no edge reaches it.
-    states: Vec<Option<Vec<Interval>>>,
+    states: Vec<Option<Vec<ValueInterval>>>,
     /// The edges out of each location.
     pub out: Vec<Vec<usize>>,
 }
 
 /// The flows of all automata.
-pub(crate) fn flows(scenario: &Scenario) -> Vec<Flow> {
-    let of_event = |e: &Event| e.params.iter().map(|p| Interval::of(p.ty)).collect();
-    let of_channel = |c: &Channel| c.params.iter().map(|p| Interval::of(p.ty())).collect();
-    let ranges = Rc::new(Ranges {
-        shared: scenario.shared.iter().map(|v| Interval::of(v.ty())).collect(),
+pub(crate) fn flows(scenario: &Scenario) -> Vec<ValueFlow> {
+    let of_event = |e: &TypedEvent| e.params.iter().map(|p| ValueInterval::of(p.ty)).collect();
+    let of_channel = |c: &Channel| c.params.iter().map(|p| ValueInterval::of(p.ty())).collect();
+    let ranges = Rc::new(VarRanges {
+        shared: scenario.shared.iter().map(|v| ValueInterval::of(v.ty())).collect(),
         params: scenario.events.iter().map(of_event).collect(),
         assigns: scenario.effects.iter().map(|f| f.assigns.clone()).collect(),
         channels: scenario.channels.iter().map(of_channel).collect(),
         broadcasts: scenario.channels.iter().map(|c| c.kind == ChannelKind::Broadcast).collect(),
         clocks: scenario.clocks.len(),
     });
-    scenario.automata.iter().map(|a| Flow::of(a, Rc::clone(&ranges))).collect()
+    scenario.automata.iter().map(|a| ValueFlow::of(a, Rc::clone(&ranges))).collect()
 }
 
-impl Flow {
-    fn of(automaton: &Automaton, ranges: Rc<Ranges>) -> Self {
-        let own = automaton.vars.iter().map(|v| Interval::of(v.ty())).collect();
+impl ValueFlow {
+    fn of(automaton: &TypedAutomaton, ranges: Rc<VarRanges>) -> Self {
+        let own = automaton.vars.iter().map(|v| ValueInterval::of(v.ty())).collect();
         let mut out = vec![Vec::new(); automaton.locations.len()];
         for (i, edge) in automaton.edges.iter().enumerate() {
             if let Some(edges) = out.get_mut(at(edge.from)) {
@@ -75,7 +76,7 @@ impl Flow {
     }
 
     /// From the initial values up, until nothing changes.
-    fn grow(&mut self, automaton: &Automaton) {
+    fn grow(&mut self, automaton: &TypedAutomaton) {
         let first = at(automaton.initial);
         let Some(state) = self.states.get_mut(first) else { return };
         *state = Some(initial(automaton));
@@ -96,7 +97,7 @@ impl Flow {
     }
 
     /// Joins a state into a location's; whether that changed it.
-    fn widen(&mut self, to: usize, after: Vec<Interval>, visits: &mut [u32]) -> bool {
+    fn widen(&mut self, to: usize, after: Vec<ValueInterval>, visits: &mut [u32]) -> bool {
         let Some(known) = &mut self.states[to] else {
             self.states[to] = Some(after);
             return true;
@@ -108,7 +109,7 @@ impl Flow {
                 continue;
             }
             let joined = old.join(new);
-            let wider = Interval {
+            let wider = ValueInterval {
                 lo: if joined.lo < old.lo { range.lo } else { old.lo },
                 hi: if joined.hi > old.hi { range.hi } else { old.hi },
             };
@@ -127,8 +128,8 @@ impl Flow {
     }
 
     /// One step down: what the edges bring, where they were taken to bring more.
-    fn shrink(&mut self, automaton: &Automaton) {
-        let mut next: Vec<Option<Vec<Interval>>> = vec![None; self.states.len()];
+    fn shrink(&mut self, automaton: &TypedAutomaton) {
+        let mut next: Vec<Option<Vec<ValueInterval>>> = vec![None; self.states.len()];
         if let Some(state) = next.get_mut(at(automaton.initial)) {
             *state = Some(initial(automaton));
         }
@@ -148,26 +149,29 @@ impl Flow {
     }
 
     /// What is known when an edge is taken; `None`: its source is not reached, or its guard is never true there.
-    pub fn taken(&self, edge: &Edge) -> Option<Env<'_>> {
+    pub fn taken(&self, edge: &TypedEdge) -> Option<IntervalEnv<'_>> {
         let own = self.states.get(at(edge.from))?.as_ref()?;
         if contradictory(&edge.clock_guard) {
             return None;
         }
-        let mut env = Env::new(own, &self.ranges.shared, self.locals(edge));
+        let mut env = IntervalEnv::new(own, &self.ranges.shared, self.locals(edge));
         let holds = self.holds.get(at(edge.from)).and_then(Option::as_ref);
         let possible = holds.into_iter().chain(&edge.guard).all(|g| env.assume(g, true));
         possible.then_some(env)
     }
 
     /// The selects, then what the event or channel binds.
-    fn locals(&self, edge: &Edge) -> Vec<Interval> {
-        let mut locals: Vec<Interval> = edge.selects.iter().map(|p| Interval::of(p.ty())).collect();
+    fn locals(&self, edge: &TypedEdge) -> Vec<ValueInterval> {
+        let mut locals: Vec<ValueInterval> = edge.selects.iter().map(|p| ValueInterval::of(p.ty())).collect();
         let (args, params) = match &edge.sync {
-            Sync::Receive { event, args } => (args, self.params(*event)),
-            Sync::Accept { channel, args } => {
+            TypedSync::Receive { event, args } => (args, self.params(*event)),
+            TypedSync::Accept { channel, args } => {
                 (args, self.ranges.channels.get(usize::from(channel.0)).map_or(&[][..], Vec::as_slice))
             }
-            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => return locals,
+            TypedSync::Internal
+            | TypedSync::Send { .. }
+            | TypedSync::Offer { .. }
+            | TypedSync::Join { .. } => return locals,
         };
         let bound = args.iter().zip(params).filter(|(a, _)| **a == ReceiveArg::Bind);
         locals.extend(bound.map(|(_, range)| *range));
@@ -175,58 +179,61 @@ impl Flow {
     }
 
     /// Whether an edge only follows another automaton, which need not wait for it.
-    pub fn only_hears(&self, edge: &Edge) -> bool {
+    pub fn only_hears(&self, edge: &TypedEdge) -> bool {
         match &edge.sync {
-            Sync::Receive { .. } => true,
-            Sync::Accept { channel, .. } => {
+            TypedSync::Receive { .. } => true,
+            TypedSync::Accept { channel, .. } => {
                 self.ranges.broadcasts.get(usize::from(channel.0)).copied().unwrap_or(false)
             }
-            Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => false,
+            TypedSync::Internal
+            | TypedSync::Send { .. }
+            | TypedSync::Offer { .. }
+            | TypedSync::Join { .. } => false,
         }
     }
 
     /// Whether no other automaton sets the clocks of a bound.
-    pub fn is_own(&self, bound: &ClockConstraint) -> bool {
+    pub fn is_own(&self, bound: &TypedClockConstraint) -> bool {
         bound.clocks().all(|c| usize::from(c.0) >= self.ranges.clocks)
     }
 
     /// The ranges of an event's parameters.
-    pub fn params(&self, event: EventId) -> &[Interval] {
+    pub fn params(&self, event: EventId) -> &[ValueInterval] {
         self.ranges.params.get(usize::from(event.0)).map_or(&[], Vec::as_slice)
     }
 
     /// The variable that an update sets, its new value, and its range.
-    pub fn set_by<'e>(&self, update: &'e Update) -> Option<(Leaf, &'e Expr, Interval)> {
+    pub fn set_by<'e>(&self, update: &'e TypedUpdate) -> Option<(VariableRef, &'e TypedExpr, ValueInterval)> {
         match update {
-            Update::Assign { place, value } if place.indices.is_empty() => {
+            TypedUpdate::Assign { place, value } if place.indices.is_empty() => {
                 Some((place.slot, value, self.range_of(place.slot)))
             }
-            Update::Assign { .. } | Update::Call { .. } | Update::Reset { .. } => None,
+            TypedUpdate::Assign { .. } | TypedUpdate::Call { .. } | TypedUpdate::Reset { .. } => None,
         }
     }
 
     /// What an update may set besides [`Self::set_by`]: of elements and in functions any value.
-    pub fn disturb(&self, env: &mut Env<'_>, update: &Update) {
-        let mut set: Vec<Leaf> = Vec::new();
-        let mut called = |e: &Expr| {
+    pub fn disturb(&self, env: &mut IntervalEnv<'_>, update: &TypedUpdate) {
+        let mut set: Vec<VariableRef> = Vec::new();
+        let mut called = |e: &TypedExpr| {
             e.each(&mut |part| {
-                if let ExprKind::Apply(f, ..) = part.kind {
+                if let TypedExprKind::Apply(f, ..) = part.kind {
                     set.extend(self.assigned_by(f));
                 }
             });
         };
         match update {
-            Update::Assign { place, value } => {
+            TypedUpdate::Assign { place, value } => {
                 called(value);
                 if !place.indices.is_empty() {
                     set.extend(leaves(place));
                 }
             }
-            Update::Call { function: f, args } => {
+            TypedUpdate::Call { function: f, args } => {
                 args.iter().for_each(called);
                 set.extend(self.assigned_by(*f));
             }
-            Update::Reset { .. } => {}
+            TypedUpdate::Reset { .. } => {}
         }
         for leaf in set {
             env.assign(leaf, self.range_of(leaf));
@@ -234,21 +241,21 @@ impl Flow {
     }
 
     /// The declared range of a variable.
-    fn range_of(&self, leaf: Leaf) -> Interval {
+    fn range_of(&self, leaf: VariableRef) -> ValueInterval {
         let range = match leaf {
-            Leaf::Own(i) => self.own.get(usize::from(i)),
-            Leaf::Shared(i) => self.ranges.shared.get(usize::from(i)),
-            Leaf::Local(_) | Leaf::Signal(_) => None,
+            VariableRef::Own(i) => self.own.get(usize::from(i)),
+            VariableRef::Shared(i) => self.ranges.shared.get(usize::from(i)),
+            VariableRef::Local(_) | VariableRef::Signal(_) => None,
         };
-        range.copied().unwrap_or(Interval::ALL)
+        range.copied().unwrap_or(ValueInterval::ALL)
     }
 
-    fn assigned_by(&self, function: FunctionId) -> &[Leaf] {
+    fn assigned_by(&self, function: FunctionId) -> &[VariableRef] {
         self.ranges.assigns.get(usize::from(function.0)).map_or(&[], Vec::as_slice)
     }
 
     /// The variables after an edge; a value outside of its range does not get there.
-    fn after(&self, edge: &Edge) -> Option<Vec<Interval>> {
+    fn after(&self, edge: &TypedEdge) -> Option<Vec<ValueInterval>> {
         let mut env = self.taken(edge)?;
         for update in &edge.updates {
             self.disturb(&mut env, update);
@@ -258,7 +265,7 @@ impl Flow {
         }
         let mut after = env.own.to_vec();
         for (leaf, known) in &env.less {
-            if let Leaf::Own(i) = leaf
+            if let VariableRef::Own(i) = leaf
                 && let Some(slot) = after.get_mut(usize::from(*i))
             {
                 *slot = *known;
@@ -268,8 +275,8 @@ impl Flow {
     }
 }
 
-fn initial(automaton: &Automaton) -> Vec<Interval> {
-    automaton.vars.iter().map(|v| v.value(v.init).map_or(Interval::ALL, Interval::value)).collect()
+fn initial(automaton: &TypedAutomaton) -> Vec<ValueInterval> {
+    automaton.vars.iter().map(|v| v.value(v.init).map_or(ValueInterval::ALL, ValueInterval::value)).collect()
 }
 
 fn at(location: LocationId) -> usize {
@@ -277,13 +284,13 @@ fn at(location: LocationId) -> usize {
 }
 
 /// Whether a clock would have to be above and below something at once.
-fn contradictory(guard: &[ClockConstraint]) -> bool {
+fn contradictory(guard: &[TypedClockConstraint]) -> bool {
     guard.iter().any(|low| guard.iter().any(|high| clash(low, high)))
 }
 
 /// Whether the first demands more than the second allows, of the same clock or difference of clocks; of bounds with
 /// variables that is not known.
-pub(crate) fn clash(low: &ClockConstraint, high: &ClockConstraint) -> bool {
+pub(crate) fn clash(low: &TypedClockConstraint, high: &TypedClockConstraint) -> bool {
     let open_below = match low.op {
         ClockOp::Ge | ClockOp::Eq => false,
         ClockOp::Gt => true,

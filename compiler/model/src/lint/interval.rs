@@ -3,11 +3,14 @@
 //! INVARIANT: an interval holds every value that the expression can have; an expression without a value (a division by
 //! zero, a number beyond 64 bits) is a fault of its own and not in it.
 
-use crate::{BinaryOp, Expr, ExprKind, Kind, Leaf, NumberFunction, Type, UnaryOp, Value, leaves};
+use crate::{
+    BinaryOp, InferredType, NumberFunction, Type, TypedExpr, TypedExprKind, UnaryOp, Value, VariableRef,
+    leaves,
+};
 
 /// `lo..=hi`, not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Interval {
+pub(crate) struct ValueInterval {
     pub lo: i128,
     pub hi: i128,
 }
@@ -15,7 +18,7 @@ pub(crate) struct Interval {
 const MIN: i128 = i64::MIN as i128;
 const MAX: i128 = i64::MAX as i128;
 
-impl Interval {
+impl ValueInterval {
     /// Any whole number.
     pub const ALL: Self = Self { lo: MIN, hi: MAX };
     const NO: Self = Self { lo: 0, hi: 0 };
@@ -147,43 +150,43 @@ impl Interval {
 
 /// The intervals of names: those given, as far as conditions have not left less of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Env<'a> {
-    pub own: &'a [Interval],
-    pub shared: &'a [Interval],
-    pub signals: &'a [Interval],
-    pub locals: Vec<Interval>,
+pub(crate) struct IntervalEnv<'a> {
+    pub own: &'a [ValueInterval],
+    pub shared: &'a [ValueInterval],
+    pub signals: &'a [ValueInterval],
+    pub locals: Vec<ValueInterval>,
     /// What is known to be less; few.
-    pub less: Vec<(Leaf, Interval)>,
+    pub less: Vec<(VariableRef, ValueInterval)>,
     /// Compound expressions that a condition speaks of, with what it leaves of them.
-    terms: Vec<(Expr, Interval)>,
+    terms: Vec<(TypedExpr, ValueInterval)>,
 }
 
-impl<'a> Env<'a> {
-    pub fn new(own: &'a [Interval], shared: &'a [Interval], locals: Vec<Interval>) -> Self {
+impl<'a> IntervalEnv<'a> {
+    pub fn new(own: &'a [ValueInterval], shared: &'a [ValueInterval], locals: Vec<ValueInterval>) -> Self {
         Self { own, shared, signals: &[], locals, less: Vec::new(), terms: Vec::new() }
     }
 
-    pub fn get(&self, leaf: Leaf) -> Interval {
+    pub fn get(&self, leaf: VariableRef) -> ValueInterval {
         if let Some((_, known)) = self.less.iter().find(|(l, _)| *l == leaf) {
             return *known;
         }
-        let (list, i): (&[Interval], u16) = match leaf {
-            Leaf::Local(i) => (&self.locals, i),
-            Leaf::Own(i) => (self.own, i),
-            Leaf::Shared(i) => (self.shared, i),
-            Leaf::Signal(s) => (self.signals, s.0),
+        let (list, i): (&[ValueInterval], u16) = match leaf {
+            VariableRef::Local(i) => (&self.locals, i),
+            VariableRef::Own(i) => (self.own, i),
+            VariableRef::Shared(i) => (self.shared, i),
+            VariableRef::Signal(s) => (self.signals, s.0),
         };
-        list.get(usize::from(i)).copied().unwrap_or(Interval::ALL)
+        list.get(usize::from(i)).copied().unwrap_or(ValueInterval::ALL)
     }
 
     /// A variable has a new value.
-    pub fn assign(&mut self, leaf: Leaf, to: Interval) {
+    pub fn assign(&mut self, leaf: VariableRef, to: ValueInterval) {
         self.terms.clear();
         self.set(leaf, to);
     }
 
     /// Less is known to be possible of a name.
-    pub fn set(&mut self, leaf: Leaf, to: Interval) {
+    pub fn set(&mut self, leaf: VariableRef, to: ValueInterval) {
         match self.less.iter_mut().find(|(l, _)| *l == leaf) {
             Some(known) => known.1 = to,
             None => self.less.push((leaf, to)),
@@ -198,67 +201,69 @@ impl<'a> Env<'a> {
     }
 
     /// What an expression can be.
-    pub fn eval(&self, e: &Expr) -> Interval {
-        if !matches!(e.ty, Kind::Bool | Kind::Int | Kind::Unknown) {
-            return Interval::ALL;
+    pub fn eval(&self, e: &TypedExpr) -> ValueInterval {
+        if !matches!(e.ty, InferredType::Bool | InferredType::Int | InferredType::Unknown) {
+            return ValueInterval::ALL;
         }
         match &e.kind {
-            ExprKind::Const(value) => Interval::value(*value),
-            ExprKind::Leaf(leaf) => self.get(*leaf),
-            ExprKind::Element(place) => {
+            TypedExprKind::Const(value) => ValueInterval::value(*value),
+            TypedExprKind::Leaf(leaf) => self.get(*leaf),
+            TypedExprKind::Element(place) => {
                 let all = leaves(place).into_iter().map(|l| self.get(l));
-                all.reduce(Interval::join).unwrap_or(Interval::ALL)
+                all.reduce(ValueInterval::join).unwrap_or(ValueInterval::ALL)
             }
-            ExprKind::Apply(_, _, ty) => Interval::of(*ty),
-            ExprKind::Term(_) | ExprKind::Error if e.ty == Kind::Bool => Interval::MAYBE,
-            ExprKind::Term(_) | ExprKind::List(..) | ExprKind::Error => Interval::ALL,
-            ExprKind::Unary(UnaryOp::Neg, a) => self.eval(a).neg(),
-            ExprKind::Unary(UnaryOp::Not, a) => Interval::bool(self.truth(a).map(|b| !b)),
-            ExprKind::Binary(op, a, b) => {
+            TypedExprKind::Apply(_, _, ty) => ValueInterval::of(*ty),
+            TypedExprKind::Term(_) | TypedExprKind::Error if e.ty == InferredType::Bool => {
+                ValueInterval::MAYBE
+            }
+            TypedExprKind::Term(_) | TypedExprKind::List(..) | TypedExprKind::Error => ValueInterval::ALL,
+            TypedExprKind::Unary(UnaryOp::Neg, a) => self.eval(a).neg(),
+            TypedExprKind::Unary(UnaryOp::Not, a) => ValueInterval::bool(self.truth(a).map(|b| !b)),
+            TypedExprKind::Binary(op, a, b) => {
                 let value = self.binary(*op, a, b);
                 let known = self.terms.iter().rev().find(|(t, _)| same(t, e));
                 known.and_then(|(_, k)| k.meet(value)).unwrap_or(value)
             }
-            ExprKind::If(c, a, b) => {
-                let side = |want: bool, e: &Expr| {
+            TypedExprKind::If(c, a, b) => {
+                let side = |want: bool, e: &TypedExpr| {
                     let mut env = self.clone();
                     env.narrow(c, want).then(|| env.eval(e))
                 };
                 match (side(true, a), side(false, b)) {
                     (Some(a), Some(b)) => a.join(b),
                     (Some(one), None) | (None, Some(one)) => one,
-                    (None, None) => Interval::ALL,
+                    (None, None) => ValueInterval::ALL,
                 }
             }
-            ExprKind::Call(f, args) => {
-                let args: Vec<Interval> = args.iter().map(|a| self.eval(a)).collect();
+            TypedExprKind::Call(f, args) => {
+                let args: Vec<ValueInterval> = args.iter().map(|a| self.eval(a)).collect();
                 match (f, args.as_slice()) {
                     (NumberFunction::Abs, [a]) => a.abs(),
-                    (NumberFunction::Min, [a, b]) => Interval { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi) },
-                    (NumberFunction::Max, [a, b]) => Interval { lo: a.lo.max(b.lo), hi: a.hi.max(b.hi) },
+                    (NumberFunction::Min, [a, b]) => ValueInterval { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi) },
+                    (NumberFunction::Max, [a, b]) => ValueInterval { lo: a.lo.max(b.lo), hi: a.hi.max(b.hi) },
                     (
                         NumberFunction::Abs
                         | NumberFunction::Min
                         | NumberFunction::Max
                         | NumberFunction::Norm,
                         _,
-                    ) => Interval::ALL,
+                    ) => ValueInterval::ALL,
                 }
             }
         }
     }
 
-    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Interval {
+    fn binary(&self, op: BinaryOp, a: &TypedExpr, b: &TypedExpr) -> ValueInterval {
         match op {
             BinaryOp::And => match (self.truth(a), self.truth(b)) {
-                (Some(false), _) | (_, Some(false)) => Interval::NO,
-                (Some(true), Some(true)) => Interval::YES,
-                (Some(true) | None, _) => Interval::MAYBE,
+                (Some(false), _) | (_, Some(false)) => ValueInterval::NO,
+                (Some(true), Some(true)) => ValueInterval::YES,
+                (Some(true) | None, _) => ValueInterval::MAYBE,
             },
             BinaryOp::Or => match (self.truth(a), self.truth(b)) {
-                (Some(true), _) | (_, Some(true)) => Interval::YES,
-                (Some(false), Some(false)) => Interval::NO,
-                (Some(false) | None, _) => Interval::MAYBE,
+                (Some(true), _) | (_, Some(true)) => ValueInterval::YES,
+                (Some(false), Some(false)) => ValueInterval::NO,
+                (Some(false) | None, _) => ValueInterval::MAYBE,
             },
             BinaryOp::Add => self.eval(a).add(self.eval(b)),
             BinaryOp::Sub => self.eval(a).sub(self.eval(b)),
@@ -266,8 +271,8 @@ impl<'a> Env<'a> {
             BinaryOp::Div => self.eval(a).div(self.eval(b)),
             BinaryOp::Rem => self.eval(a).rem(self.eval(b)),
             BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
-                if matches!(a.ty, Kind::Float(_)) || matches!(b.ty, Kind::Float(_)) {
-                    return Interval::MAYBE;
+                if matches!(a.ty, InferredType::Float(_)) || matches!(b.ty, InferredType::Float(_)) {
+                    return ValueInterval::MAYBE;
                 }
                 self.eval(a).compare(op, self.eval(b))
             }
@@ -275,23 +280,25 @@ impl<'a> Env<'a> {
     }
 
     /// The truth of a condition, if it is always the same.
-    pub fn truth(&self, e: &Expr) -> Option<bool> {
+    pub fn truth(&self, e: &TypedExpr) -> Option<bool> {
         self.eval(e).truth()
     }
 
     /// Leaves only what agrees with the condition's being `want`; `false`: nothing does.
-    pub fn assume(&mut self, e: &Expr, want: bool) -> bool {
+    pub fn assume(&mut self, e: &TypedExpr, want: bool) -> bool {
         // The second time the first part of a conjunction knows what the others left.
         self.narrow(e, want) && self.narrow(e, want)
     }
 
-    fn narrow(&mut self, e: &Expr, want: bool) -> bool {
+    fn narrow(&mut self, e: &TypedExpr, want: bool) -> bool {
         match (&e.kind, want) {
-            (ExprKind::Unary(UnaryOp::Not, a), _) => self.narrow(a, !want),
-            (ExprKind::Binary(BinaryOp::And, a, b), true) | (ExprKind::Binary(BinaryOp::Or, a, b), false) => {
+            (TypedExprKind::Unary(UnaryOp::Not, a), _) => self.narrow(a, !want),
+            (TypedExprKind::Binary(BinaryOp::And, a, b), true)
+            | (TypedExprKind::Binary(BinaryOp::Or, a, b), false) => {
                 self.narrow(a, want) && self.narrow(b, want)
             }
-            (ExprKind::Binary(BinaryOp::Or, a, b), true) | (ExprKind::Binary(BinaryOp::And, a, b), false) => {
+            (TypedExprKind::Binary(BinaryOp::Or, a, b), true)
+            | (TypedExprKind::Binary(BinaryOp::And, a, b), false) => {
                 let (mut left, mut right) = (self.clone(), self.clone());
                 match (left.narrow(a, want), right.narrow(b, want)) {
                     (true, true) => self.less = left.or(&right).less,
@@ -301,25 +308,25 @@ impl<'a> Env<'a> {
                 }
                 true
             }
-            (ExprKind::Binary(op, a, b), _) => self.narrow_comparison(*op, a, b, want),
+            (TypedExprKind::Binary(op, a, b), _) => self.narrow_comparison(*op, a, b, want),
             (
-                ExprKind::Const(_)
-                | ExprKind::Leaf(_)
-                | ExprKind::Term(_)
-                | ExprKind::Unary(UnaryOp::Neg, _)
-                | ExprKind::If(..)
-                | ExprKind::Call(..)
-                | ExprKind::List(..)
-                | ExprKind::Element(_)
-                | ExprKind::Apply(..)
-                | ExprKind::Error,
+                TypedExprKind::Const(_)
+                | TypedExprKind::Leaf(_)
+                | TypedExprKind::Term(_)
+                | TypedExprKind::Unary(UnaryOp::Neg, _)
+                | TypedExprKind::If(..)
+                | TypedExprKind::Call(..)
+                | TypedExprKind::List(..)
+                | TypedExprKind::Element(_)
+                | TypedExprKind::Apply(..)
+                | TypedExprKind::Error,
                 _,
-            ) => self.leave(e, Interval::bool(Some(want))),
+            ) => self.leave(e, ValueInterval::bool(Some(want))),
         }
     }
 
-    fn narrow_comparison(&mut self, op: BinaryOp, a: &Expr, b: &Expr, want: bool) -> bool {
-        if matches!(a.ty, Kind::Float(_)) || matches!(b.ty, Kind::Float(_)) {
+    fn narrow_comparison(&mut self, op: BinaryOp, a: &TypedExpr, b: &TypedExpr, want: bool) -> bool {
+        if matches!(a.ty, InferredType::Float(_)) || matches!(b.ty, InferredType::Float(_)) {
             return true;
         }
         let op = if want { op } else { negated(op) };
@@ -338,21 +345,23 @@ impl<'a> Env<'a> {
     }
 
     /// Leaves of an expression's variables what makes it lie in an interval, where that is easy to tell.
-    fn leave(&mut self, e: &Expr, into: Interval) -> bool {
+    fn leave(&mut self, e: &TypedExpr, into: ValueInterval) -> bool {
         let Some(into) = self.eval(e).meet(into) else { return false };
         match &e.kind {
-            ExprKind::Leaf(leaf) => {
+            TypedExprKind::Leaf(leaf) => {
                 self.set(*leaf, into);
                 true
             }
-            ExprKind::Unary(UnaryOp::Neg, a) => self.leave(a, Interval { lo: -into.hi, hi: -into.lo }),
-            ExprKind::Binary(op, a, b) => {
+            TypedExprKind::Unary(UnaryOp::Neg, a) => {
+                self.leave(a, ValueInterval { lo: -into.hi, hi: -into.lo })
+            }
+            TypedExprKind::Binary(op, a, b) => {
                 self.terms.push((e.clone(), into));
                 let (x, y) = (self.eval(a), self.eval(b));
                 match op {
                     BinaryOp::Add => self.leave(a, wide_sub(into, y)) && self.leave(b, wide_sub(into, x)),
                     BinaryOp::Sub => {
-                        let sum = Interval { lo: into.lo + y.lo, hi: into.hi + y.hi };
+                        let sum = ValueInterval { lo: into.lo + y.lo, hi: into.hi + y.hi };
                         self.leave(a, sum) && self.leave(b, wide_sub(x, into))
                     }
                     BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => true,
@@ -364,67 +373,69 @@ impl<'a> Env<'a> {
                     | BinaryOp::Ge => true,
                 }
             }
-            ExprKind::Const(_)
-            | ExprKind::Term(_)
-            | ExprKind::Unary(UnaryOp::Not, _)
-            | ExprKind::If(..)
-            | ExprKind::Call(..)
-            | ExprKind::List(..)
-            | ExprKind::Element(_)
-            | ExprKind::Apply(..)
-            | ExprKind::Error => true,
+            TypedExprKind::Const(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Unary(UnaryOp::Not, _)
+            | TypedExprKind::If(..)
+            | TypedExprKind::Call(..)
+            | TypedExprKind::List(..)
+            | TypedExprKind::Element(_)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error => true,
         }
     }
 }
 
 /// Whether two expressions are written alike, wherever they stand.
-pub(super) fn same(a: &Expr, b: &Expr) -> bool {
+pub(super) fn same(a: &TypedExpr, b: &TypedExpr) -> bool {
     match (&a.kind, &b.kind) {
-        (ExprKind::Const(a), ExprKind::Const(b)) => a == b,
-        (ExprKind::Leaf(a), ExprKind::Leaf(b)) => a == b,
-        (ExprKind::Term(a), ExprKind::Term(b)) => a == b,
-        (ExprKind::Unary(f, a), ExprKind::Unary(g, b)) => f == g && same(a, b),
-        (ExprKind::Binary(f, a, b), ExprKind::Binary(g, c, d)) => f == g && same(a, c) && same(b, d),
-        (ExprKind::If(a, b, c), ExprKind::If(d, e, f)) => same(a, d) && same(b, e) && same(c, f),
-        (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
+        (TypedExprKind::Const(a), TypedExprKind::Const(b)) => a == b,
+        (TypedExprKind::Leaf(a), TypedExprKind::Leaf(b)) => a == b,
+        (TypedExprKind::Term(a), TypedExprKind::Term(b)) => a == b,
+        (TypedExprKind::Unary(f, a), TypedExprKind::Unary(g, b)) => f == g && same(a, b),
+        (TypedExprKind::Binary(f, a, b), TypedExprKind::Binary(g, c, d)) => {
+            f == g && same(a, c) && same(b, d)
+        }
+        (TypedExprKind::If(a, b, c), TypedExprKind::If(d, e, f)) => same(a, d) && same(b, e) && same(c, f),
+        (TypedExprKind::Call(f, a), TypedExprKind::Call(g, b)) => {
             f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
         }
         (
-            ExprKind::Const(_)
-            | ExprKind::Leaf(_)
-            | ExprKind::Term(_)
-            | ExprKind::Unary(..)
-            | ExprKind::Binary(..)
-            | ExprKind::If(..)
-            | ExprKind::Call(..)
-            | ExprKind::List(..)
-            | ExprKind::Element(_)
-            | ExprKind::Apply(..)
-            | ExprKind::Error,
+            TypedExprKind::Const(_)
+            | TypedExprKind::Leaf(_)
+            | TypedExprKind::Term(_)
+            | TypedExprKind::Unary(..)
+            | TypedExprKind::Binary(..)
+            | TypedExprKind::If(..)
+            | TypedExprKind::Call(..)
+            | TypedExprKind::List(..)
+            | TypedExprKind::Element(_)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error,
             _,
         ) => false,
     }
 }
 
 /// A difference that is not cut to 64 bits: it is only met with what is.
-fn wide_sub(a: Interval, b: Interval) -> Interval {
-    Interval { lo: a.lo - b.hi, hi: a.hi - b.lo }
+fn wide_sub(a: ValueInterval, b: ValueInterval) -> ValueInterval {
+    ValueInterval { lo: a.lo - b.hi, hi: a.hi - b.lo }
 }
 
-fn below(hi: i128) -> Interval {
-    Interval { lo: MIN - 1, hi }
+fn below(hi: i128) -> ValueInterval {
+    ValueInterval { lo: MIN - 1, hi }
 }
 
-fn above(lo: i128) -> Interval {
-    Interval { lo, hi: MAX + 1 }
+fn above(lo: i128) -> ValueInterval {
+    ValueInterval { lo, hi: MAX + 1 }
 }
 
 /// `x` without the one value that `y` is, if it is an end of `x`.
-fn without(x: Interval, y: Interval) -> Interval {
+fn without(x: ValueInterval, y: ValueInterval) -> ValueInterval {
     if y.lo != y.hi {
         return x;
     }
-    Interval { lo: x.lo + i128::from(x.lo == y.lo), hi: x.hi - i128::from(x.hi == y.lo) }
+    ValueInterval { lo: x.lo + i128::from(x.lo == y.lo), hi: x.hi - i128::from(x.hi == y.lo) }
 }
 
 fn negated(op: BinaryOp) -> BinaryOp {

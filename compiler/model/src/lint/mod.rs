@@ -36,13 +36,13 @@ use std::collections::BTreeSet;
 use hrdsl_source::Diagnostic;
 
 use crate::Scenario;
-use facts::Facts;
+use facts::ScenarioFacts;
 
 /// A rule: reads the scenario and says what it finds.
-type Rule = for<'a> fn(&'a Scenario, &'a Facts<'a>, &mut Vec<Diagnostic>);
+type LintRule = for<'a> fn(&'a Scenario, &'a ScenarioFacts<'a>, &mut Vec<Diagnostic>);
 
 /// All rules, by code.
-const RULES: &[Rule] = &[
+const RULES: &[LintRule] = &[
     unused::check,
     overflow::check,
     events::not_made,
@@ -69,7 +69,7 @@ const RULES: &[Rule] = &[
 /// Looks for what cannot be meant in a scenario that has no errors.
 #[must_use]
 pub fn lint(scenario: &Scenario) -> Vec<Diagnostic> {
-    let facts = Facts::of(scenario);
+    let facts = ScenarioFacts::of(scenario);
     let mut issues = Vec::new();
     for rule in RULES {
         rule(scenario, &facts, &mut issues);

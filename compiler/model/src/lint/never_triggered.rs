@@ -1,11 +1,14 @@
 //! HR0602: a requirement that nothing can ever put to the test.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::facts::Facts;
-use crate::{BinaryOp, Expr, ExprKind, Leaf, NumberFunction, Pattern, Scenario, Term, UnaryOp, Value};
+use super::facts::ScenarioFacts;
+use crate::{
+    BinaryOp, NumberFunction, RequirementPattern, Scenario, SignalTerm, TypedExpr, TypedExprKind, UnaryOp,
+    Value, VariableRef,
+};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
         let why = if facts.in_vain(trigger) {
             let event = trigger.first().and_then(|w| scenario.events.get(usize::from(w.event.0)));
@@ -18,25 +21,25 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
         };
         if let Some((why, help)) = why {
             let message = format!("the requirement `{}` can never be triggered", requirement.name);
-            let issue = Diagnostic::warning(Code::NEVER_TRIGGERED, requirement.text, message);
+            let issue = Diagnostic::warning(DiagnosticCode::NEVER_TRIGGERED, requirement.text, message);
             issues.push(issue.here(why).help(help));
         }
     }
 }
 
 /// Why a condition on the world never says anything, if so.
-fn constant(scenario: &Scenario, pattern: &Pattern) -> Option<(String, &'static str)> {
+fn constant(scenario: &Scenario, pattern: &RequirementPattern) -> Option<(String, &'static str)> {
     match pattern {
-        Pattern::NeverWhile { condition: Some(c), .. } if truth(scenario, c, 0) == Some(false) => {
+        RequirementPattern::NeverWhile { condition: Some(c), .. } if truth(scenario, c, 0) == Some(false) => {
             Some(("the condition is never true".to_owned(), "change the condition"))
         }
-        Pattern::Globally(c) if truth(scenario, c, 0) == Some(true) => {
+        RequirementPattern::Globally(c) if truth(scenario, c, 0) == Some(true) => {
             Some(("the condition is always true".to_owned(), "change the condition"))
         }
-        Pattern::NeverWhile { .. }
-        | Pattern::Globally(_)
-        | Pattern::Causes { .. }
-        | Pattern::Forbids { .. } => None,
+        RequirementPattern::NeverWhile { .. }
+        | RequirementPattern::Globally(_)
+        | RequirementPattern::Causes { .. }
+        | RequirementPattern::Forbids { .. } => None,
     }
 }
 
@@ -44,33 +47,33 @@ fn constant(scenario: &Scenario, pattern: &Pattern) -> Option<(String, &'static 
 const DEPTH: u32 = 8;
 
 /// The signal's own expression.
-fn signal<'a>(scenario: &'a Scenario, leaf: &Leaf, depth: u32) -> Option<&'a Expr> {
+fn signal<'a>(scenario: &'a Scenario, leaf: &VariableRef, depth: u32) -> Option<&'a TypedExpr> {
     match leaf {
-        Leaf::Signal(id) if depth < DEPTH => {
+        VariableRef::Signal(id) if depth < DEPTH => {
             scenario.world.as_ref()?.signals.get(usize::from(id.0)).map(|s| &s.value)
         }
-        Leaf::Signal(_) | Leaf::Local(_) | Leaf::Own(_) | Leaf::Shared(_) => None,
+        VariableRef::Signal(_) | VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_) => None,
     }
 }
 
 /// The truth of a condition on the world, if it is the same in every world.
-fn truth(scenario: &Scenario, e: &Expr, depth: u32) -> Option<bool> {
-    let of = |e: &Expr| truth(scenario, e, depth);
+fn truth(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<bool> {
+    let of = |e: &TypedExpr| truth(scenario, e, depth);
     match &e.kind {
-        ExprKind::Const(Value::Bool(b)) => Some(*b),
-        ExprKind::Leaf(leaf) => truth(scenario, signal(scenario, leaf, depth)?, depth + 1),
-        ExprKind::Unary(UnaryOp::Not, a) => of(a).map(|b| !b),
-        ExprKind::Binary(BinaryOp::And, a, b) => match (of(a), of(b)) {
+        TypedExprKind::Const(Value::Bool(b)) => Some(*b),
+        TypedExprKind::Leaf(leaf) => truth(scenario, signal(scenario, leaf, depth)?, depth + 1),
+        TypedExprKind::Unary(UnaryOp::Not, a) => of(a).map(|b| !b),
+        TypedExprKind::Binary(BinaryOp::And, a, b) => match (of(a), of(b)) {
             (Some(false), _) | (_, Some(false)) => Some(false),
             (Some(true), Some(true)) => Some(true),
             (Some(true) | None, _) => None,
         },
-        ExprKind::Binary(BinaryOp::Or, a, b) => match (of(a), of(b)) {
+        TypedExprKind::Binary(BinaryOp::Or, a, b) => match (of(a), of(b)) {
             (Some(true), _) | (_, Some(true)) => Some(true),
             (Some(false), Some(false)) => Some(false),
             (Some(false) | None, _) => None,
         },
-        ExprKind::Binary(op, a, b) => {
+        TypedExprKind::Binary(op, a, b) => {
             let ((a_lo, a_hi), (b_lo, b_hi)) = (range(scenario, a, depth)?, range(scenario, b, depth)?);
             match op {
                 BinaryOp::Lt => decided(a_hi < b_lo, a_lo >= b_hi),
@@ -83,18 +86,18 @@ fn truth(scenario: &Scenario, e: &Expr, depth: u32) -> Option<bool> {
                 BinaryOp::And | BinaryOp::Or => None,
             }
         }
-        ExprKind::If(c, a, b) => match of(c) {
+        TypedExprKind::If(c, a, b) => match of(c) {
             Some(c) => of(if c { a } else { b }),
             None => of(a).filter(|t| of(b) == Some(*t)),
         },
-        ExprKind::Const(_)
-        | ExprKind::Term(_)
-        | ExprKind::Unary(UnaryOp::Neg, _)
-        | ExprKind::Call(..)
-        | ExprKind::List(..)
-        | ExprKind::Element(_)
-        | ExprKind::Apply(..)
-        | ExprKind::Error => None,
+        TypedExprKind::Const(_)
+        | TypedExprKind::Term(_)
+        | TypedExprKind::Unary(UnaryOp::Neg, _)
+        | TypedExprKind::Call(..)
+        | TypedExprKind::List(..)
+        | TypedExprKind::Element(_)
+        | TypedExprKind::Apply(..)
+        | TypedExprKind::Error => None,
     }
 }
 
@@ -103,28 +106,31 @@ fn decided(yes: bool, no: bool) -> Option<bool> {
 }
 
 /// The numbers that an expression lies between, in every world; infinite ends are ends.
-fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
-    let of = |e: &Expr| range(scenario, e, depth);
+fn range(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<(f64, f64)> {
+    let of = |e: &TypedExpr| range(scenario, e, depth);
     let infinite = f64::INFINITY;
     let (lo, hi) = match &e.kind {
-        ExprKind::Const(value) => value.as_f64().map(|x| (x, x))?,
-        ExprKind::Leaf(leaf) => range(scenario, signal(scenario, leaf, depth)?, depth + 1)?,
-        ExprKind::Term(term) => match term {
-            Term::Distance(..) | Term::Range(..) | Term::Speed(_) | Term::JointSpeed(_) => (0.0, infinite),
-            Term::Angle(..) => (0.0, std::f64::consts::PI),
-            Term::Coordinate(..) => (-infinite, infinite),
-            Term::Visible(..) | Term::Holds(..) | Term::HoldsAny(_) => return None,
+        TypedExprKind::Const(value) => value.as_f64().map(|x| (x, x))?,
+        TypedExprKind::Leaf(leaf) => range(scenario, signal(scenario, leaf, depth)?, depth + 1)?,
+        TypedExprKind::Term(term) => match term {
+            SignalTerm::Distance(..)
+            | SignalTerm::Range(..)
+            | SignalTerm::Speed(_)
+            | SignalTerm::JointSpeed(_) => (0.0, infinite),
+            SignalTerm::Angle(..) => (0.0, std::f64::consts::PI),
+            SignalTerm::Coordinate(..) => (-infinite, infinite),
+            SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => return None,
         },
-        ExprKind::Unary(UnaryOp::Neg, a) => of(a).map(|(lo, hi)| (-hi, -lo))?,
-        ExprKind::Binary(BinaryOp::Add, a, b) => {
+        TypedExprKind::Unary(UnaryOp::Neg, a) => of(a).map(|(lo, hi)| (-hi, -lo))?,
+        TypedExprKind::Binary(BinaryOp::Add, a, b) => {
             let (a, b) = (of(a)?, of(b)?);
             (a.0 + b.0, a.1 + b.1)
         }
-        ExprKind::Binary(BinaryOp::Sub, a, b) => {
+        TypedExprKind::Binary(BinaryOp::Sub, a, b) => {
             let (a, b) = (of(a)?, of(b)?);
             (a.0 - b.1, a.1 - b.0)
         }
-        ExprKind::Binary(BinaryOp::Mul, a, b) => {
+        TypedExprKind::Binary(BinaryOp::Mul, a, b) => {
             let (a, b) = (of(a)?, of(b)?);
             let all = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
             if all.iter().any(|x| x.is_nan()) {
@@ -132,11 +138,11 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
             }
             (all.into_iter().fold(infinite, f64::min), all.into_iter().fold(-infinite, f64::max))
         }
-        ExprKind::If(_, a, b) => {
+        TypedExprKind::If(_, a, b) => {
             let (a, b) = (of(a)?, of(b)?);
             (a.0.min(b.0), a.1.max(b.1))
         }
-        ExprKind::Call(f, args) => {
+        TypedExprKind::Call(f, args) => {
             let args: Option<Vec<(f64, f64)>> = args.iter().map(of).collect();
             match (f, args?.as_slice()) {
                 (NumberFunction::Abs, [(lo, hi)]) if *lo >= 0.0 => (*lo, *hi),
@@ -149,12 +155,12 @@ fn range(scenario: &Scenario, e: &Expr, depth: u32) -> Option<(f64, f64)> {
                 ) => return None,
             }
         }
-        ExprKind::Unary(UnaryOp::Not, _)
-        | ExprKind::Binary(..)
-        | ExprKind::List(..)
-        | ExprKind::Element(_)
-        | ExprKind::Apply(..)
-        | ExprKind::Error => return None,
+        TypedExprKind::Unary(UnaryOp::Not, _)
+        | TypedExprKind::Binary(..)
+        | TypedExprKind::List(..)
+        | TypedExprKind::Element(_)
+        | TypedExprKind::Apply(..)
+        | TypedExprKind::Error => return None,
     };
     (!lo.is_nan() && !hi.is_nan()).then_some((lo, hi))
 }

@@ -5,27 +5,27 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
-    agent_facts::{Adoption, AgentFacts, agents, any_args},
+    agent_facts::{AgentFacts, GoalAdoption, agents, any_args},
     applicable::never_stuck,
     dead_plan::never_runs,
-    facts::Facts,
-    plan_terms::{Term, may_unify, of_args, of_exprs},
+    facts::ScenarioFacts,
+    plan_terms::{PlanTerm, may_unify, of_args, of_exprs},
 };
-use crate::{GoalId, Plan, Scenario, Step, StepKind, TriggerOn};
+use crate::{GoalId, Scenario, TriggerOn, TypedPlan, TypedStep, TypedStepKind};
 
 /// The steps of a goal's plans, or of one other plan, that can fail, and what dies then.
-struct Unhandled<'a> {
-    plan: &'a Plan,
-    steps: Vec<(&'a Step, &'static str)>,
-    roots: Roots<'a>,
+struct UnhandledFailure<'a> {
+    plan: &'a TypedPlan,
+    steps: Vec<(&'a TypedStep, &'static str)>,
+    roots: GoalRoots<'a>,
 }
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
-        let mut all: Vec<Unhandled<'_>> = Vec::new();
+        let mut all: Vec<UnhandledFailure<'_>> = Vec::new();
         let mut by_goal: BTreeMap<GoalId, usize> = BTreeMap::new();
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let found = in_plan(&facts, plan);
@@ -47,8 +47,8 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
     }
 }
 
-fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a Plan) -> Unhandled<'a> {
-    let mut found = Unhandled { plan, steps: Vec::new(), roots: Roots::default() };
+fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a TypedPlan) -> UnhandledFailure<'a> {
+    let mut found = UnhandledFailure { plan, steps: Vec::new(), roots: GoalRoots::default() };
     let (middle, last) = (OnceCell::new(), OnceCell::new());
     for (at, step) in plan.body.iter().enumerate() {
         let lost = is_before_others(plan, at);
@@ -56,7 +56,7 @@ fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a Plan) -> Unhandled<'a> {
         if !roots.plans.is_empty()
             && let Some(why) = can_fail(facts, plan, at)
         {
-            found.join(Unhandled { plan, steps: vec![(step, why)], roots: roots.clone() });
+            found.join(UnhandledFailure { plan, steps: vec![(step, why)], roots: roots.clone() });
         }
     }
     found
@@ -64,13 +64,13 @@ fn in_plan<'a>(facts: &AgentFacts<'a>, plan: &'a Plan) -> Unhandled<'a> {
 
 /// Plans, each once, in the order in which they were found.
 #[derive(Clone, Default)]
-struct Roots<'a> {
-    plans: Vec<&'a Plan>,
+struct GoalRoots<'a> {
+    plans: Vec<&'a TypedPlan>,
     spans: BTreeSet<Span>,
 }
 
-impl<'a> Roots<'a> {
-    fn add(&mut self, plan: &'a Plan) {
+impl<'a> GoalRoots<'a> {
+    fn add(&mut self, plan: &'a TypedPlan) {
         if self.spans.insert(plan.origin) {
             self.plans.push(plan);
         }
@@ -78,61 +78,61 @@ impl<'a> Roots<'a> {
 }
 
 /// The plan has more to do after this step.
-fn is_before_others(plan: &Plan, at: usize) -> bool {
+fn is_before_others(plan: &TypedPlan, at: usize) -> bool {
     at + 1 < plan.body.len()
 }
 
 /// Why a step can fail, if its goal has no failure plan of its own.
-fn can_fail(facts: &AgentFacts<'_>, plan: &Plan, at: usize) -> Option<&'static str> {
+fn can_fail(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> Option<&'static str> {
     match &plan.body[at].kind {
-        StepKind::Await { within: Some(_), .. } => Some("the time may run out"),
-        StepKind::Query(literal) => {
+        TypedStepKind::Await { within: Some(_), .. } => Some("the time may run out"),
+        TypedStepKind::Query(literal) => {
             let belief = literal.belief;
             let answered = facts.plans(TriggerOn::TestAdded(belief)).next().is_some();
             // That nothing adds it has been said.
             let stuck = facts.comes_about(belief) && !answered && !never_stuck(facts, plan, at);
             stuck.then_some("there may be no such fact")
         }
-        StepKind::Achieve { goal, args, within } => {
+        TypedStepKind::Achieve { goal, args, within } => {
             let handled = has_failure_plan(facts, *goal, &of_exprs(args));
             let stuck = !handled && !never_stuck(facts, plan, at);
             let late = (!handled && within.is_some()).then_some("the time may run out");
             stuck.then_some("there may be no plan that fits").or(late)
         }
-        StepKind::Ask { within: Some(_), .. } | StepKind::AskAll { within: Some(_), .. } => {
+        TypedStepKind::Ask { within: Some(_), .. } | TypedStepKind::AskAll { within: Some(_), .. } => {
             Some("the time may run out")
         }
-        StepKind::Ask { within: None, .. } => Some("there may be no answer"),
-        StepKind::AskAll { within: None, .. } | StepKind::Await { within: None, .. } => None,
+        TypedStepKind::Ask { within: None, .. } => Some("there may be no answer"),
+        TypedStepKind::AskAll { within: None, .. } | TypedStepKind::Await { within: None, .. } => None,
         // What may have no answer here is meant to end the plan; steps in blocks are not looked into.
-        StepKind::Do { .. }
-        | StepKind::Spawn { .. }
-        | StepKind::Test(_)
-        | StepKind::Add(_)
-        | StepKind::Remove(_)
-        | StepKind::Replace(_)
-        | StepKind::Abolish(_)
-        | StepKind::Wait { .. }
-        | StepKind::If { .. }
-        | StepKind::While { .. }
-        | StepKind::For { .. }
-        | StepKind::Fork { .. }
-        | StepKind::Send { .. }
-        | StepKind::Print { .. }
-        | StepKind::Control { .. }
-        | StepKind::Fail => None,
+        TypedStepKind::Do { .. }
+        | TypedStepKind::Spawn { .. }
+        | TypedStepKind::Test(_)
+        | TypedStepKind::Add(_)
+        | TypedStepKind::Remove(_)
+        | TypedStepKind::Replace(_)
+        | TypedStepKind::Abolish(_)
+        | TypedStepKind::Wait { .. }
+        | TypedStepKind::If { .. }
+        | TypedStepKind::While { .. }
+        | TypedStepKind::For { .. }
+        | TypedStepKind::Fork { .. }
+        | TypedStepKind::Send { .. }
+        | TypedStepKind::Print { .. }
+        | TypedStepKind::Control { .. }
+        | TypedStepKind::Fail => None,
     }
 }
 
-fn has_failure_plan(facts: &AgentFacts<'_>, goal: GoalId, args: &[Term<'_>]) -> bool {
+fn has_failure_plan(facts: &AgentFacts<'_>, goal: GoalId, args: &[PlanTerm<'_>]) -> bool {
     facts.plans(TriggerOn::GoalFailed(goal)).any(|p| may_unify(args, &of_args(&p.trigger.args), true))
 }
 
 /// The plans at whose end an intention dies if a step of `plan` fails, and with it something that was still to do: where
 /// each plan is at its last step, the intention would end anyhow. The way down is that of the run: only plans selected for
 /// `+!g` look for a failure plan, all others pass the failure on.
-fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
-    let mut roots = Roots::default();
+fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a TypedPlan, lost: bool) -> GoalRoots<'a> {
+    let mut roots = GoalRoots::default();
     let mut seen = BTreeSet::new();
     let mut open = vec![(plan, lost)];
     while let Some((plan, lost)) = open.pop() {
@@ -140,7 +140,7 @@ fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
             continue;
         }
         if !facts.work(1) {
-            return Roots::default();
+            return GoalRoots::default();
         }
         let from = open.len();
         match plan.trigger.on {
@@ -148,9 +148,9 @@ fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
             TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => {
                 for adoption in facts.adoptions(goal) {
                     match adoption {
-                        Adoption::Root if lost => roots.add(plan),
-                        Adoption::Root => {}
-                        Adoption::By(by, at) => open.push((by, lost || is_before_others(by, at))),
+                        GoalAdoption::Root if lost => roots.add(plan),
+                        GoalAdoption::Root => {}
+                        GoalAdoption::By(by, at) => open.push((by, lost || is_before_others(by, at))),
                     }
                 }
             }
@@ -169,8 +169,8 @@ fn dying<'a>(facts: &AgentFacts<'a>, plan: &'a Plan, lost: bool) -> Roots<'a> {
     roots
 }
 
-impl<'a> Unhandled<'a> {
-    fn join(&mut self, other: Unhandled<'a>) {
+impl<'a> UnhandledFailure<'a> {
+    fn join(&mut self, other: UnhandledFailure<'a>) {
         if self.steps.is_empty() {
             self.plan = other.plan;
         }
@@ -182,7 +182,7 @@ impl<'a> Unhandled<'a> {
     fn issue(&self, facts: &AgentFacts<'_>) -> Option<Diagnostic> {
         let ((step, why), more) = self.steps.split_first()?;
         let message = "this can fail, and nothing handles the failure";
-        let mut issue = Diagnostic::warning(Code::NO_FAILURE_PLAN, step.origin, message).here(*why);
+        let mut issue = Diagnostic::warning(DiagnosticCode::NO_FAILURE_PLAN, step.origin, message).here(*why);
         for (step, why) in more {
             issue = issue.label(step.origin, format!("here too: {why}"));
         }
@@ -205,7 +205,7 @@ impl<'a> Unhandled<'a> {
     }
 
     /// Adds what to type.
-    fn with_fix(&self, facts: &AgentFacts<'_>, step: &Step, issue: Diagnostic) -> Diagnostic {
+    fn with_fix(&self, facts: &AgentFacts<'_>, step: &TypedStep, issue: Diagnostic) -> Diagnostic {
         let mut all = [self.plan].into_iter().chain(self.roots.plans.iter().copied());
         let handler = all.find_map(|p| match p.trigger.on {
             TriggerOn::GoalAdded(goal) => Some((shown(facts, goal), p)),
@@ -220,11 +220,11 @@ impl<'a> Unhandled<'a> {
             || "put it into a goal of its own with a plan `-!goal` that says what then".to_owned(),
             |(head, _)| format!("say what then: `plan -!{head} {{ … }}`"),
         );
-        let add = |issue: Diagnostic, head: &str, after: &Plan| {
+        let add = |issue: Diagnostic, head: &str, after: &TypedPlan| {
             let end = Span { start: after.origin.end, ..after.origin };
             issue.fix(format!("add an empty plan `{head}`"), end, format!("\n  plan {head} {{ }}"), false)
         };
-        if let StepKind::Achieve { goal, .. } = step.kind
+        if let TypedStepKind::Achieve { goal, .. } = step.kind
             && let Some(last) = facts.plans(TriggerOn::GoalAdded(goal)).last()
         {
             let head = format!("+!{}", shown(facts, goal));

@@ -2,18 +2,18 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::facts::Facts;
+use super::facts::ScenarioFacts;
 use crate::{
-    BodyId, Motion, Scenario, Shape,
-    world::{Body, Frame, Gripper, Instance, World, sin_cos},
+    BodyId, BodyMotion, BodyShape, Scenario,
+    world::{PartFrame, PartInstance, TypedBody, TypedGripper, TypedWorld, sin_cos},
 };
 
 /// Beyond so many comparisons nothing is said.
 const WORK: usize = 1 << 22;
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     let Some(world) = &scenario.world else { return };
     let straight_down = world.gravity[0] == 0.0 && world.gravity[1] == 0.0 && world.gravity[2] < 0.0;
     if !straight_down {
@@ -21,18 +21,18 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
     }
     let bodies = placed(world);
     let hollow = hollow(world);
-    let loose: Vec<&Placed> = bodies.iter().filter(|b| b.may_fall()).collect();
+    let loose: Vec<&PlacedBody> = bodies.iter().filter(|b| b.may_fall()).collect();
     if loose.len().saturating_mul(bodies.len() + world.grippers.len() + hollow.len()) > WORK {
         return;
     }
-    let furnished = bodies.iter().any(|b| b.body.motion == Motion::Fixed && !b.body.ghost && !b.jointed);
+    let furnished = bodies.iter().any(|b| b.body.motion == BodyMotion::Fixed && !b.body.ghost && !b.jointed);
     for falling in loose {
         let below =
             || bodies.iter().filter(|b| !std::ptr::eq(*b, falling) && b.extent.is_below(&falling.extent));
         if below().any(|b| b.carries(falling)) || world.grippers.iter().any(|g| reaches(world, g, falling)) {
             continue;
         }
-        let vain = below().find(|b| b.body.motion == Motion::Fixed || b.palm);
+        let vain = below().find(|b| b.body.motion == BodyMotion::Fixed || b.palm);
         let hollow = hollow.iter().find(|p| falling.extent.is_above(p.frame.at)).copied();
         // A world of loose bodies alone is one in which nothing is meant to lie anywhere.
         if furnished || vain.is_some() || hollow.is_some() {
@@ -41,9 +41,9 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a Facts<'a>, issues: &mut V
     }
 }
 
-fn finding(body: &Body, vain: Option<&Placed>, hollow: Option<&Instance>) -> Diagnostic {
+fn finding(body: &TypedBody, vain: Option<&PlacedBody>, hollow: Option<&PartInstance>) -> Diagnostic {
     let message = format!("nothing carries `{}`: it falls as soon as a run begins", body.name);
-    let issue = Diagnostic::warning(Code::NOTHING_CARRIES, body.span, message);
+    let issue = Diagnostic::warning(DiagnosticCode::NOTHING_CARRIES, body.span, message);
     match (vain, hollow) {
         (Some(below), _) if below.body.ghost => {
             let name = &below.body.name;
@@ -60,13 +60,13 @@ fn finding(body: &Body, vain: Option<&Placed>, hollow: Option<&Instance>) -> Dia
     }
 }
 
-fn placed(world: &World) -> Vec<Placed<'_>> {
+fn placed(world: &TypedWorld) -> Vec<PlacedBody<'_>> {
     let jointed: BTreeSet<BodyId> = world.joints.iter().flat_map(|j| [j.parent, j.child]).collect();
     let palms: BTreeSet<BodyId> = world.grippers.iter().map(|g| g.palm).collect();
     let bodies = (0..).map(BodyId).zip(&world.bodies);
-    let place = |(id, body)| Placed {
+    let place = |(id, body)| PlacedBody {
         body,
-        extent: Extent::of(body),
+        extent: BodyExtent::of(body),
         jointed: jointed.contains(&id),
         palm: palms.contains(&id),
     };
@@ -74,52 +74,52 @@ fn placed(world: &World) -> Vec<Placed<'_>> {
 }
 
 /// The parts that are put at a place of their own, and have nothing there.
-fn hollow<'a>(world: &'a World) -> Vec<&'a Instance> {
-    let outer = |b: &'a Body| b.name.match_indices('.').map(|(end, _)| &b.name[..end]);
+fn hollow<'a>(world: &'a TypedWorld) -> Vec<&'a PartInstance> {
+    let outer = |b: &'a TypedBody| b.name.match_indices('.').map(|(end, _)| &b.name[..end]);
     let full: BTreeSet<&str> = world.bodies.iter().flat_map(outer).collect();
-    let hollow = |p: &&Instance| p.frame.at != [0.0; 3] && !full.contains(p.name.as_str());
+    let hollow = |p: &&PartInstance| p.frame.at != [0.0; 3] && !full.contains(p.name.as_str());
     world.parts.iter().filter(hollow).collect()
 }
 
 /// Whether the gripper can take hold of it where it is.
-fn reaches(world: &World, gripper: &Gripper, falling: &Placed) -> bool {
+fn reaches(world: &TypedWorld, gripper: &TypedGripper, falling: &PlacedBody) -> bool {
     let Some(palm) = world.bodies.get(usize::from(gripper.palm.0)) else { return true };
     let tool = rotate(palm.frame.yaw, palm.rotation, gripper.tool);
     let at: [f64; 3] = std::array::from_fn(|i| palm.frame.place(palm.position)[i] + tool[i]);
     falling.extent.distance(at) <= gripper.reach
 }
 
-struct Placed<'a> {
-    body: &'a Body,
-    extent: Extent,
+struct PlacedBody<'a> {
+    body: &'a TypedBody,
+    extent: BodyExtent,
     jointed: bool,
     palm: bool,
 }
 
-impl Placed<'_> {
+impl PlacedBody<'_> {
     /// Joints and motors may hold it; a ghost that falls does no harm.
     fn may_fall(&self) -> bool {
-        self.body.motion == Motion::Dynamic && !self.jointed && !self.palm && !self.body.ghost
+        self.body.motion == BodyMotion::Dynamic && !self.jointed && !self.palm && !self.body.ghost
     }
 
-    fn carries(&self, other: &Placed) -> bool {
+    fn carries(&self, other: &PlacedBody) -> bool {
         !(self.body.ghost || self.palm && other.body.graspable)
     }
 }
 
 /// A box along the world's axes around a body at the start.
-struct Extent {
+struct BodyExtent {
     lo: [f64; 3],
     hi: [f64; 3],
 }
 
-impl Extent {
-    fn of(body: &Body) -> Self {
+impl BodyExtent {
+    fn of(body: &TypedBody) -> Self {
         let half = match body.shape {
-            Shape::Box { size } => size.map(|e| e / 2.0),
-            Shape::Sphere { radius } => [radius; 3],
-            Shape::Capsule { radius, length } => [radius, radius, radius + length / 2.0],
-            Shape::Cylinder { radius, length } => [radius, radius, length / 2.0],
+            BodyShape::Box { size } => size.map(|e| e / 2.0),
+            BodyShape::Sphere { radius } => [radius; 3],
+            BodyShape::Capsule { radius, length } => [radius, radius, radius + length / 2.0],
+            BodyShape::Cylinder { radius, length } => [radius, radius, length / 2.0],
         };
         let mut size = [0.0; 3];
         for (axis, half) in half.into_iter().enumerate() {
@@ -136,7 +136,7 @@ impl Extent {
     }
 
     /// Under some of the other, or in it.
-    fn is_below(&self, other: &Extent) -> bool {
+    fn is_below(&self, other: &BodyExtent) -> bool {
         let shared = |i: usize| self.lo[i] <= other.hi[i] && other.lo[i] <= self.hi[i];
         shared(0) && shared(1) && self.lo[2] < other.hi[2]
     }
@@ -158,6 +158,6 @@ fn rotate(yaw: f64, [roll, pitch, own_yaw]: [f64; 3], [x, y, z]: [f64; 3]) -> [f
     let (y, z) = (cos * y - sin * z, sin * y + cos * z);
     let (sin, cos) = sin_cos(pitch);
     let (x, z) = (cos * x + sin * z, cos * z - sin * x);
-    let turn = |v, yaw| Frame { at: [0.0; 3], yaw }.turn(v);
+    let turn = |v, yaw| PartFrame { at: [0.0; 3], yaw }.turn(v);
     turn(turn([x, y, z], own_yaw), yaw)
 }

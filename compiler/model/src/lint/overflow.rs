@@ -1,19 +1,19 @@
 //! HR0209: a value that leaves its range whenever it is worked out. HR0210: one that may.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::{
-    facts::Facts,
-    flow::Flow,
-    interval::{Env, Interval},
+    facts::ScenarioFacts,
+    flow::ValueFlow,
+    interval::{IntervalEnv, ValueInterval},
 };
 use crate::{
-    Agent, Arg, Automaton, Context, Event, EventId, Expr, Leaf, Param, Scenario, Step, StepKind,
-    StimulusStep, Sync, TriggerOn, Type, Update,
+    EventId, Parameter, Scenario, TriggerOn, Type, TypedAgent, TypedAutomaton, TypedContext, TypedEvent,
+    TypedExpr, TypedStep, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, TypedUpdate, VariableRef,
 };
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
-    let mut checker = Checker { scenario, issues };
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
+    let mut checker = OverflowChecker { scenario, issues };
     scenario.events.iter().for_each(|e| checker.stimulus(e));
     scenario.agents.iter().for_each(|a| checker.agent(a));
     for (automaton, flow) in scenario.automata.iter().zip(&facts.flows) {
@@ -22,65 +22,68 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
     checker.rules();
 }
 
-struct Checker<'a> {
+struct OverflowChecker<'a> {
     scenario: &'a Scenario,
     issues: &'a mut Vec<Diagnostic>,
 }
 
-impl<'a> Checker<'a> {
+impl<'a> OverflowChecker<'a> {
     /// Compares a value with the range of what it is for.
-    fn fits(&mut self, env: &Env<'_>, e: &Expr, ty: Type, what: &str) {
+    fn fits(&mut self, env: &IntervalEnv<'_>, e: &TypedExpr, ty: Type, what: &str) {
         let Type::Int { .. } = ty else { return };
         // A constant has been looked at where it was resolved.
         if e.constant().is_some() {
             return;
         }
-        let (value, range) = (env.eval(e), Interval::of(ty));
+        let (value, range) = (env.eval(e), ValueInterval::of(ty));
         if value.within(range) {
             return;
         }
         let (shown, of) = (shown(value), shown(range));
         let issue = if value.meet(range).is_none() {
             let message = format!("this leaves the range of {what}: it is {shown}, and the range {of}");
-            Diagnostic::error(Code::OVERFLOW, e.span, message)
+            Diagnostic::error(DiagnosticCode::OVERFLOW, e.span, message)
         } else if reads_open(env, e) {
             return;
         } else {
             let message =
                 format!("this may leave the range of {what}: it can be {shown}, and the range is {of}");
-            Diagnostic::warning(Code::MAY_OVERFLOW, e.span, message)
+            Diagnostic::warning(DiagnosticCode::MAY_OVERFLOW, e.span, message)
         };
         self.issues.push(issue.help("compare it first, in a condition with `when`, or widen the range"));
     }
 
-    fn args(&mut self, env: &Env<'_>, args: &[Expr], params: &[Param]) {
+    fn args(&mut self, env: &IntervalEnv<'_>, args: &[TypedExpr], params: &[Parameter]) {
         for (arg, param) in args.iter().zip(params) {
             self.fits(env, arg, param.ty, &format!("the parameter `{}`", param.name));
         }
     }
 
-    fn params(&self, event: EventId) -> &'a [Param] {
+    fn params(&self, event: EventId) -> &'a [Parameter] {
         self.scenario.events.get(usize::from(event.0)).map_or(&[], |e| &e.params)
     }
 
     // ── automata ──
 
-    fn automaton(&mut self, automaton: &Automaton, flow: &Flow) {
+    fn automaton(&mut self, automaton: &TypedAutomaton, flow: &ValueFlow) {
         for edge in &automaton.edges {
             let Some(mut env) = flow.taken(edge) else { continue };
             match &edge.sync {
-                Sync::Send { event, args } => self.args(&env, args, self.params(*event)),
-                Sync::Offer { channel, args } => {
+                TypedSync::Send { event, args } => self.args(&env, args, self.params(*event)),
+                TypedSync::Offer { channel, args } => {
                     let channel = self.scenario.channels.get(usize::from(channel.0));
                     for (arg, param) in args.iter().zip(channel.map_or(&[][..], |c| &c.params)) {
                         self.fits(&env, arg, param.ty(), &format!("the parameter `{}`", param.name));
                     }
                 }
-                Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+                TypedSync::Internal
+                | TypedSync::Receive { .. }
+                | TypedSync::Accept { .. }
+                | TypedSync::Join { .. } => {}
             }
             for update in &edge.updates {
                 flow.disturb(&mut env, update);
-                if let Update::Assign { place, value } = update {
+                if let TypedUpdate::Assign { place, value } = update {
                     self.assigned(&env, place.slot, value, automaton);
                 }
                 let Some((leaf, e, range)) = flow.set_by(update) else { continue };
@@ -93,11 +96,17 @@ impl<'a> Checker<'a> {
     }
 
     /// What a variable becomes, or an element that an index chooses; all of an array are of one type.
-    fn assigned(&mut self, env: &Env<'_>, leaf: Leaf, e: &Expr, automaton: &Automaton) {
+    fn assigned(
+        &mut self,
+        env: &IntervalEnv<'_>,
+        leaf: VariableRef,
+        e: &TypedExpr,
+        automaton: &TypedAutomaton,
+    ) {
         let var = match leaf {
-            Leaf::Own(i) => automaton.vars.get(usize::from(i)),
-            Leaf::Shared(i) => self.scenario.shared.get(usize::from(i)),
-            Leaf::Local(_) | Leaf::Signal(_) => None,
+            VariableRef::Own(i) => automaton.vars.get(usize::from(i)),
+            VariableRef::Shared(i) => self.scenario.shared.get(usize::from(i)),
+            VariableRef::Local(_) | VariableRef::Signal(_) => None,
         };
         if let Some(var) = var {
             let name = var.name.split('[').next().unwrap_or(&var.name);
@@ -107,18 +116,18 @@ impl<'a> Checker<'a> {
 
     // ── stimuli and the world ──
 
-    fn stimulus(&mut self, event: &Event) {
+    fn stimulus(&mut self, event: &TypedEvent) {
         let Some(stimulus) = &event.stimulus else { return };
         let types = event.params.iter().map(|p| p.ty).chain(stimulus.samples.iter().map(|s| s.ty));
-        let env = Env::new(&[], &[], types.map(Interval::of).collect());
+        let env = IntervalEnv::new(&[], &[], types.map(ValueInterval::of).collect());
         self.steps(&stimulus.steps, &env);
     }
 
-    fn steps(&mut self, steps: &[StimulusStep], env: &Env<'_>) {
+    fn steps(&mut self, steps: &[TypedStimulusStep], env: &IntervalEnv<'_>) {
         for step in steps {
             match step {
-                StimulusStep::Emit { event, args } => self.args(env, args, self.params(*event)),
-                StimulusStep::If { condition, then, otherwise } => {
+                TypedStimulusStep::Emit { event, args } => self.args(env, args, self.params(*event)),
+                TypedStimulusStep::If { condition, then, otherwise } => {
                     for (steps, want) in [(then, true), (otherwise, false)] {
                         let mut env = env.clone();
                         if env.assume(condition, want) {
@@ -126,16 +135,16 @@ impl<'a> Checker<'a> {
                         }
                     }
                 }
-                StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
+                TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => {}
             }
         }
     }
 
     fn rules(&mut self) {
         let Some(world) = &self.scenario.world else { return };
-        let signals: Vec<Interval> = world.signals.iter().map(|s| Interval::of(s.ty)).collect();
+        let signals: Vec<ValueInterval> = world.signals.iter().map(|s| ValueInterval::of(s.ty)).collect();
         for rule in &world.rules {
-            let mut env = Env::new(&[], &[], Vec::new());
+            let mut env = IntervalEnv::new(&[], &[], Vec::new());
             env.signals = &signals;
             if rule.guard.as_ref().is_none_or(|g| env.assume(g, true)) {
                 self.args(&env, &rule.args, self.params(rule.event));
@@ -145,11 +154,11 @@ impl<'a> Checker<'a> {
 
     // ── agents ──
 
-    fn agent(&mut self, agent: &Agent) {
+    fn agent(&mut self, agent: &TypedAgent) {
         let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for plan in &agent.plans {
-            let mut env = Env::new(&[], &[], vec![Interval::ALL; plan.vars.len()]);
-            let matched: &[Param] = match plan.trigger.on {
+            let mut env = IntervalEnv::new(&[], &[], vec![ValueInterval::ALL; plan.vars.len()]);
+            let matched: &[Parameter] = match plan.trigger.on {
                 TriggerOn::BeliefAdded(b)
                 | TriggerOn::BeliefRemoved(b)
                 | TriggerOn::TestAdded(b)
@@ -165,23 +174,25 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn plan_body(&mut self, agent: &Agent, steps: &[Step], mut env: Env<'_>) {
+    fn plan_body(&mut self, agent: &TypedAgent, steps: &[TypedStep], mut env: IntervalEnv<'_>) {
         let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for step in steps {
             match &step.kind {
-                StepKind::Do { event, args } => self.args(&env, args, self.params(*event)),
-                StepKind::Add(a) | StepKind::Replace(a) => self.args(&env, &a.args, params(a.belief)),
-                StepKind::Query(l) => {
+                TypedStepKind::Do { event, args } => self.args(&env, args, self.params(*event)),
+                TypedStepKind::Add(a) | TypedStepKind::Replace(a) => {
+                    self.args(&env, &a.args, params(a.belief))
+                }
+                TypedStepKind::Query(l) => {
                     if !bind(&mut env, &l.args, params(l.belief)) {
                         return;
                     }
                 }
-                StepKind::Test(condition) => {
+                TypedStepKind::Test(condition) => {
                     if !context(&mut env, condition, agent) {
                         return;
                     }
                 }
-                StepKind::If { condition, then, otherwise } => {
+                TypedStepKind::If { condition, then, otherwise } => {
                     let mut inner = env.clone();
                     if context(&mut inner, condition, agent) {
                         self.plan_body(agent, then, inner);
@@ -189,94 +200,94 @@ impl<'a> Checker<'a> {
                     self.plan_body(agent, otherwise, env.clone());
                     self.forget(step, &mut env);
                 }
-                StepKind::While { condition, body } | StepKind::For { condition, body } => {
+                TypedStepKind::While { condition, body } | TypedStepKind::For { condition, body } => {
                     let mut inner = env.clone();
                     if context(&mut inner, condition, agent) {
                         self.plan_body(agent, body, inner);
                     }
                     self.forget(step, &mut env);
                 }
-                StepKind::Fork { branches, .. } => {
+                TypedStepKind::Fork { branches, .. } => {
                     branches.iter().for_each(|b| self.plan_body(agent, b, env.clone()));
                     self.forget(step, &mut env);
                 }
-                StepKind::Achieve { .. }
-                | StepKind::Spawn { .. }
-                | StepKind::Remove(_)
-                | StepKind::Abolish(_)
-                | StepKind::Await { .. }
-                | StepKind::Wait { .. }
-                | StepKind::Send { .. }
-                | StepKind::Ask { .. }
-                | StepKind::AskAll { .. }
-                | StepKind::Print { .. }
-                | StepKind::Control { .. }
-                | StepKind::Fail => {}
+                TypedStepKind::Achieve { .. }
+                | TypedStepKind::Spawn { .. }
+                | TypedStepKind::Remove(_)
+                | TypedStepKind::Abolish(_)
+                | TypedStepKind::Await { .. }
+                | TypedStepKind::Wait { .. }
+                | TypedStepKind::Send { .. }
+                | TypedStepKind::Ask { .. }
+                | TypedStepKind::AskAll { .. }
+                | TypedStepKind::Print { .. }
+                | TypedStepKind::Control { .. }
+                | TypedStepKind::Fail => {}
             }
         }
     }
 
     /// A name that a block binds may stand for something else afterwards; what was known before is still so.
-    fn forget(&self, block: &Step, env: &mut Env<'_>) {
+    fn forget(&self, block: &TypedStep, env: &mut IntervalEnv<'_>) {
         let mut bound = Vec::new();
         hrdsl_ir::bdi::each_step(std::slice::from_ref(block), &mut |step| {
-            if let StepKind::Query(l) = &step.kind {
+            if let TypedStepKind::Query(l) = &step.kind {
                 bound.extend(super::plan_terms::vars_of(&l.args));
             }
             step.condition().iter().for_each(|c| c.each(&mut |part| bound.extend(part.binds())));
         });
-        env.less.retain(|(leaf, _)| !matches!(leaf, Leaf::Local(i) if bound.contains(i)));
+        env.less.retain(|(leaf, _)| !matches!(leaf, VariableRef::Local(i) if bound.contains(i)));
     }
 }
 
 /// Variables that are matched lie in the ranges of what they are matched with; `false`: that cannot be.
-fn bind(env: &mut Env<'_>, args: &[Arg], params: &[Param]) -> bool {
+fn bind(env: &mut IntervalEnv<'_>, args: &[TypedTerm], params: &[Parameter]) -> bool {
     args.iter().zip(params).all(|(arg, param)| match arg {
-        Arg::Var(i) => {
-            let both = env.get(Leaf::Local(*i)).meet(Interval::of(param.ty));
+        TypedTerm::Var(i) => {
+            let both = env.get(VariableRef::Local(*i)).meet(ValueInterval::of(param.ty));
             both.is_some_and(|both| {
-                env.set(Leaf::Local(*i), both);
+                env.set(VariableRef::Local(*i), both);
                 true
             })
         }
-        Arg::Any | Arg::Expr(_) | Arg::List(..) => true,
+        TypedTerm::Any | TypedTerm::Expr(_) | TypedTerm::List(..) => true,
     })
 }
 
 /// What a context leaves of the variables; `false`: it is never met.
-fn context(env: &mut Env<'_>, c: &Context, agent: &Agent) -> bool {
+fn context(env: &mut IntervalEnv<'_>, c: &TypedContext, agent: &TypedAgent) -> bool {
     match c {
-        Context::True => true,
-        Context::Belief(l) => {
+        TypedContext::True => true,
+        TypedContext::Belief(l) => {
             let params = agent.beliefs.get(usize::from(l.belief.0)).map_or(&[][..], |b| &b.params);
             bind(env, &l.args, params)
         }
-        Context::Test(e) => env.assume(e, true),
-        Context::Not(inner) => match inner.as_ref() {
-            Context::Test(e) => env.assume(e, false),
+        TypedContext::Test(e) => env.assume(e, true),
+        TypedContext::Not(inner) => match inner.as_ref() {
+            TypedContext::Test(e) => env.assume(e, false),
             // A negation binds nothing.
-            Context::True
-            | Context::Belief(..)
-            | Context::Not(_)
-            | Context::And(_)
-            | Context::Or(_)
-            | Context::Unify(..)
-            | Context::Internal(..) => true,
+            TypedContext::True
+            | TypedContext::Belief(..)
+            | TypedContext::Not(_)
+            | TypedContext::And(_)
+            | TypedContext::Or(_)
+            | TypedContext::Unify(..)
+            | TypedContext::Internal(..) => true,
         },
-        Context::Unify(Arg::Var(i), e) => {
+        TypedContext::Unify(TypedTerm::Var(i), e) => {
             let value = env.eval(e);
-            match env.get(Leaf::Local(*i)).meet(value) {
+            match env.get(VariableRef::Local(*i)).meet(value) {
                 Some(both) => {
-                    env.set(Leaf::Local(*i), both);
+                    env.set(VariableRef::Local(*i), both);
                     true
                 }
                 None => false,
             }
         }
-        Context::Unify(..) | Context::Internal(..) => true,
-        Context::And(cs) => cs.iter().all(|c| context(env, c, agent)),
-        Context::Or(cs) => {
-            let mut joined: Option<Env<'_>> = None;
+        TypedContext::Unify(..) | TypedContext::Internal(..) => true,
+        TypedContext::And(cs) => cs.iter().all(|c| context(env, c, agent)),
+        TypedContext::Or(cs) => {
+            let mut joined: Option<IntervalEnv<'_>> = None;
             for c in cs {
                 let mut side = env.clone();
                 if context(&mut side, c, agent) {
@@ -296,12 +307,12 @@ fn context(env: &mut Env<'_>, c: &Context, agent: &Agent) -> bool {
 }
 
 /// Whether an expression reads something without a range.
-fn reads_open(env: &Env<'_>, e: &Expr) -> bool {
+fn reads_open(env: &IntervalEnv<'_>, e: &TypedExpr) -> bool {
     let mut open = false;
     e.each_leaf(&mut |leaf| open |= env.get(leaf).is_open());
     open
 }
 
-fn shown(i: Interval) -> String {
+fn shown(i: ValueInterval) -> String {
     if i.lo == i.hi { i.lo.to_string() } else { format!("{}..{}", i.lo, i.hi) }
 }

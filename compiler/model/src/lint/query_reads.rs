@@ -1,33 +1,35 @@
 //! The variables and clocks that queries read: of automata, and shared ones.
 
-use crate::{Ask, ClockId, Expr, Formula, Leaf, Measure, Query, Scenario};
+use crate::{
+    ClockId, Scenario, TypedExpr, TypedFormula, TypedMeasure, TypedQuery, TypedQueryKind, VariableRef,
+};
 
 /// What is read, by index.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Read {
+pub(crate) struct QueryRead {
     pub vars: Vec<bool>,
     pub clocks: Vec<bool>,
 }
 
-impl Read {
+impl QueryRead {
     fn new(vars: usize, clocks: usize) -> Self {
         Self { vars: vec![false; vars], clocks: vec![false; clocks] }
     }
 }
 
 pub(crate) struct QueryReads {
-    pub shared: Read,
+    pub shared: QueryRead,
     /// By automaton: its own.
-    pub automata: Vec<Read>,
+    pub automata: Vec<QueryRead>,
     /// By network: some query is about it.
     pub networks: Vec<bool>,
 }
 
 impl QueryReads {
     pub fn of(scenario: &Scenario) -> Self {
-        let automata = scenario.automata.iter().map(|a| Read::new(a.vars.len(), a.clocks.len()));
+        let automata = scenario.automata.iter().map(|a| QueryRead::new(a.vars.len(), a.clocks.len()));
         let mut reads = Self {
-            shared: Read::new(scenario.shared.len(), scenario.clocks.len()),
+            shared: QueryRead::new(scenario.shared.len(), scenario.clocks.len()),
             automata: automata.collect(),
             networks: vec![false; scenario.networks.len()],
         };
@@ -37,25 +39,28 @@ impl QueryReads {
         reads
     }
 
-    fn query(&mut self, scenario: &Scenario, query: &Query) {
+    fn query(&mut self, scenario: &Scenario, query: &TypedQuery) {
         let at = usize::from(query.network.0);
         let Some(network) = scenario.networks.get(at) else { return };
         self.networks[at] = true;
         let automata: Vec<usize> = network.automata.iter().map(|a| usize::from(a.0)).collect();
-        let mut reader = Reader { automata: &automata, reads: self };
+        let mut reader = QueryReader { automata: &automata, reads: self };
         match &query.ask {
-            Ask::Possibly(f) | Ask::Invariantly(f) | Ask::PotentiallyAlways(f) | Ask::Eventually(f) => {
+            TypedQueryKind::Possibly(f)
+            | TypedQueryKind::Invariantly(f)
+            | TypedQueryKind::PotentiallyAlways(f)
+            | TypedQueryKind::Eventually(f) => {
                 reader.formula(f);
             }
-            Ask::LeadsTo(f, g) => {
+            TypedQueryKind::LeadsTo(f, g) => {
                 reader.formula(f);
                 reader.formula(g);
             }
-            Ask::Sup { of, when } | Ask::Inf { of, when } => {
+            TypedQueryKind::Sup { of, when } | TypedQueryKind::Inf { of, when } => {
                 reader.formula(when);
                 of.iter().for_each(|m| match m {
-                    Measure::Clock(clock) => reader.clock(*clock),
-                    Measure::Data(e) => reader.data(e),
+                    TypedMeasure::Clock(clock) => reader.clock(*clock),
+                    TypedMeasure::Data(e) => reader.data(e),
                 });
             }
         }
@@ -63,34 +68,36 @@ impl QueryReads {
 }
 
 /// A query counts the variables and clocks of its automata on, in the network's order; shared clocks come first.
-struct Reader<'a> {
+struct QueryReader<'a> {
     automata: &'a [usize],
     reads: &'a mut QueryReads,
 }
 
-impl Reader<'_> {
-    fn formula(&mut self, formula: &Formula) {
+impl QueryReader<'_> {
+    fn formula(&mut self, formula: &TypedFormula) {
         match formula {
-            Formula::Data(e) => self.data(e),
-            Formula::Clock(bound) => {
+            TypedFormula::Data(e) => self.data(e),
+            TypedFormula::Clock(bound) => {
                 [Some(bound.clock), bound.minus].into_iter().flatten().for_each(|c| self.clock(c));
                 bound.bound.terms.iter().for_each(|t| self.data(&t.value));
             }
-            Formula::Not(f) => self.formula(f),
-            Formula::And(fs) | Formula::Or(fs) => fs.iter().for_each(|f| self.formula(f)),
-            Formula::At { .. } | Formula::Deadlock => {}
+            TypedFormula::Not(f) => self.formula(f),
+            TypedFormula::And(fs) | TypedFormula::Or(fs) => fs.iter().for_each(|f| self.formula(f)),
+            TypedFormula::At { .. } | TypedFormula::Deadlock => {}
         }
     }
 
-    fn data(&mut self, e: &Expr) {
+    fn data(&mut self, e: &TypedExpr) {
         e.each_leaf(&mut |leaf| match leaf {
-            Leaf::Own(i) => mark(self.automata, &mut self.reads.automata, usize::from(i), |r| &mut r.vars),
-            Leaf::Shared(i) => {
+            VariableRef::Own(i) => {
+                mark(self.automata, &mut self.reads.automata, usize::from(i), |r| &mut r.vars)
+            }
+            VariableRef::Shared(i) => {
                 if let Some(read) = self.reads.shared.vars.get_mut(usize::from(i)) {
                     *read = true;
                 }
             }
-            Leaf::Local(_) | Leaf::Signal(_) => {}
+            VariableRef::Local(_) | VariableRef::Signal(_) => {}
         });
     }
 
@@ -106,9 +113,9 @@ impl Reader<'_> {
 /// Marks what is at this place when those of the automata are put one after the other.
 fn mark(
     automata: &[usize],
-    reads: &mut [Read],
+    reads: &mut [QueryRead],
     mut at: usize,
-    of: impl for<'r> Fn(&'r mut Read) -> &'r mut Vec<bool>,
+    of: impl for<'r> Fn(&'r mut QueryRead) -> &'r mut Vec<bool>,
 ) {
     for automaton in automata {
         let Some(read) = reads.get_mut(*automaton) else { return };

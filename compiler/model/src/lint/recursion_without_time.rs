@@ -2,15 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
     agent_facts::{AgentFacts, agents, all_steps, change},
     dead_plan::never_runs,
-    facts::Facts,
-    plan_terms::{Term, of_args, of_exprs, same_value},
+    facts::ScenarioFacts,
+    plan_terms::{PlanTerm, of_args, of_exprs, same_value},
 };
-use crate::{Arg, Context, GoalId, Internal, Plan, Scenario, Step, StepKind, TriggerOn, Value};
+use crate::{
+    GoalId, Scenario, TriggerOn, TypedContext, TypedInternalAct, TypedPlan, TypedStep, TypedStepKind,
+    TypedTerm, Value,
+};
 
 /// Longer ways back are not looked for.
 const DEEP: usize = 8;
@@ -21,7 +24,7 @@ const FAR: usize = 400;
 /// So many adoptions are followed in one agent.
 const MANY: usize = 20_000;
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let endless = all_steps(&plan.body).into_iter().filter(|step| is_endless(&facts, step));
@@ -32,11 +35,12 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
             if let TriggerOn::GoalAdded(goal) = start.trigger.on
                 && !never_runs(&facts, start)
             {
-                let args: Vec<Passed> = start.trigger.args.iter().enumerate().map(Passed::at_start).collect();
+                let args: Vec<PassedTime> =
+                    start.trigger.args.iter().enumerate().map(PassedTime::at_start).collect();
                 let (left, progress, said) = (&mut left, &mut progress, &mut said);
                 let way = Vec::new();
                 let mut search =
-                    Search { facts, start, goal, args: &args, way, left, progress, said, issues };
+                    RecursionSearch { facts, start, goal, args: &args, way, left, progress, said, issues };
                 search.from(start, &args);
             }
         }
@@ -45,7 +49,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut
 
 /// What a goal's argument is, in terms of those at the start of the cycle.
 #[derive(Clone, Debug, PartialEq)]
-enum Passed {
+enum PassedTime {
     /// The argument with this number.
     Same(usize),
     Const(Value),
@@ -53,30 +57,30 @@ enum Passed {
     New,
 }
 
-impl Passed {
-    fn at_start((i, arg): (usize, &Arg)) -> Self {
-        match Term::of_arg(arg) {
-            Term::Const(value) => Passed::Const(value),
-            Term::Any | Term::Var(_) | Term::Other(_) | Term::Part => Passed::Same(i),
+impl PassedTime {
+    fn at_start((i, arg): (usize, &TypedTerm)) -> Self {
+        match PlanTerm::of_arg(arg) {
+            PlanTerm::Const(value) => PassedTime::Const(value),
+            PlanTerm::Any | PlanTerm::Var(_) | PlanTerm::Other(_) | PlanTerm::Part => PassedTime::Same(i),
         }
     }
 
-    fn may_match(&self, term: Term<'_>) -> bool {
+    fn may_match(&self, term: PlanTerm<'_>) -> bool {
         match (self, term) {
-            (Passed::Const(a), Term::Const(b)) => same_value(*a, b),
-            (Passed::Same(_) | Passed::Const(_) | Passed::New, _) => true,
+            (PassedTime::Const(a), PlanTerm::Const(b)) => same_value(*a, b),
+            (PassedTime::Same(_) | PassedTime::Const(_) | PassedTime::New, _) => true,
         }
     }
 }
 
-struct Search<'a, 'i> {
+struct RecursionSearch<'a, 'i> {
     facts: AgentFacts<'a>,
     /// The first plan of the cycle in the text: so each cycle is found once.
-    start: &'a Plan,
+    start: &'a TypedPlan,
     goal: GoalId,
-    args: &'i [Passed],
+    args: &'i [PassedTime],
     /// The plans and adoptions on the way.
-    way: Vec<(&'a Plan, Span)>,
+    way: Vec<(&'a TypedPlan, Span)>,
     /// How many adoptions are still followed.
     left: &'i mut usize,
     /// By goal: whether its plans let time pass or change a belief.
@@ -86,17 +90,18 @@ struct Search<'a, 'i> {
     issues: &'i mut Vec<Diagnostic>,
 }
 
-impl<'a> Search<'a, '_> {
+impl<'a> RecursionSearch<'a, '_> {
     /// Follows the adoptions of a plan that are reached at the same instant with the same beliefs.
-    fn from(&mut self, plan: &'a Plan, passed: &[Passed]) {
+    fn from(&mut self, plan: &'a TypedPlan, passed: &[PassedTime]) {
         self.follow(plan, passed, &plan.body);
     }
 
     /// Whether something may change on the way through the steps.
-    fn follow(&mut self, plan: &'a Plan, passed: &[Passed], steps: &'a [Step]) -> bool {
+    fn follow(&mut self, plan: &'a TypedPlan, passed: &[PassedTime], steps: &'a [TypedStep]) -> bool {
         for step in steps {
-            if let StepKind::Achieve { goal, args, within: _ } = &step.kind {
-                let args: Vec<Passed> = of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
+            if let TypedStepKind::Achieve { goal, args, within: _ } = &step.kind {
+                let args: Vec<PassedTime> =
+                    of_exprs(args).into_iter().map(|t| given(plan, passed, t)).collect();
                 self.way.push((plan, step.origin));
                 self.adopted(*goal, &args, step.origin);
                 self.way.pop();
@@ -111,8 +116,8 @@ impl<'a> Search<'a, '_> {
         false
     }
 
-    fn progresses(&mut self, step: &Step) -> bool {
-        let StepKind::Achieve { goal, .. } = &step.kind else {
+    fn progresses(&mut self, step: &TypedStep) -> bool {
+        let TypedStepKind::Achieve { goal, .. } = &step.kind else {
             return progresses(&self.facts, step, &mut BTreeSet::new());
         };
         if let Some(known) = self.progress.get(goal) {
@@ -123,7 +128,7 @@ impl<'a> Search<'a, '_> {
         found
     }
 
-    fn adopted(&mut self, goal: GoalId, args: &[Passed], span: Span) {
+    fn adopted(&mut self, goal: GoalId, args: &[PassedTime], span: Span) {
         if goal == self.goal && args == self.args {
             let issue = self.issue(span);
             if self.said.insert(issue.labels.iter().map(|l| l.span).collect()) {
@@ -149,7 +154,7 @@ impl<'a> Search<'a, '_> {
     fn issue(&self, span: Span) -> Diagnostic {
         let name = self.facts.goal(self.goal);
         let message = format!("the goal `!{name}` comes back to itself, and no time passes");
-        let mut issue = Diagnostic::warning(Code::NO_TIME_PASSES, span, message)
+        let mut issue = Diagnostic::warning(DiagnosticCode::NO_TIME_PASSES, span, message)
             .here("adopted again, at the same instant and with nothing changed");
         issue = issue.label(self.start.trigger.origin, "the cycle begins here");
         for (_, through) in self.way.iter().filter(|(_, at)| *at != span) {
@@ -162,53 +167,53 @@ impl<'a> Search<'a, '_> {
 }
 
 /// A `while` whose body does nothing that could change the answer of its condition, nor fails.
-fn is_endless(facts: &AgentFacts<'_>, step: &Step) -> bool {
-    let StepKind::While { condition, body } = &step.kind else { return false };
-    let quiet = |step: &&Step| match &step.kind {
-        StepKind::Print { .. } => true,
-        StepKind::Do { .. }
-        | StepKind::If { .. }
-        | StepKind::For { .. }
-        | StepKind::Fork { .. }
-        | StepKind::While { .. } => !progresses(facts, step, &mut BTreeSet::new()),
-        StepKind::Achieve { .. }
-        | StepKind::Spawn { .. }
-        | StepKind::Query(_)
-        | StepKind::Test(_)
-        | StepKind::Add(_)
-        | StepKind::Remove(_)
-        | StepKind::Replace(_)
-        | StepKind::Abolish(_)
-        | StepKind::Await { .. }
-        | StepKind::Wait { .. }
-        | StepKind::Send { .. }
-        | StepKind::Ask { .. }
-        | StepKind::AskAll { .. }
-        | StepKind::Control { .. }
-        | StepKind::Fail => false,
+fn is_endless(facts: &AgentFacts<'_>, step: &TypedStep) -> bool {
+    let TypedStepKind::While { condition, body } = &step.kind else { return false };
+    let quiet = |step: &&TypedStep| match &step.kind {
+        TypedStepKind::Print { .. } => true,
+        TypedStepKind::Do { .. }
+        | TypedStepKind::If { .. }
+        | TypedStepKind::For { .. }
+        | TypedStepKind::Fork { .. }
+        | TypedStepKind::While { .. } => !progresses(facts, step, &mut BTreeSet::new()),
+        TypedStepKind::Achieve { .. }
+        | TypedStepKind::Spawn { .. }
+        | TypedStepKind::Query(_)
+        | TypedStepKind::Test(_)
+        | TypedStepKind::Add(_)
+        | TypedStepKind::Remove(_)
+        | TypedStepKind::Replace(_)
+        | TypedStepKind::Abolish(_)
+        | TypedStepKind::Await { .. }
+        | TypedStepKind::Wait { .. }
+        | TypedStepKind::Send { .. }
+        | TypedStepKind::Ask { .. }
+        | TypedStepKind::AskAll { .. }
+        | TypedStepKind::Control { .. }
+        | TypedStepKind::Fail => false,
     };
     !draws(condition) && all_steps(body).iter().all(quiet)
 }
 
 fn endless_loop(span: Span) -> Diagnostic {
     let message = "this loop never ends once it has begun, and no time passes";
-    Diagnostic::warning(Code::NO_TIME_PASSES, span, message)
+    Diagnostic::warning(DiagnosticCode::NO_TIME_PASSES, span, message)
         .here("nothing in it changes what its condition asks")
         .help("let the body change a belief, or let time pass: a stimulus, an `await`, a `wait`")
 }
 
 /// Whether a formula's answer may be another one each time.
-fn draws(condition: &Context) -> bool {
+fn draws(condition: &TypedContext) -> bool {
     let mut draws = false;
     condition.each(&mut |part| {
-        if let Context::Internal(action, _) = part {
+        if let TypedContext::Internal(action, _) = part {
             draws |= matches!(
                 **action,
-                Internal::Random { .. }
-                    | Internal::Shuffle { .. }
-                    | Internal::Intend { .. }
-                    | Internal::Desire { .. }
-                    | Internal::Suspended { .. }
+                TypedInternalAct::Random { .. }
+                    | TypedInternalAct::Shuffle { .. }
+                    | TypedInternalAct::Intend { .. }
+                    | TypedInternalAct::Desire { .. }
+                    | TypedInternalAct::Suspended { .. }
             );
         }
     });
@@ -216,43 +221,49 @@ fn draws(condition: &Context) -> bool {
 }
 
 /// What an argument of an adoption is, in a plan whose goal has these arguments.
-fn given(plan: &Plan, passed: &[Passed], term: Term<'_>) -> Passed {
+fn given(plan: &TypedPlan, passed: &[PassedTime], term: PlanTerm<'_>) -> PassedTime {
     match term {
-        Term::Const(value) => Passed::Const(value),
-        Term::Var(var) => {
-            let at = plan.trigger.args.iter().position(|arg| *arg == Arg::Var(var));
-            at.and_then(|at| passed.get(at)).cloned().unwrap_or(Passed::New)
+        PlanTerm::Const(value) => PassedTime::Const(value),
+        PlanTerm::Var(var) => {
+            let at = plan.trigger.args.iter().position(|arg| *arg == TypedTerm::Var(var));
+            at.and_then(|at| passed.get(at)).cloned().unwrap_or(PassedTime::New)
         }
-        Term::Any | Term::Other(_) | Term::Part => Passed::New,
+        PlanTerm::Any | PlanTerm::Other(_) | PlanTerm::Part => PassedTime::New,
     }
 }
 
 /// Whether time may pass in a step, or a belief change.
-fn progresses(facts: &AgentFacts<'_>, step: &Step, seen: &mut BTreeSet<TriggerOn>) -> bool {
+fn progresses(facts: &AgentFacts<'_>, step: &TypedStep, seen: &mut BTreeSet<TriggerOn>) -> bool {
     let on = match &step.kind {
-        StepKind::Do { event, args: _ } => {
+        TypedStepKind::Do { event, args: _ } => {
             return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
         }
         // A message may be answered by another; what is dropped or suspended may be this goal.
-        StepKind::Await { .. }
-        | StepKind::Wait { .. }
-        | StepKind::Send { .. }
-        | StepKind::Ask { .. }
-        | StepKind::AskAll { .. }
-        | StepKind::Control { .. }
-        | StepKind::Fail => return true,
-        StepKind::Add(..) | StepKind::Remove(..) | StepKind::Replace(..) | StepKind::Abolish(_) => {
+        TypedStepKind::Await { .. }
+        | TypedStepKind::Wait { .. }
+        | TypedStepKind::Send { .. }
+        | TypedStepKind::Ask { .. }
+        | TypedStepKind::AskAll { .. }
+        | TypedStepKind::Control { .. }
+        | TypedStepKind::Fail => return true,
+        TypedStepKind::Add(..)
+        | TypedStepKind::Remove(..)
+        | TypedStepKind::Replace(..)
+        | TypedStepKind::Abolish(_) => {
             return change(step).is_some();
         }
-        StepKind::Spawn { .. } | StepKind::Print { .. } => return false,
+        TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => return false,
         // What is drawn at random may be another thing each time.
-        StepKind::Test(condition) => return draws(condition),
-        StepKind::If { .. } | StepKind::While { .. } | StepKind::For { .. } | StepKind::Fork { .. } => {
+        TypedStepKind::Test(condition) => return draws(condition),
+        TypedStepKind::If { .. }
+        | TypedStepKind::While { .. }
+        | TypedStepKind::For { .. }
+        | TypedStepKind::Fork { .. } => {
             return step.condition().is_some_and(draws)
                 || step.blocks().into_iter().flatten().any(|inner| progresses(facts, inner, seen));
         }
-        StepKind::Achieve { goal, .. } => TriggerOn::GoalAdded(*goal),
-        StepKind::Query(l) => TriggerOn::TestAdded(l.belief),
+        TypedStepKind::Achieve { goal, .. } => TriggerOn::GoalAdded(*goal),
+        TypedStepKind::Query(l) => TriggerOn::TestAdded(l.belief),
     };
     // Where there is that much on the way, something may well change.
     if seen.len() == FAR || !facts.work(1) {

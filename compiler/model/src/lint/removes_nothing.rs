@@ -1,24 +1,24 @@
 //! HR0413: `-b` takes the agent's own source away, of a belief that only others add.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::{
     agent_facts::{AgentFacts, agents, all_steps, any_args},
-    facts::Facts,
+    facts::ScenarioFacts,
 };
-use crate::{Annotation, BeliefId, Scenario, StepKind};
+use crate::{BeliefAnnotation, BeliefId, Scenario, TypedStepKind};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for facts in agents(scenario, all) {
         for step in facts.agent.plans.iter().flat_map(|p| all_steps(&p.body)) {
-            let StepKind::Remove(literal) = &step.kind else { continue };
-            let sourced = literal.annotations.iter().any(|(a, _)| *a == Annotation::Source);
+            let TypedStepKind::Remove(literal) = &step.kind else { continue };
+            let sourced = literal.annotations.iter().any(|(a, _)| *a == BeliefAnnotation::Source);
             if let Some(who) = others(&facts, literal.belief).filter(|_| !sourced) {
                 let belief = facts.belief(literal.belief);
                 let message = format!("this takes nothing away: only {who} the belief `{}`", belief.name);
                 let what = any_args(&belief.name, belief.params.len());
                 issues.push(
-                    Diagnostic::warning(Code::REMOVES_NOTHING, step.origin, message)
+                    Diagnostic::warning(DiagnosticCode::REMOVES_NOTHING, step.origin, message)
                         .here("this takes the source `self` away alone")
                         .help(format!("write `-{what}[source(_)]` for any source")),
                 );

@@ -1,17 +1,23 @@
 //! HR0603: two requirements that no run can meet both.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::{
-    facts::{Facts, Wanted},
+    facts::{ScenarioFacts, WantedFact},
     interval::same,
 };
-use crate::{ArgPattern, BinaryOp, EventPattern, Expr, ExprKind, Pattern, Scenario, UnaryOp};
+use crate::{
+    ArgPattern, BinaryOp, EventPattern, RequirementPattern, Scenario, TypedExpr, TypedExprKind, UnaryOp,
+};
 
 /// Beyond so many pairs nothing is said.
 const PAIRS: usize = 1 << 16;
 
-pub(crate) fn contradicting<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn contradicting<'a>(
+    scenario: &'a Scenario,
+    facts: &'a ScenarioFacts<'a>,
+    issues: &mut Vec<Diagnostic>,
+) {
     let all = &scenario.requirements;
     if all.len().saturating_mul(all.len()) > PAIRS {
         return;
@@ -26,7 +32,7 @@ pub(crate) fn contradicting<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, is
         let Some((earlier, clash)) = clash else { continue };
         let message =
             format!("the requirements `{}` and `{}` contradict each other", earlier.name, later.name);
-        let issue = Diagnostic::warning(Code::CONTRADICTING_REQUIREMENTS, later.text, message);
+        let issue = Diagnostic::warning(DiagnosticCode::CONTRADICTING_REQUIREMENTS, later.text, message);
         let (here, there) = clash.told();
         issues.push(
             issue.here(here).label(earlier.text, there).help("change one of them: no run can meet both"),
@@ -36,49 +42,55 @@ pub(crate) fn contradicting<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, is
 
 /// How two requirements contradict each other.
 #[derive(Clone, Copy)]
-enum Clash {
+enum RequirementClash {
     /// The first wants what the second forbids.
     WantedFirst,
     ForbiddenFirst,
     Conditions,
 }
 
-impl Clash {
+impl RequirementClash {
     /// What is said at the second, and at the first.
     fn told(self) -> (&'static str, &'static str) {
         let (wants, forbids) = ("this wants an event", "this forbids it");
         match self {
-            Clash::WantedFirst => (forbids, wants),
-            Clash::ForbiddenFirst => (wants, forbids),
-            Clash::Conditions => ("never true together with the other", "this condition"),
+            RequirementClash::WantedFirst => (forbids, wants),
+            RequirementClash::ForbiddenFirst => (wants, forbids),
+            RequirementClash::Conditions => ("never true together with the other", "this condition"),
         }
     }
 }
 
-fn clash(facts: &Facts<'_>, first: &Pattern, second: &Pattern) -> Option<Clash> {
-    if let (Pattern::Globally(a), Pattern::Globally(b)) = (first, second) {
-        return exclude(a, b).then_some(Clash::Conditions);
+fn clash(
+    facts: &ScenarioFacts<'_>,
+    first: &RequirementPattern,
+    second: &RequirementPattern,
+) -> Option<RequirementClash> {
+    if let (RequirementPattern::Globally(a), RequirementPattern::Globally(b)) = (first, second) {
+        return exclude(a, b).then_some(RequirementClash::Conditions);
     }
     if forbids(facts, first, second) {
-        return Some(Clash::WantedFirst);
+        return Some(RequirementClash::WantedFirst);
     }
-    forbids(facts, second, first).then_some(Clash::ForbiddenFirst)
+    forbids(facts, second, first).then_some(RequirementClash::ForbiddenFirst)
 }
 
 /// Whether every answer that `wants` asks for is forbidden by `ban` from its trigger on, in whatever run triggers both.
-fn forbids(facts: &Facts<'_>, wants: &Pattern, ban: &Pattern) -> bool {
-    let Pattern::Causes { trigger, response, .. } = wants else { return false };
+fn forbids(facts: &ScenarioFacts<'_>, wants: &RequirementPattern, ban: &RequirementPattern) -> bool {
+    let RequirementPattern::Causes { trigger, response, .. } = wants else { return false };
     match ban {
-        Pattern::NeverWhile { events, condition: None } => covers(events, response),
-        Pattern::Forbids { trigger: from, forbidden, until } => {
+        RequirementPattern::NeverWhile { events, condition: None } => covers(events, response),
+        RequirementPattern::Forbids { trigger: from, forbidden, until } => {
             // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
             let lifts = |p: &&EventPattern| {
-                !facts.in_vain(&[Wanted::of(p)]) && !covers(forbidden, std::slice::from_ref(p))
+                !facts.in_vain(&[WantedFact::of(p)]) && !covers(forbidden, std::slice::from_ref(p))
             };
             let lifted = until.iter().any(|p| lifts(&p));
             !lifted && covers(forbidden, response) && (covers(from, trigger) || covers(trigger, from))
         }
-        Pattern::NeverWhile { .. } | Pattern::Causes { .. } | Pattern::Globally(_) => false,
+        RequirementPattern::NeverWhile { .. }
+        | RequirementPattern::Causes { .. }
+        | RequirementPattern::Globally(_) => false,
     }
 }
 
@@ -93,75 +105,75 @@ fn covers(all: &[EventPattern], some: &[EventPattern]) -> bool {
 // ── conditions ──
 
 /// Whether two conditions that must hold always are never true together.
-fn exclude(a: &Expr, b: &Expr) -> bool {
+fn exclude(a: &TypedExpr, b: &TypedExpr) -> bool {
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     conjuncts(a, &mut ours);
     conjuncts(b, &mut theirs);
     ours.iter().any(|a| theirs.iter().any(|b| opposite(a, b) || opposite(b, a) || apart(a, b)))
 }
 
-fn conjuncts<'a>(e: &'a Expr, all: &mut Vec<&'a Expr>) {
+fn conjuncts<'a>(e: &'a TypedExpr, all: &mut Vec<&'a TypedExpr>) {
     match &e.kind {
-        ExprKind::Binary(BinaryOp::And, a, b) => {
+        TypedExprKind::Binary(BinaryOp::And, a, b) => {
             conjuncts(a, all);
             conjuncts(b, all);
         }
-        ExprKind::Const(_)
-        | ExprKind::Leaf(_)
-        | ExprKind::Term(_)
-        | ExprKind::Unary(..)
-        | ExprKind::Binary(..)
-        | ExprKind::If(..)
-        | ExprKind::Call(..)
-        | ExprKind::List(..)
-        | ExprKind::Element(_)
-        | ExprKind::Apply(..)
-        | ExprKind::Error => all.push(e),
+        TypedExprKind::Const(_)
+        | TypedExprKind::Leaf(_)
+        | TypedExprKind::Term(_)
+        | TypedExprKind::Unary(..)
+        | TypedExprKind::Binary(..)
+        | TypedExprKind::If(..)
+        | TypedExprKind::Call(..)
+        | TypedExprKind::List(..)
+        | TypedExprKind::Element(_)
+        | TypedExprKind::Apply(..)
+        | TypedExprKind::Error => all.push(e),
     }
 }
 
 /// `not a` and `a`.
-fn opposite(a: &Expr, b: &Expr) -> bool {
-    matches!(&a.kind, ExprKind::Unary(UnaryOp::Not, inner) if same(inner, b))
+fn opposite(a: &TypedExpr, b: &TypedExpr) -> bool {
+    matches!(&a.kind, TypedExprKind::Unary(UnaryOp::Not, inner) if same(inner, b))
 }
 
 /// Whether two comparisons of the same value with constants leave it no number.
-fn apart(a: &Expr, b: &Expr) -> bool {
+fn apart(a: &TypedExpr, b: &TypedExpr) -> bool {
     let (Some((x, ours)), Some((y, theirs))) = (bounds(a), bounds(b)) else { return false };
     same(x, y) && (ours.is_below(&theirs) || theirs.is_below(&ours))
 }
 
 /// Numbers between two, each with whether it is left out.
-struct Bounds {
+struct TimeBounds {
     lo: (f64, bool),
     hi: (f64, bool),
 }
 
-impl Bounds {
-    fn is_below(&self, other: &Bounds) -> bool {
+impl TimeBounds {
+    fn is_below(&self, other: &TimeBounds) -> bool {
         let ((hi, open), (lo, other_open)) = (self.hi, other.lo);
         hi < lo || (hi == lo && (open || other_open))
     }
 }
 
 /// `x < 5` as x and its bounds.
-fn bounds(e: &Expr) -> Option<(&Expr, Bounds)> {
-    let ExprKind::Binary(op, a, b) = &e.kind else { return None };
-    let number = |e: &Expr| e.constant().and_then(|v| v.as_f64());
+fn bounds(e: &TypedExpr) -> Option<(&TypedExpr, TimeBounds)> {
+    let TypedExprKind::Binary(op, a, b) = &e.kind else { return None };
+    let number = |e: &TypedExpr| e.constant().and_then(|v| v.as_f64());
     let (x, limit, turned) = match (number(a), number(b)) {
         (None, Some(limit)) => (a, limit, false),
         (Some(limit), None) => (b, limit, true),
         (None, None) | (Some(_), Some(_)) => return None,
     };
     let none = f64::INFINITY;
-    let up_to = |open| Bounds { lo: (-none, false), hi: (limit, open) };
-    let down_to = |open| Bounds { lo: (limit, open), hi: (none, false) };
+    let up_to = |open| TimeBounds { lo: (-none, false), hi: (limit, open) };
+    let down_to = |open| TimeBounds { lo: (limit, open), hi: (none, false) };
     let bounds = match (op, turned) {
         (BinaryOp::Lt, false) | (BinaryOp::Gt, true) => up_to(true),
         (BinaryOp::Le, false) | (BinaryOp::Ge, true) => up_to(false),
         (BinaryOp::Gt, false) | (BinaryOp::Lt, true) => down_to(true),
         (BinaryOp::Ge, false) | (BinaryOp::Le, true) => down_to(false),
-        (BinaryOp::Eq, _) => Bounds { lo: (limit, false), hi: (limit, false) },
+        (BinaryOp::Eq, _) => TimeBounds { lo: (limit, false), hi: (limit, false) },
         (
             BinaryOp::Ne
             | BinaryOp::And

@@ -1,15 +1,18 @@
 //! HR0506: a location whose invariant ends without a way out, so that no run of the model can go on.
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 use hrdsl_syntax::ast::LocationKind;
 
 use super::{
-    facts::Facts,
-    flow::{Flow, clash},
+    facts::ScenarioFacts,
+    flow::{ValueFlow, clash},
 };
-use crate::{Automaton, ClockConstraint, ClockOp, Edge, Location, LocationId, Scenario, Update};
+use crate::{
+    ClockOp, LocationId, Scenario, TypedAutomaton, TypedClockConstraint, TypedEdge, TypedLocation,
+    TypedUpdate,
+};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let (barred, stopping) = (barred(automaton, flow), stopping(automaton, flow));
@@ -21,7 +24,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
             let places = scenario.places.automata.get(index);
             let span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.origin);
             let name = &location.name;
-            let warning = |message: String| Diagnostic::warning(Code::TIME_STOPS, span, message);
+            let warning = |message: String| Diagnostic::warning(DiagnosticCode::TIME_STOPS, span, message);
             if barred[i] {
                 issues.push(
                     warning(format!("the invariant of `{name}` is violated on every path in"))
@@ -46,14 +49,14 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
 
 /// By location: it has an invariant that ends, and no edge that the automaton can take by then. An edge over a channel
 /// counts as one: whether its partner is ready only a search can tell.
-pub(super) fn stopping(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
-    let stops = |(i, location): (usize, &Location)| {
-        let leaves = |e: &Edge| {
+pub(super) fn stopping(automaton: &TypedAutomaton, flow: &ValueFlow) -> Vec<bool> {
+    let stops = |(i, location): (usize, &TypedLocation)| {
+        let leaves = |e: &TypedEdge| {
             let late = e.clock_guard.iter().any(|g| location.invariant.iter().any(|i| clash(g, i)));
             let stays = usize::from(e.to.0) == i && !location.invariant.iter().any(|i| sets(e, i));
             !flow.only_hears(e) && !late && !stays && flow.taken(e).is_some()
         };
-        let ends = |i: &ClockConstraint| {
+        let ends = |i: &TypedClockConstraint| {
             // What other automata may set back need not end.
             i.minus.is_none() && flow.is_own(i) && !matches!(i.op, ClockOp::Ge | ClockOp::Gt)
         };
@@ -64,17 +67,17 @@ pub(super) fn stopping(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
 }
 
 /// Whether an edge would enter its target past the end of the target's invariant.
-pub(super) fn violates(automaton: &Automaton, flow: &Flow, edge: &Edge) -> bool {
-    let invariant: &[ClockConstraint] =
+pub(super) fn violates(automaton: &TypedAutomaton, flow: &ValueFlow, edge: &TypedEdge) -> bool {
+    let invariant: &[TypedClockConstraint] =
         automaton.locations.get(usize::from(edge.to.0)).map_or(&[], |l| &l.invariant);
-    let past = |i: &ClockConstraint| {
+    let past = |i: &TypedClockConstraint| {
         flow.is_own(i) && !sets(edge, i) && edge.clock_guard.iter().any(|g| clash(g, i))
     };
     invariant.iter().any(past)
 }
 
 /// By location: it is not the initial one, and every edge that leads there violates its invariant.
-pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
+pub(super) fn barred(automaton: &TypedAutomaton, flow: &ValueFlow) -> Vec<bool> {
     let mut ways = vec![(false, false); automaton.locations.len()];
     for edge in automaton.edges.iter().filter(|e| e.from != e.to && flow.taken(e).is_some()) {
         if let Some((good, bad)) = ways.get_mut(usize::from(edge.to.0)) {
@@ -90,9 +93,9 @@ pub(super) fn barred(automaton: &Automaton, flow: &Flow) -> Vec<bool> {
 }
 
 /// Whether an edge sets a clock of a bound.
-fn sets(edge: &Edge, bound: &ClockConstraint) -> bool {
+fn sets(edge: &TypedEdge, bound: &TypedClockConstraint) -> bool {
     edge.updates.iter().any(|u| match u {
-        Update::Reset { clock, .. } => bound.clocks().any(|c| c == *clock),
-        Update::Assign { .. } | Update::Call { .. } => false,
+        TypedUpdate::Reset { clock, .. } => bound.clocks().any(|c| c == *clock),
+        TypedUpdate::Assign { .. } | TypedUpdate::Call { .. } => false,
     })
 }

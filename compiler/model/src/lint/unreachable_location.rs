@@ -1,15 +1,15 @@
 //! HR0505: locations and edges of an automaton that nothing ever comes to.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
-    facts::Facts,
-    flow::{Flow, clash},
+    facts::ScenarioFacts,
+    flow::{ValueFlow, clash},
     time_stops::{barred, stopping, violates},
 };
-use crate::{Automaton, AutomatonPlaces, Edge, LocationId, Scenario};
+use crate::{AutomatonPlaces, LocationId, Scenario, TypedAutomaton, TypedEdge};
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for (index, flow) in facts.flows.iter().enumerate() {
         let automaton = &scenario.automata[index];
         let dead = dead_edges(automaton, flow);
@@ -25,9 +25,9 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
 }
 
 /// The edges from reached locations that are never taken, with the reason.
-fn dead_edges(automaton: &Automaton, flow: &Flow) -> Vec<(usize, &'static str)> {
+fn dead_edges(automaton: &TypedAutomaton, flow: &ValueFlow) -> Vec<(usize, &'static str)> {
     let (barred, stopping) = (barred(automaton, flow), stopping(automaton, flow));
-    let dead = |edge: &Edge| {
+    let dead = |edge: &TypedEdge| {
         if !flow.reached(edge.from) {
             return None;
         }
@@ -48,17 +48,17 @@ fn dead_edges(automaton: &Automaton, flow: &Flow) -> Vec<(usize, &'static str)> 
     automaton.edges.iter().enumerate().filter_map(|(i, e)| Some((i, dead(e)?))).collect()
 }
 
-fn never_taken(automaton: &Automaton, edge: &Edge, why: &str) -> Diagnostic {
+fn never_taken(automaton: &TypedAutomaton, edge: &TypedEdge, why: &str) -> Diagnostic {
     let name = |l: LocationId| automaton.locations.get(usize::from(l.0)).map_or("?", |l| l.name.as_str());
     let message = format!("the edge from `{}` to `{}` is never taken", name(edge.from), name(edge.to));
-    Diagnostic::warning(Code::UNREACHABLE_LOCATION, edge.origin, message)
+    Diagnostic::warning(DiagnosticCode::UNREACHABLE_LOCATION, edge.origin, message)
         .here(why)
         .help("change the guard, or delete the edge")
         .fix("delete the edge", edge.origin, "", false)
 }
 
 /// Marks the locations that edges lead to from these, as far as they are not reached.
-fn follow(automaton: &Automaton, flow: &Flow, mut from: Vec<usize>, explained: &mut [bool]) {
+fn follow(automaton: &TypedAutomaton, flow: &ValueFlow, mut from: Vec<usize>, explained: &mut [bool]) {
     while let Some(location) = from.pop() {
         let id = LocationId(u16::try_from(location).unwrap_or(u16::MAX));
         if flow.reached(id) || explained.get(location).copied().unwrap_or(true) {
@@ -71,8 +71,8 @@ fn follow(automaton: &Automaton, flow: &Flow, mut from: Vec<usize>, explained: &
 
 /// Of locations that follow each other the first is named.
 fn locations(
-    automaton: &Automaton,
-    flow: &Flow,
+    automaton: &TypedAutomaton,
+    flow: &ValueFlow,
     places: Option<&AutomatonPlaces>,
     explained: &mut [bool],
     issues: &mut Vec<Diagnostic>,
@@ -92,7 +92,7 @@ fn locations(
             follow(automaton, flow, vec![i], explained);
             let span: Span = places.and_then(|p| p.locations.get(i)).copied().unwrap_or(location.origin);
             let message = format!("no edge leads to `{}` from the initial location", location.name);
-            let issue = Diagnostic::warning(Code::UNREACHABLE_LOCATION, span, message);
+            let issue = Diagnostic::warning(DiagnosticCode::UNREACHABLE_LOCATION, span, message);
             let untouched = flow.out[i].is_empty() && !entered[i];
             issues.push(if untouched {
                 issue.help("add an edge to it, or delete it").fix(

@@ -1,19 +1,20 @@
 //! HR0107: declarations that nothing uses. What suites use is told only if there are suites or tests.
 
-use hrdsl_source::{Code, Diagnostic, FileId, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use super::{
     agent_facts::{all_steps, change},
     events::own_events,
-    facts::Facts,
+    facts::ScenarioFacts,
     query_reads::QueryReads,
 };
 use crate::{
-    ActorId, Agent, Automaton, AutomatonId, Context, Effects, Expr, ExprKind, Leaf, Method, NetworkId,
-    Pattern, Performative, PlayerRef, Role, Scenario, StepKind, Subject, Sync, Time, Update, Var, leaves,
+    ActorId, AutomatonId, AutomatonVar, FunctionEffects, MessageSubject, NetworkId, Performative, PlayerRef,
+    RequirementPattern, Role, Scenario, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind,
+    TypedMethod, TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
 };
 
-pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &mut Vec<Diagnostic>) {
+pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     let mut found = Vec::new();
     vocabulary(scenario, facts, &mut found);
     let queries = QueryReads::of(scenario);
@@ -23,11 +24,11 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a Facts<'a>, issues: &m
     scenario.agents.iter().enumerate().for_each(|(i, a)| beliefs(scenario, i, a, &mut found));
     variables(scenario, &queries, &mut found);
     signals(scenario, &mut found);
-    issues.extend(found.into_iter().filter(|u| u.at.file == FileId(0)).map(Unused::said));
+    issues.extend(found.into_iter().filter(|u| u.at.file == FileId(0)).map(UnusedName::said));
 }
 
 /// A declaration that nothing uses.
-struct Unused<'a> {
+struct UnusedName<'a> {
     noun: &'static str,
     name: &'a str,
     at: Span,
@@ -37,11 +38,11 @@ struct Unused<'a> {
     whole: Option<(Span, bool)>,
 }
 
-impl Unused<'_> {
+impl UnusedName<'_> {
     fn said(self) -> Diagnostic {
         let Self { noun, name, at, lacks, whole } = self;
         let message = format!("{noun} `{name}` is never {lacks}");
-        let issue = Diagnostic::warning(Code::UNUSED, at, message);
+        let issue = Diagnostic::warning(DiagnosticCode::UNUSED, at, message);
         match whole {
             // One of several that are declared together cannot simply go.
             Some((span, _)) if span == at => issue.help("use it, or delete it"),
@@ -53,11 +54,11 @@ impl Unused<'_> {
     }
 }
 
-fn vocabulary<'a>(scenario: &'a Scenario, facts: &Facts, found: &mut Vec<Unused<'a>>) {
+fn vocabulary<'a>(scenario: &'a Scenario, facts: &ScenarioFacts, found: &mut Vec<UnusedName<'a>>) {
     for declared in scenario.declared.iter().filter(|c| !c.used) {
         let whole = Some((declared.span, true));
         let (name, at) = (declared.name.as_str(), declared.place);
-        found.push(Unused { noun: declared.noun, name, at, lacks: "used", whole });
+        found.push(UnusedName { noun: declared.noun, name, at, lacks: "used", whole });
     }
     for (id, event, at) in own_events(scenario) {
         if facts.made(id) || facts.read(id) {
@@ -65,15 +66,21 @@ fn vocabulary<'a>(scenario: &'a Scenario, facts: &Facts, found: &mut Vec<Unused<
         }
         let name = event.name.as_str();
         found.push(if event.stimulus.is_some() {
-            Unused { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.origin, false)) }
+            UnusedName { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.origin, false)) }
         } else {
-            Unused { noun: "the event", name, at, lacks: "made nor taken", whole: Some((event.origin, true)) }
+            UnusedName {
+                noun: "the event",
+                name,
+                at,
+                lacks: "made nor taken",
+                whole: Some((event.origin, true)),
+            }
         });
     }
 }
 
 /// Agents and automata that play in no suite, networks that neither a suite nor a query searches.
-fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unused<'a>>) {
+fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<UnusedName<'a>>) {
     let mut agents = vec![false; scenario.agents.len()];
     let mut automata = vec![false; scenario.automata.len()];
     let mut networks = queries.networks.clone();
@@ -81,12 +88,12 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
         |used: &mut [bool], i: u16| used.iter_mut().skip(usize::from(i)).take(1).for_each(|u| *u = true);
     for suite in &scenario.suites {
         match &suite.method {
-            Method::Agents { players, .. } => players.iter().for_each(|p| match p {
+            TypedMethod::Agents { players, .. } => players.iter().for_each(|p| match p {
                 PlayerRef::Agent(a) => set(&mut agents, a.0),
                 PlayerRef::Automaton(a) => set(&mut automata, a.0),
             }),
-            Method::Search { network: NetworkId(n), .. } => set(&mut networks, *n),
-            Method::Random { .. } => {}
+            TypedMethod::Search { network: NetworkId(n), .. } => set(&mut networks, *n),
+            TypedMethod::Random { .. } => {}
         }
     }
     for AutomatonId(a) in scenario.networks.iter().flat_map(|n| &n.automata) {
@@ -96,17 +103,29 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
     for (i, agent) in scenario.agents.iter().enumerate().filter(|(i, _)| !agents[*i]) {
         let at = places.agents.get(i).map_or(agent.origin, |p| p.name);
         let whole = Some((agent.origin, false));
-        found.push(Unused { noun: "the agent", name: &agent.name, at, lacks: "played in a suite", whole });
+        found.push(UnusedName {
+            noun: "the agent",
+            name: &agent.name,
+            at,
+            lacks: "played in a suite",
+            whole,
+        });
     }
     for (i, automaton) in scenario.automata.iter().enumerate().filter(|(i, _)| !automata[*i]) {
         let at = places.automata.get(i).map_or(automaton.origin, |p| p.name);
         let (name, whole) = (automaton.name.as_str(), Some((automaton.origin, false)));
-        found.push(Unused { noun: "the automaton", name, at, lacks: "played in a suite or network", whole });
+        found.push(UnusedName {
+            noun: "the automaton",
+            name,
+            at,
+            lacks: "played in a suite or network",
+            whole,
+        });
     }
     for (i, network) in scenario.networks.iter().enumerate().filter(|(i, _)| !networks[*i]) {
         let at = places.networks.get(i).copied().unwrap_or(network.origin);
         let whole = Some((network.origin, false));
-        found.push(Unused {
+        found.push(UnusedName {
             noun: "the network",
             name: &network.name,
             at,
@@ -116,7 +135,7 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
     }
 }
 
-fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &mut Vec<Unused<'a>>) {
+fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a TypedAgent, found: &mut Vec<UnusedName<'a>>) {
     let mut read = vec![false; agent.beliefs.len()];
     let mut named = vec![false; agent.beliefs.len()];
     for plan in &agent.plans {
@@ -124,7 +143,7 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
         reads_beliefs(&plan.context, &mut read);
         for step in all_steps(&plan.body) {
             step.condition().iter().for_each(|c| reads_beliefs(c, &mut read));
-            if let StepKind::Query(literal) = &step.kind {
+            if let TypedStepKind::Query(literal) = &step.kind {
                 read[usize::from(literal.belief.0)] = true;
             }
             change(step).iter().for_each(|c| named[usize::from(c.belief().0)] = true);
@@ -143,24 +162,24 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a Agent, found: &m
         }
     }
     for suite in &scenario.suites {
-        let Method::Agents { choose, .. } = &suite.method else { continue };
+        let TypedMethod::Agents { choose, .. } = &suite.method else { continue };
         for choice in choose.iter().filter(|c| usize::from(c.agent.0) == index) {
             named[usize::from(choice.belief.0)] = true;
             choice.condition.iter().for_each(|c| reads_beliefs(&c.context, &mut read));
         }
     }
     let places = scenario.places.agents.get(index);
-    let unread = |(i, b): &(usize, &crate::Belief)| !read[*i] && b.negates.is_none();
+    let unread = |(i, b): &(usize, &crate::BeliefDecl)| !read[*i] && b.negates.is_none();
     for (i, belief) in agent.beliefs.iter().enumerate().filter(unread) {
         let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.origin);
         let whole = (!named[i]).then_some((belief.origin, true));
-        found.push(Unused { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
     }
 }
 
-fn reads_beliefs(context: &Context, read: &mut [bool]) {
+fn reads_beliefs(context: &TypedContext, read: &mut [bool]) {
     context.each(&mut |part| {
-        if let Context::Belief(literal) = part {
+        if let TypedContext::Belief(literal) = part {
             read[usize::from(literal.belief.0)] = true;
         }
     });
@@ -171,7 +190,7 @@ fn of_messages(scenario: &Scenario, index: usize, read: &mut [bool], named: &mut
     let asks =
         |how: Option<Performative>| matches!(how, None | Some(Performative::AskOne | Performative::AskAll));
     for (content, speech) in scenario.contents.iter().zip(&scenario.speech) {
-        if let Some(Some(Subject::Belief(belief))) = content.of.get(index) {
+        if let Some(Some(MessageSubject::Belief(belief))) = content.of.get(index) {
             read[usize::from(belief.0)] |= speech.uses.iter().any(|(how, _)| asks(*how));
             named[usize::from(belief.0)] = true;
         }
@@ -179,12 +198,12 @@ fn of_messages(scenario: &Scenario, index: usize, read: &mut [bool], named: &mut
 }
 
 /// What is read and what is set of some variables.
-struct Uses {
+struct NameUses {
     read: Vec<bool>,
     set: Vec<bool>,
 }
 
-impl Uses {
+impl NameUses {
     fn new(count: usize) -> Self {
         Self { read: vec![false; count], set: vec![false; count] }
     }
@@ -199,28 +218,28 @@ fn or(read: &mut [bool], more: &[bool]) {
 }
 
 /// Marks the variables that an expression reads; `but` is the one it is for.
-fn reads(e: &Expr, own: &mut Uses, shared: &mut Uses, but: Option<Leaf>) {
+fn reads(e: &TypedExpr, own: &mut NameUses, shared: &mut NameUses, but: Option<VariableRef>) {
     e.each_leaf(&mut |leaf| {
         if Some(leaf) == but {
             return;
         }
         match leaf {
-            Leaf::Own(i) => own.read[usize::from(i)] = true,
-            Leaf::Shared(i) => shared.read[usize::from(i)] = true,
-            Leaf::Local(_) | Leaf::Signal(_) => {}
+            VariableRef::Own(i) => own.read[usize::from(i)] = true,
+            VariableRef::Shared(i) => shared.read[usize::from(i)] = true,
+            VariableRef::Local(_) | VariableRef::Signal(_) => {}
         }
     });
 }
 
-fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unused<'a>>) {
-    let mut shared = Uses::read_by(&queries.shared.vars);
-    let owned = |owner: Option<AutomatonId>| -> Vec<&Effects> {
+fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<UnusedName<'a>>) {
+    let mut shared = NameUses::read_by(&queries.shared.vars);
+    let owned = |owner: Option<AutomatonId>| -> Vec<&FunctionEffects> {
         let all = scenario.functions.iter().zip(&scenario.effects);
         all.filter(|(f, _)| f.owner == owner).map(|(_, effects)| effects).collect()
     };
-    in_functions(&owned(None), &mut Uses::new(0), &mut shared);
+    in_functions(&owned(None), &mut NameUses::new(0), &mut shared);
     let first = scenario.clocks.len();
-    let mut shared_clocks = Uses::read_by(&queries.shared.clocks);
+    let mut shared_clocks = NameUses::read_by(&queries.shared.clocks);
     for (index, automaton) in scenario.automata.iter().enumerate() {
         let (mut own, mut clocks) = uses_of(automaton, first, &mut shared);
         or(&mut own.read, &queries.automata[index].vars);
@@ -235,14 +254,14 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
         for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[first + *i]) {
             let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.origin);
             // Several clocks may share a declaration: there is no text that can simply go.
-            found.push(Unused { noun: "the clock", name: clock, at, lacks: "read", whole: None });
+            found.push(UnusedName { noun: "the clock", name: clock, at, lacks: "read", whole: None });
         }
         for i in unread(&automaton.vars, &mut own) {
             let var = &automaton.vars[i];
             let place = places.and_then(|p| p.vars.get(i));
             let at = place.map_or(automaton.origin, |p| p.name);
             let whole = place.filter(|_| !own.set[i]).map(|p| (p.whole, true));
-            found.push(Unused {
+            found.push(UnusedName {
                 noun: "the variable",
                 name: whole_name(&var.name),
                 at,
@@ -257,12 +276,12 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
         let Some(place) = scenario.places.shared.get(i) else { continue };
         let whole = (!shared.set[i]).then_some((place.whole, true));
         let (name, at) = (whole_name(&var.name), place.name);
-        found.push(Unused { noun: "the variable", name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: "the variable", name, at, lacks: "read", whole });
     }
 }
 
 /// Shared clocks; an array of which one is read is read.
-fn unread_clocks<'a>(scenario: &'a Scenario, uses: &Uses, found: &mut Vec<Unused<'a>>) {
+fn unread_clocks<'a>(scenario: &'a Scenario, uses: &NameUses, found: &mut Vec<UnusedName<'a>>) {
     let mut at = 0;
     for places in scenario.places.clocks.chunk_by(|a, b| a == b) {
         let part = at..at + places.len();
@@ -274,7 +293,7 @@ fn unread_clocks<'a>(scenario: &'a Scenario, uses: &Uses, found: &mut Vec<Unused
         let place = places[0];
         let whole = (!uses.set[part].contains(&true)).then_some((place.whole, true));
         let name = whole_name(first);
-        found.push(Unused { noun: "the clock", name, at: place.name, lacks: "read", whole });
+        found.push(UnusedName { noun: "the clock", name, at: place.name, lacks: "read", whole });
     }
 }
 
@@ -284,7 +303,7 @@ fn whole_name(part: &str) -> &str {
 }
 
 /// The first parts of the variables of which no part is read; a part that is set stands for them all.
-fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
+fn unread(vars: &[AutomatonVar], uses: &mut NameUses) -> Vec<usize> {
     let mut first = Vec::new();
     let mut at = 0;
     while at < vars.len() {
@@ -300,22 +319,22 @@ fn unread(vars: &[Var], uses: &mut Uses) -> Vec<usize> {
     first
 }
 
-fn sets(leaf: Leaf, own: &mut Uses, shared: &mut Uses) {
+fn sets(leaf: VariableRef, own: &mut NameUses, shared: &mut NameUses) {
     match leaf {
-        Leaf::Own(i) => own.set[usize::from(i)] = true,
-        Leaf::Shared(i) => shared.set[usize::from(i)] = true,
-        Leaf::Local(_) | Leaf::Signal(_) => {}
+        VariableRef::Own(i) => own.set[usize::from(i)] = true,
+        VariableRef::Shared(i) => shared.set[usize::from(i)] = true,
+        VariableRef::Local(_) | VariableRef::Signal(_) => {}
     }
 }
 
 /// What functions read and assign, whether they are called or not.
-fn in_functions(functions: &[&Effects], own: &mut Uses, shared: &mut Uses) {
+fn in_functions(functions: &[&FunctionEffects], own: &mut NameUses, shared: &mut NameUses) {
     for effects in functions {
         for leaf in &effects.reads {
             match leaf {
-                Leaf::Own(i) => own.read[usize::from(*i)] = true,
-                Leaf::Shared(i) => shared.read[usize::from(*i)] = true,
-                Leaf::Local(_) | Leaf::Signal(_) => {}
+                VariableRef::Own(i) => own.read[usize::from(*i)] = true,
+                VariableRef::Shared(i) => shared.read[usize::from(*i)] = true,
+                VariableRef::Local(_) | VariableRef::Signal(_) => {}
             }
         }
         effects.assigns.iter().for_each(|l| sets(*l, own, shared));
@@ -323,9 +342,9 @@ fn in_functions(functions: &[&Effects], own: &mut Uses, shared: &mut Uses) {
 }
 
 /// The uses of an automaton's own variables, and of all clocks that it sees, the shared ones first.
-fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (Uses, Uses) {
-    let mut own = Uses::new(automaton.vars.len());
-    let mut clocks = Uses::new(shared_clocks + automaton.clocks.len());
+fn uses_of(automaton: &TypedAutomaton, shared_clocks: usize, shared: &mut NameUses) -> (NameUses, NameUses) {
+    let mut own = NameUses::new(automaton.vars.len());
+    let mut clocks = NameUses::new(shared_clocks + automaton.clocks.len());
     let bounds = automaton.locations.iter().flat_map(|l| &l.invariant);
     for bound in bounds.chain(automaton.edges.iter().flat_map(|e| &e.clock_guard)) {
         bound.clocks().for_each(|c| clocks.read[usize::from(c.0)] = true);
@@ -339,22 +358,25 @@ fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (U
             reads(guard, &mut own, shared, None);
         }
         match &edge.sync {
-            Sync::Send { args, .. } | Sync::Offer { args, .. } => {
+            TypedSync::Send { args, .. } | TypedSync::Offer { args, .. } => {
                 args.iter().for_each(|e| reads(e, &mut own, shared, None));
             }
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+            TypedSync::Internal
+            | TypedSync::Receive { .. }
+            | TypedSync::Accept { .. }
+            | TypedSync::Join { .. } => {}
         }
         for update in &edge.updates {
             match update {
-                Update::Assign { place, value } => {
+                TypedUpdate::Assign { place, value } => {
                     // What only its own next value is made of is not read.
                     let itself = place.indices.is_empty().then_some(place.slot);
                     reads(value, &mut own, shared, itself);
                     place.indices.iter().for_each(|i| reads(&i.at, &mut own, shared, None));
                     leaves(place).into_iter().for_each(|l| sets(l, &mut own, shared));
                 }
-                Update::Call { args, .. } => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
-                Update::Reset { clock, from, to } => {
+                TypedUpdate::Call { args, .. } => args.iter().for_each(|e| reads(e, &mut own, shared, None)),
+                TypedUpdate::Reset { clock, from, to } => {
                     clocks.set[usize::from(clock.0)] = true;
                     let other = from.filter(|f| f != clock);
                     other.iter().for_each(|c| clocks.read[usize::from(c.0)] = true);
@@ -366,19 +388,19 @@ fn uses_of(automaton: &Automaton, shared_clocks: usize, shared: &mut Uses) -> (U
     (own, clocks)
 }
 
-fn reads_time(time: &Time, own: &mut Uses, shared: &mut Uses) {
+fn reads_time(time: &TypedTime, own: &mut NameUses, shared: &mut NameUses) {
     time.terms.iter().for_each(|t| reads(&t.value, own, shared, None));
 }
 
 /// Signals that no actor, rule, requirement or other signal reads.
-fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
+fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     let Some(world) = &scenario.world else { return };
     // Only the code of a system actor reads signals by itself.
     let is_code = |a: &ActorId| scenario.actors.get(usize::from(a.0)).is_some_and(|a| a.role == Role::System);
     let mut read: Vec<bool> = world.signals.iter().map(|s| s.to.iter().any(is_code)).collect();
-    let mut mark = |e: &Expr| {
+    let mut mark = |e: &TypedExpr| {
         e.each(&mut |part| {
-            if let ExprKind::Leaf(Leaf::Signal(s)) = part.kind
+            if let TypedExprKind::Leaf(VariableRef::Signal(s)) = part.kind
                 && let Some(read) = read.get_mut(usize::from(s.0))
             {
                 *read = true;
@@ -391,14 +413,14 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<Unused<'a>>) {
     }
     for requirement in &scenario.requirements {
         match &requirement.pattern {
-            Pattern::NeverWhile { condition, .. } => condition.iter().for_each(&mut mark),
-            Pattern::Globally(condition) => mark(condition),
-            Pattern::Causes { .. } | Pattern::Forbids { .. } => {}
+            RequirementPattern::NeverWhile { condition, .. } => condition.iter().for_each(&mut mark),
+            RequirementPattern::Globally(condition) => mark(condition),
+            RequirementPattern::Causes { .. } | RequirementPattern::Forbids { .. } => {}
         }
     }
     for (i, signal) in world.signals.iter().enumerate().filter(|(i, _)| !read[*i]) {
         let at = scenario.places.signals.get(i).copied().unwrap_or(signal.span);
         let whole = Some((signal.span, true));
-        found.push(Unused { noun: "the signal", name: &signal.name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: "the signal", name: &signal.name, at, lacks: "read", whole });
     }
 }

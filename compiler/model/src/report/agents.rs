@@ -1,20 +1,21 @@
 //! HR04xx: agents.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
-use crate::{Kind, nearest::nearest, noun::Noun, report::names::with_nearest};
+use crate::{InferredType, nearest::nearest, noun::Noun, report::names::with_nearest};
 
 /// HR0401: a variable is read before anything gives it a value.
 pub(crate) fn unbound<'a>(name: &str, span: Span, others: impl IntoIterator<Item = &'a str>) -> Diagnostic {
-    let error = Diagnostic::error(Code::UNBOUND_VARIABLE, span, format!("`{name}` never has a value here"))
-        .here("read before the trigger, a belief or a query binds it");
+    let error =
+        Diagnostic::error(DiagnosticCode::UNBOUND_VARIABLE, span, format!("`{name}` never has a value here"))
+            .here("read before the trigger, a belief or a query binds it");
     with_nearest(error, Noun::Variable, name, others)
 }
 
 /// Of a name without a value that may have been meant as a variable: variables begin with a capital letter. Of other names that
 /// are near, only long ones tell what was meant.
 pub(crate) fn small_variable(issue: &mut Diagnostic, name: &str, names: &[String]) {
-    if issue.code != Code::UNKNOWN_NAME {
+    if issue.code != DiagnosticCode::UNKNOWN_NAME {
         return;
     }
     let rule = "variables of agents begin with a capital letter";
@@ -34,13 +35,15 @@ pub(crate) fn not_adopted<'a>(
     span: Span,
     adopted: impl IntoIterator<Item = &'a str>,
 ) -> Diagnostic {
-    let warning = Diagnostic::warning(Code::NOT_ADOPTED, span, format!("nothing adopts the goal `{name}`"));
+    let warning =
+        Diagnostic::warning(DiagnosticCode::NOT_ADOPTED, span, format!("nothing adopts the goal `{name}`"));
     with_nearest(warning, Noun::Goal, name, adopted)
 }
 
 /// HR0402: a goal without a plan.
 pub(crate) fn no_plan<'a>(name: &str, span: Span, goals: impl IntoIterator<Item = &'a str>) -> Diagnostic {
-    let error = Diagnostic::error(Code::NO_PLAN, span, format!("no plan achieves the goal `{name}`"));
+    let error =
+        Diagnostic::error(DiagnosticCode::NO_PLAN, span, format!("no plan achieves the goal `{name}`"));
     with_nearest(error, Noun::Goal, name, goals)
 }
 
@@ -61,32 +64,32 @@ pub(crate) fn only_declared(issue: Diagnostic, written: &str, declared: Span) ->
 /// HR0401: a rule reads an argument that has no value where the belief is asked.
 pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
     let message = format!("the rules for `{name}` need a value for argument {}", index + 1);
-    Diagnostic::error(Code::UNBOUND_VARIABLE, span, message)
+    Diagnostic::error(DiagnosticCode::UNBOUND_VARIABLE, span, message)
         .here("this has none here")
         .help("bind it first, by a belief or with `X = …`")
 }
 
 /// HR0201: a variable that is of one kind on one way, and of another on the other.
-pub(crate) fn two_kinds(name: &str, one: Kind, other: Kind, span: Span) -> Diagnostic {
+pub(crate) fn two_kinds(name: &str, one: InferredType, other: InferredType, span: Span) -> Diagnostic {
     let message = format!("`{name}` is {one} on one path, and {other} on the other");
-    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("use two names")
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message).help("use two names")
 }
 
 /// HR0411: something that is no annotation.
 pub(crate) fn no_annotation(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_PLACE, span, "this is no annotation")
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, "this is no annotation")
         .help("an annotation is a name with one value: `[source(S)]`")
 }
 
 /// HR0411: annotations where there are none.
 pub(crate) fn not_annotated(what: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no annotations"))
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, format!("{what} has no annotations"))
         .help("remove the brackets: beliefs and goals have annotations")
 }
 
 /// HR0411: a strong negation of what is no belief.
 pub(crate) fn not_negated(what: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no strong negation"))
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, format!("{what} has no strong negation"))
         .help("remove the `~`: beliefs alone have one")
 }
 
@@ -98,22 +101,22 @@ pub(crate) fn no_binding(span: Span, in_plan: bool) -> Diagnostic {
     } else {
         "to compare, use `==`"
     };
-    Diagnostic::error(Code::OUT_OF_PLACE, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, message).help(help)
 }
 
 /// HR0411: a formula where a value is needed.
 pub(crate) fn no_formula(what: &str, span: Span, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_PLACE, span, format!("{what} has no value")).help(help)
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, format!("{what} has no value")).help(help)
 }
 
 /// HR0411: an internal action that does something, in a formula.
 pub(crate) fn is_a_step(name: &str, usage: &str, span: Span) -> Diagnostic {
     let message = format!("`.{name}` does something: it is a step, and no part of a formula");
-    Diagnostic::error(Code::OUT_OF_PLACE, span, message)
+    Diagnostic::error(DiagnosticCode::OUT_OF_PLACE, span, message)
         .help(format!("write `{usage}` in the body of a plan"))
 }
 
 /// HR0412
 pub(crate) fn bad_message(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(Code::BAD_MESSAGE, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::BAD_MESSAGE, span, message).help(help)
 }

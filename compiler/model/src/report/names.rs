@@ -1,6 +1,6 @@
 //! HR01xx: names.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use crate::{nearest::nearest, noun::Noun};
 
@@ -11,7 +11,8 @@ pub(crate) fn unknown<'a>(
     span: Span,
     names: impl IntoIterator<Item = &'a str>,
 ) -> Diagnostic {
-    let error = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("no {noun} is called `{text}`"));
+    let error =
+        Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, format!("no {noun} is called `{text}`"));
     with_nearest(error, noun, text, names)
 }
 
@@ -24,7 +25,7 @@ pub(crate) fn wrong_kind<'a>(
     names: impl IntoIterator<Item = &'a str>,
 ) -> Diagnostic {
     let message = format!("`{text}` is {}, not {}", is.with_article(), noun.with_article());
-    with_nearest(Diagnostic::error(Code::WRONG_KIND, span, message), noun, text, names)
+    with_nearest(Diagnostic::error(DiagnosticCode::WRONG_KIND, span, message), noun, text, names)
 }
 
 /// Adds the nearest name as help and as a fix, or all names if none is near and they are few.
@@ -48,7 +49,7 @@ pub(crate) fn with_nearest<'a>(
 /// HR0101: a bare name that several enumerations have.
 pub(crate) fn ambiguous(text: &str, of: &[&str], span: Span) -> Diagnostic {
     let message = format!("`{text}` is a value of several enumerations: `{}`", of.join("`, `"));
-    Diagnostic::error(Code::UNKNOWN_NAME, span, message).help(format!("write `{}.{text}`", of[0]))
+    Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, message).help(format!("write `{}.{text}`", of[0]))
 }
 
 /// Offers another name in place of the one at fault, if its span holds just that name (and no quotes).
@@ -63,7 +64,8 @@ pub(crate) fn replace(error: Diagnostic, text: &str, near: &str) -> Diagnostic {
 /// HR0102: a second declaration.
 pub(crate) fn duplicate(noun: Noun, text: &str, span: Span, first: Option<Span>) -> Diagnostic {
     let message = format!("{} is called `{text}` already", noun.with_article());
-    let error = Diagnostic::error(Code::DUPLICATE_NAME, span, message).help("give one of them another name");
+    let error = Diagnostic::error(DiagnosticCode::DUPLICATE_NAME, span, message)
+        .help("give one of them another name");
     match first {
         Some(first) => error.label(first, "declared here first"),
         None => error,
@@ -72,12 +74,12 @@ pub(crate) fn duplicate(noun: Noun, text: &str, span: Span, first: Option<Span>)
 
 /// HR0102: a second declaration of something that has no name but can be there only once.
 pub(crate) fn twice(what: &str, span: Span, first: Span) -> Diagnostic {
-    Diagnostic::error(Code::DUPLICATE_NAME, span, format!("a second {what}"))
+    Diagnostic::error(DiagnosticCode::DUPLICATE_NAME, span, format!("a second {what}"))
         .label(first, "the first is here")
         .help("put both into one")
 }
 
 /// HR0105: a declaration is missing.
 pub(crate) fn missing(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(Code::MISSING_DECLARATION, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::MISSING_DECLARATION, span, message).help(help)
 }

@@ -1,10 +1,10 @@
 //! HR0520: queries.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 /// HR0520
 pub(crate) fn bad_query(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(Code::BAD_QUERY, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::BAD_QUERY, span, message).help(help)
 }
 
 /// HR0520
@@ -46,6 +46,6 @@ pub(crate) fn not_linear(span: Span) -> Diagnostic {
 
 /// HR0101: a name of an automaton without the automaton's.
 pub(crate) fn bare_member(automaton: &str, name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::UNKNOWN_NAME, span, format!("`{name}` is known in its automaton only"))
+    Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, format!("`{name}` is known in its automaton only"))
         .help(format!("write `{automaton}.{name}`"))
 }

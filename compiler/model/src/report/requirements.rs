@@ -1,9 +1,9 @@
 //! HR06xx: requirements.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 /// HR0601
 pub(crate) fn says_nothing(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::BAD_PATTERN, span, "this condition does not depend on the world")
+    Diagnostic::error(DiagnosticCode::BAD_PATTERN, span, "this condition does not depend on the world")
         .help("compare something measured, such as `distance(a, b) < 5 cm`")
 }

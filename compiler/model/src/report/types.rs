@@ -1,9 +1,9 @@
 //! HR02xx: types, units, constants, arguments, ranges.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use crate::{
-    Dim, EvalError, Expr, Kind, Type, Value,
+    Dimension, EvalError, InferredType, Type, TypedExpr, Value,
     noun::Noun,
     report::names::{replace, with_nearest},
     types::UNITS,
@@ -11,7 +11,11 @@ use crate::{
 
 /// HR0201: something of another shape.
 pub(crate) fn other_shape(want: &str, got: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{want} is needed here, but this is {got}"))
+    Diagnostic::error(
+        DiagnosticCode::TYPE_MISMATCH,
+        span,
+        format!("{want} is needed here, but this is {got}"),
+    )
 }
 
 /// HR0201: several values where one is needed.
@@ -22,14 +26,14 @@ pub(crate) fn several_values(got: &str, span: Span) -> Diagnostic {
 /// HR0201: a goal's argument, of which nothing is known, where something of several parts is needed.
 pub(crate) fn not_known(span: Span) -> Diagnostic {
     let message = "the type of this is not known: the arguments of a goal are single values";
-    Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
         .help("hand over the parts one by one, or keep the whole in a belief")
 }
 
 /// HR0201: a variable that stands for something of another shape already.
 pub(crate) fn other_before(name: &str, want: &str, got: &str, span: Span) -> Diagnostic {
     let message = format!("{want} is needed here, but `{name}` stands for {got} already");
-    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("use another name")
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message).help("use another name")
 }
 
 /// HR0201: `norm` of what is no vector.
@@ -40,28 +44,32 @@ pub(crate) fn not_a_vector(got: &str, span: Span) -> Diagnostic {
 /// HR0206
 pub(crate) fn too_many_parts(size: usize, most: usize, span: Span) -> Diagnostic {
     let message = format!("this has {size} single values, and {most} are the most");
-    Diagnostic::error(Code::OUT_OF_RANGE, span, message).help("declare it in several pieces")
+    Diagnostic::error(DiagnosticCode::OUT_OF_RANGE, span, message).help("declare it in several pieces")
 }
 
 /// HR0201: operands that cannot be combined.
 pub(crate) fn shapes(op: &str, span: Span, left: (&str, Span), right: (&str, Span)) -> Diagnostic {
-    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("`{op}` between {} and {}", left.0, right.0))
-        .label(left.1, format!("this is {}", left.0))
-        .label(right.1, format!("this is {}", right.0))
+    Diagnostic::error(
+        DiagnosticCode::TYPE_MISMATCH,
+        span,
+        format!("`{op}` between {} and {}", left.0, right.0),
+    )
+    .label(left.1, format!("this is {}", left.0))
+    .label(right.1, format!("this is {}", right.0))
 }
 
 /// HR0201
 pub(crate) fn no_elements(message: String, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::TYPE_MISMATCH, span, message).help("only an array is indexed: `a[0]`")
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message).help("only an array is indexed: `a[0]`")
 }
 
 /// HR0206: an index that may lie outside of its array.
-pub(crate) fn bad_index(at: &Expr, last: i64) -> Diagnostic {
+pub(crate) fn bad_index(at: &TypedExpr, last: i64) -> Diagnostic {
     let message = match at.constant() {
         Some(n) => format!("the index {n} is outside of the array, whose last is {last}"),
         None => format!("the index may be outside of the array, whose last is {last}"),
     };
-    Diagnostic::error(Code::OUT_OF_RANGE, at.span, message).help(if at.constant().is_some() {
+    Diagnostic::error(DiagnosticCode::OUT_OF_RANGE, at.span, message).help(if at.constant().is_some() {
         format!("write an index of 0..{last}: the first element is 0")
     } else {
         format!("use a variable of the type `0..{last}`, or limit it: `max(0, min({last}, …))`")
@@ -70,7 +78,7 @@ pub(crate) fn bad_index(at: &Expr, last: i64) -> Diagnostic {
 
 /// HR0202
 pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
-    let error = Diagnostic::error(Code::UNKNOWN_UNIT, span, format!("no unit is called `{text}`"));
+    let error = Diagnostic::error(DiagnosticCode::UNKNOWN_UNIT, span, format!("no unit is called `{text}`"));
     let caret = text.replace("s2", "s^2").replace("cm2", "cm^2");
     if caret != text && UNITS.iter().any(|u| u.symbol == caret) {
         return replace(error.help(format!("did you mean `{caret}`?")), text, &caret);
@@ -85,23 +93,34 @@ pub(crate) fn unknown_unit(text: &str, span: Span) -> Diagnostic {
 }
 
 /// HR0201, HR0203 or the bare number: `want` is needed and `got` is there.
-pub(crate) fn mismatch(want: Kind, got: Kind, value: Option<Value>, span: Span) -> Diagnostic {
+pub(crate) fn mismatch(
+    want: InferredType,
+    got: InferredType,
+    value: Option<Value>,
+    span: Span,
+) -> Diagnostic {
     let message = format!("{want} is needed here, but this is {got}");
     match (want, got.dim()) {
-        (Kind::Float(dim), Some(_)) if got.is_bare() => bare_number(dim, value, span),
-        (Kind::Float(_), Some(_)) => Diagnostic::error(Code::UNIT_MISMATCH, span, message),
-        (Kind::Enum(of), _) => Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+        (InferredType::Float(dim), Some(_)) if got.is_bare() => bare_number(dim, value, span),
+        (InferredType::Float(_), Some(_)) => Diagnostic::error(DiagnosticCode::UNIT_MISMATCH, span, message),
+        (InferredType::Enum(of), _) => Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
             .help(format!("its values are: {}", of.listed())),
-        (Kind::Float(_) | Kind::Bool | Kind::Int | Kind::Text | Kind::List(_) | Kind::Unknown, _) => {
-            Diagnostic::error(Code::TYPE_MISMATCH, span, message)
-        }
+        (
+            InferredType::Float(_)
+            | InferredType::Bool
+            | InferredType::Int
+            | InferredType::Text
+            | InferredType::List(_)
+            | InferredType::Unknown,
+            _,
+        ) => Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message),
     }
 }
 
 /// HR0203: a number without the unit that the place needs.
-pub(crate) fn bare_number(dim: Dim, value: Option<Value>, span: Span) -> Diagnostic {
+pub(crate) fn bare_number(dim: Dimension, value: Option<Value>, span: Span) -> Diagnostic {
     let error = Diagnostic::error(
-        Code::UNIT_MISMATCH,
+        DiagnosticCode::UNIT_MISMATCH,
         span,
         format!("{dim} needs a unit, but this is a bare number"),
     );
@@ -113,23 +132,30 @@ pub(crate) fn bare_number(dim: Dim, value: Option<Value>, span: Span) -> Diagnos
 }
 
 /// HR0203: the operands have different dimensions.
-pub(crate) fn dimensions(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
+pub(crate) fn dimensions(op: &str, left: (InferredType, Span), right: (InferredType, Span)) -> Diagnostic {
     let (l, r) = (left.0, right.0);
-    Diagnostic::error(Code::UNIT_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
-        .label(left.1, format!("this is {l}"))
-        .label(right.1, format!("this is {r}"))
-        .help("both sides must have the same dimension")
+    Diagnostic::error(
+        DiagnosticCode::UNIT_MISMATCH,
+        left.1.to(right.1),
+        format!("`{op}` between {l} and {r}"),
+    )
+    .label(left.1, format!("this is {l}"))
+    .label(right.1, format!("this is {r}"))
+    .help("both sides must have the same dimension")
 }
 
 /// HR0201: the operands have different types.
-pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Diagnostic {
+pub(crate) fn operands(op: &str, left: (InferredType, Span), right: (InferredType, Span)) -> Diagnostic {
     let (l, r) = (left.0, right.0);
-    let issue =
-        Diagnostic::error(Code::TYPE_MISMATCH, left.1.to(right.1), format!("`{op}` between {l} and {r}"))
-            .label(left.1, format!("this is {l}"))
-            .label(right.1, format!("this is {r}"));
+    let issue = Diagnostic::error(
+        DiagnosticCode::TYPE_MISMATCH,
+        left.1.to(right.1),
+        format!("`{op}` between {l} and {r}"),
+    )
+    .label(left.1, format!("this is {l}"))
+    .label(right.1, format!("this is {r}"));
     match (l, r) {
-        (Kind::Enum(a), Kind::Enum(b)) if a == b => {
+        (InferredType::Enum(a), InferredType::Enum(b)) if a == b => {
             issue.help("the values of an enumeration are compared by `==` and `!=` alone")
         }
         (_, _) => issue,
@@ -138,44 +164,49 @@ pub(crate) fn operands(op: &str, left: (Kind, Span), right: (Kind, Span)) -> Dia
 
 /// HR0201: something that has no value.
 pub(crate) fn no_value(what: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{what} is not a value"))
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, format!("{what} is not a value"))
 }
 
 /// HR0201: floats where the models need finitely many values.
 pub(crate) fn not_finite(what: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::TYPE_MISMATCH, span, format!("{what} must have finitely many values"))
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, format!("{what} must have finitely many values"))
         .help("use `bool` or a range such as `0..4`")
 }
 
 /// HR0204
 pub(crate) fn not_constant(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NOT_CONSTANT, span, "a constant is needed here")
+    Diagnostic::error(DiagnosticCode::NOT_CONSTANT, span, "a constant is needed here")
         .help("use a literal or a name declared by `const`")
 }
 
 /// HR0208
 pub(crate) fn record_cycle(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::CONSTANT_CYCLE, span, format!("the record `{name}` contains itself"))
+    Diagnostic::error(DiagnosticCode::CONSTANT_CYCLE, span, format!("the record `{name}` contains itself"))
         .help("remove the field, or give it another type")
 }
 
 /// HR0103: a parameter that stands for several events, or for an event with certain arguments.
 pub(crate) fn several_events(name: &str, span: Span) -> Diagnostic {
     let message = format!("`{name}` stands for a pattern, and one event is needed here");
-    Diagnostic::error(Code::WRONG_KIND, span, message).help("give the template the name of one event alone")
+    Diagnostic::error(DiagnosticCode::WRONG_KIND, span, message)
+        .help("give the template the name of one event alone")
 }
 
 /// HR0201: an argument that must be a name.
 pub(crate) fn needs_name(noun: Noun, span: Span) -> Diagnostic {
     let message = format!("{} is needed here", noun.with_article());
-    Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
         .help(format!("write the name of {}", noun.with_article()))
 }
 
 /// HR0208
 pub(crate) fn constant_cycle(name: &str, span: Span, declared: Span) -> Diagnostic {
-    Diagnostic::error(Code::CONSTANT_CYCLE, span, format!("the constant `{name}` needs its own value"))
-        .label(declared, "declared here")
+    Diagnostic::error(
+        DiagnosticCode::CONSTANT_CYCLE,
+        span,
+        format!("the constant `{name}` needs its own value"),
+    )
+    .label(declared, "declared here")
 }
 
 /// HR0206: arithmetic on constants that has no result.
@@ -190,7 +221,7 @@ pub(crate) fn fold(error: EvalError, span: Span) -> Diagnostic {
         | EvalError::Range(_)
         | EvalError::Outside { .. } => ("the operands do not fit the operator", None),
     };
-    let issue = Diagnostic::error(Code::OUT_OF_RANGE, span, message);
+    let issue = Diagnostic::error(DiagnosticCode::OUT_OF_RANGE, span, message);
     match help {
         Some(help) => issue.help(help),
         None => issue,
@@ -199,18 +230,18 @@ pub(crate) fn fold(error: EvalError, span: Span) -> Diagnostic {
 
 /// HR0206
 pub(crate) fn out_of_range(value: Value, lo: i64, hi: i64, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_RANGE, span, format!("{value} is outside {lo}..{hi}"))
+    Diagnostic::error(DiagnosticCode::OUT_OF_RANGE, span, format!("{value} is outside {lo}..{hi}"))
         .help(format!("a value of {lo}..{hi} is needed"))
 }
 
 /// HR0206
 pub(crate) fn must_be(what: &str, rule: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::OUT_OF_RANGE, span, format!("{what} must be {rule}"))
+    Diagnostic::error(DiagnosticCode::OUT_OF_RANGE, span, format!("{what} must be {rule}"))
 }
 
 /// HR0207
 pub(crate) fn empty_range(lo: Value, hi: Value, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::EMPTY_RANGE, span, format!("no value lies in {lo}..{hi}"))
+    Diagnostic::error(DiagnosticCode::EMPTY_RANGE, span, format!("no value lies in {lo}..{hi}"))
         .help(format!("write `{hi}..{lo}`, the smaller end first"))
 }
 
@@ -228,7 +259,7 @@ pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span
     let s = if want == 1 { "" } else { "s" };
     let what = if noun == Noun::Record { "field" } else { "argument" };
     Diagnostic::error(
-        Code::ARITY,
+        DiagnosticCode::ARITY,
         span,
         format!(
             "the {noun} `{name}` has {want} {what}{s}, but {got} {} given",
@@ -239,12 +270,12 @@ pub(crate) fn counts(noun: Noun, name: &str, want: usize, got: usize, span: Span
 
 /// HR0211: a string or list in something that no agent has.
 pub(crate) fn of_agents_only(name: &str, ty: Type, span: Span) -> Diagnostic {
-    let message = format!("`{name}` is {}, which only agents know", Kind::of(ty));
+    let message = format!("`{name}` is {}, which only agents know", InferredType::of(ty));
     let help = match ty {
         Type::Text => "declare an enumeration: `enum Word { first, second }`",
         Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::List(_) => {
             "use an array, such as `bool[4]`, or several parameters"
         }
     };
-    Diagnostic::error(Code::OF_AGENTS_ONLY, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::OF_AGENTS_ONLY, span, message).help(help)
 }

@@ -1,10 +1,10 @@
 //! HR08xx: world and system.
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 /// HR0801
 pub(crate) fn bad_world(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(Code::BAD_WORLD, span, message).help(help)
+    Diagnostic::error(DiagnosticCode::BAD_WORLD, span, message).help(help)
 }
 
 /// The parts of the library, and the modules that they are in. A test compares them with the library.

@@ -8,11 +8,11 @@ use hrdsl_syntax::ast::{
     Name, StatementKind, StimulusStepKind, TypeExpr, WorldMemberKind,
 };
 
-use super::{DefinedType, Definition};
+use super::{DefinedType, NameDefinition};
 use crate::check::type_span;
 
 /// The definitions of these items and of all in them.
-pub(super) fn of_items(items: &[&ast::Item]) -> Vec<Definition> {
+pub(super) fn of_items(items: &[&ast::Item]) -> Vec<NameDefinition> {
     let mut reader = DefinitionReader { found: Vec::new(), whole: Span::default(), doc: String::new() };
     for item in items {
         reader.whole = item.span;
@@ -23,7 +23,7 @@ pub(super) fn of_items(items: &[&ast::Item]) -> Vec<Definition> {
 }
 
 struct DefinitionReader {
-    found: Vec<Definition>,
+    found: Vec<NameDefinition>,
     /// Of the declaration that is being read.
     whole: Span,
     doc: String,
@@ -36,7 +36,7 @@ impl DefinitionReader {
 
     fn typed(&mut self, noun: &'static str, name: &Name, ty: DefinedType) {
         let (text, doc) = (name.text.clone(), self.doc.clone());
-        self.found.push(Definition { noun, name: text, place: name.span, whole: self.whole, ty, doc });
+        self.found.push(NameDefinition { noun, name: text, place: name.span, whole: self.whole, ty, doc });
     }
 
     /// Those of a declaration have its documentation no more.

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// A name that is declared.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Definition {
+pub struct NameDefinition {
     /// What it is the name of, in the words of the diagnostics: `event`, `belief`.
     pub noun: &'static str,
     pub name: String,
@@ -42,7 +42,7 @@ pub enum DefinedType {
 /// Which name means what.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Resolutions {
-    definitions: BTreeMap<Span, Definition>,
+    definitions: BTreeMap<Span, NameDefinition>,
     /// By use: the places of the definitions.
     uses: BTreeMap<Span, BTreeSet<Span>>,
     /// By definition: the uses.
@@ -71,7 +71,7 @@ impl Resolutions {
     }
 
     /// A name that is declared where it first stands: a plan's variable, what an edge binds.
-    pub(crate) fn define(&mut self, definition: Definition) {
+    pub(crate) fn define(&mut self, definition: NameDefinition) {
         self.definitions.entry(definition.place).or_insert(definition);
     }
 
@@ -85,7 +85,7 @@ impl Resolutions {
     }
 
     /// All definitions, by place.
-    pub fn definitions(&self) -> impl Iterator<Item = &Definition> {
+    pub fn definitions(&self) -> impl Iterator<Item = &NameDefinition> {
         self.definitions.values()
     }
 
@@ -102,12 +102,12 @@ impl Resolutions {
 
     /// What is declared there.
     #[must_use]
-    pub fn defined_at(&self, place: Span) -> Option<&Definition> {
+    pub fn defined_at(&self, place: Span) -> Option<&NameDefinition> {
         self.definitions.get(&place)
     }
 
     /// What the name at this place of a file means: of a use its definitions, of a definition itself.
-    pub fn at(&self, file: FileId, offset: usize) -> impl Iterator<Item = &Definition> {
+    pub fn at(&self, file: FileId, offset: usize) -> impl Iterator<Item = &NameDefinition> {
         let holds = move |span: &Span| {
             span.file == file && (span.start as usize) <= offset && offset < span.end as usize
         };

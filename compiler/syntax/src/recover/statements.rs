@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::Recovery;
 use crate::ast::{AutomatonMember, AutomatonMemberKind, Function, Statement, StatementKind};
@@ -114,7 +114,7 @@ impl Recovery<'_, '_> {
         let span = self.cx.span_of(self.tokens[at]);
         self.cx.diagnostics.push(
             Diagnostic::error(
-                Code::SYNTAX,
+                DiagnosticCode::SYNTAX,
                 span,
                 "expected a statement such as `n = 1` or `return`, found `;`",
             )
@@ -134,7 +134,7 @@ impl Recovery<'_, '_> {
         let before = self.tokens[at - 1];
         let after = self.cx.span(before.end, before.end);
         self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, message)
+            Diagnostic::error(DiagnosticCode::SYNTAX, span, message)
                 .help("put `;` between two statements of a function; none is needed after a block")
                 .fix("put `;` after the statement before", after, ";", token.first),
         );

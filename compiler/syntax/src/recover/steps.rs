@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hrdsl_source::{Code, Diagnostic};
+use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::Recovery;
 use crate::ast::{Step, StepKind};
@@ -114,9 +114,13 @@ impl Recovery<'_, '_> {
     fn empty_step(&mut self, block: &Range<usize>, at: usize) -> usize {
         let span = self.cx.span_of(self.tokens[at]);
         self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, "expected a step such as `!goal` or `await`, found `;`")
-                .help("take the `;` away")
-                .fix("take the `;` away", span, "", true),
+            Diagnostic::error(
+                DiagnosticCode::SYNTAX,
+                span,
+                "expected a step such as `!goal` or `await`, found `;`",
+            )
+            .help("take the `;` away")
+            .fix("take the `;` away", span, "", true),
         );
         (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
     }
@@ -134,7 +138,7 @@ impl Recovery<'_, '_> {
         // On a line of its own it can be nothing but the next step.
         let after = self.cx.span(before.end, before.end);
         self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, message)
+            Diagnostic::error(DiagnosticCode::SYNTAX, span, message)
                 .label(end, "the step before ends here")
                 .help("put `;` between two steps of a plan")
                 .fix("put `;` after the step before", after, ";", token.first),
@@ -154,7 +158,7 @@ impl Recovery<'_, '_> {
     pub(super) fn full_stop(&mut self, at: usize) {
         let span = self.cx.span_of(self.tokens[at]);
         self.cx.diagnostics.push(
-            Diagnostic::error(Code::SYNTAX, span, "nothing ends with `.` here")
+            Diagnostic::error(DiagnosticCode::SYNTAX, span, "nothing ends with `.` here")
                 .help("take the `.` away: steps are separated by `;`, and a plan ends with its `}`")
                 .fix("take the `.` away", span, "", true),
         );

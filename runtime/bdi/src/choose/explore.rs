@@ -5,7 +5,7 @@ use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 use hrdsl_ir::{
     Program,
     bdi::AgentId,
-    suite::{Choice, Explore},
+    suite::{BeliefChoice, ExploreMode},
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -40,25 +40,27 @@ pub struct ExploredBeliefs {
 ///
 /// A space of fewer than `tests` sets gives them all. The same arguments always give the same sets.
 #[must_use]
-pub fn explore(factors: &[BeliefFactor], explore: Explore, tests: u32, seed: u64) -> ExploredBeliefs {
+pub fn explore(factors: &[BeliefFactor], explore: ExploreMode, tests: u32, seed: u64) -> ExploredBeliefs {
     let sizes = sizes(factors);
     let space = space(&sizes);
     let wanted = wanted(space, tests);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (rows, cut) = match explore {
         // INVARIANT: `wanted` is at most the space.
-        Explore::Exhaustive => {
+        ExploreMode::Exhaustive => {
             let rows: Vec<Row> = (0..wanted as u128).map(|index| row_at(&sizes, index)).collect();
             (rows, (wanted as u128) < space)
         }
-        Explore::Wise(_) if space == 0 => (Vec::new(), false),
-        Explore::Wise(strength) => {
+        ExploreMode::Wise(_) if space == 0 => (Vec::new(), false),
+        ExploreMode::Wise(strength) => {
             let found = covering(&sizes, strength.into(), MAX_SETS, &mut rng);
             let asked = usize::from(strength).max(2);
             let cut = found.rows.len() == MAX_SETS || found.strength < asked.min(sizes.len());
             (fill(found.rows, &sizes, space, wanted, &mut rng), cut)
         }
-        Explore::Random | Explore::Learn => (fill(Vec::new(), &sizes, space, wanted, &mut rng), false),
+        ExploreMode::Random | ExploreMode::Learn => {
+            (fill(Vec::new(), &sizes, space, wanted, &mut rng), false)
+        }
     };
     ExploredBeliefs { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
 }
@@ -83,14 +85,14 @@ enum BeliefSetSource<'a> {
 impl<'a> BeliefExplorer<'a> {
     /// See [`explore`]; `Learn` makes at most `tests` different sets.
     #[must_use]
-    pub fn new(factors: &[BeliefFactor], method: Explore, tests: u32, seed: u64) -> Self {
+    pub fn new(factors: &[BeliefFactor], method: ExploreMode, tests: u32, seed: u64) -> Self {
         match method {
-            Explore::Exhaustive | Explore::Wise(_) | Explore::Random => {
+            ExploreMode::Exhaustive | ExploreMode::Wise(_) | ExploreMode::Random => {
                 let ExploredBeliefs { mut sets, space, cut } = explore(factors, method, tests, seed);
                 sets.reverse();
                 Self { space, cut, notes: Vec::new(), source: BeliefSetSource::Fixed(sets) }
             }
-            Explore::Learn => {
+            ExploreMode::Learn => {
                 let space = space(&sizes(factors));
                 let learner = FactorLearner::new(factors, wanted(space, tests), seed);
                 let source = BeliefSetSource::Learner(Box::new(learner));
@@ -107,9 +109,9 @@ impl<'a> BeliefExplorer<'a> {
     pub fn of(
         program: &'a Program,
         agents: &[AgentId],
-        choices: &'a [Choice],
+        choices: &'a [BeliefChoice],
         factors: &[BeliefFactor],
-        method: (Explore, u32, u64),
+        method: (ExploreMode, u32, u64),
     ) -> Result<Self, ChooseError> {
         let (explore, tests, seed) = method;
         if choices.iter().all(|c| c.condition.is_none()) {
@@ -147,7 +149,7 @@ impl<'a> BeliefExplorer<'a> {
     pub(super) fn within(
         mut space: AllowedSpace<'a>,
         factors: &[BeliefFactor],
-        (method, tests): (Explore, u32),
+        (method, tests): (ExploreMode, u32),
         mut rng: ChaCha8Rng,
     ) -> Result<Self, ChooseError> {
         let whole = self::space(&space.sizes);
@@ -169,7 +171,7 @@ impl<'a> BeliefExplorer<'a> {
                 .to_owned(),
         }];
         let tests = tests as usize;
-        if method == Explore::Learn {
+        if method == ExploreMode::Learn {
             let wanted = allowed.map_or(tests, |n| wanted(n, u32::try_from(tests).unwrap_or(u32::MAX)));
             let learner = FactorLearner::within(factors, wanted.min(MAX_SETS), space, rng);
             return Ok(Self {
@@ -242,7 +244,7 @@ fn fill(mut rows: Vec<Row>, sizes: &[u32], space: u128, wanted: usize, rng: &mut
 mod tests {
     use hrdsl_ir::{
         Value,
-        bdi::{BeliefId, Fact},
+        bdi::{BeliefId, InitialFact},
     };
     use proptest::prelude::*;
 
@@ -251,7 +253,7 @@ mod tests {
 
     fn factors(sizes: &[u32]) -> Vec<BeliefFactor> {
         let alternative = |f: u16, a: u32| FactorAlternative {
-            facts: vec![Fact {
+            facts: vec![InitialFact {
                 belief: BeliefId(f),
                 args: vec![Value::Int(i64::from(a))],
                 annotations: vec![],
@@ -274,16 +276,16 @@ mod tests {
 
     #[test]
     fn exhaustive_is_lexicographic_and_says_when_it_is_cut() {
-        let all = explore(&factors(&[2, 3]), Explore::Exhaustive, 100, 0);
+        let all = explore(&factors(&[2, 3]), ExploreMode::Exhaustive, 100, 0);
         assert_eq!(
             texts(&all),
             ["b0(0) b1(0)", "b0(0) b1(1)", "b0(0) b1(2)", "b0(1) b1(0)", "b0(1) b1(1)", "b0(1) b1(2)"]
         );
         assert_eq!((all.space, all.cut), (6, false));
-        let some = explore(&factors(&[2, 3]), Explore::Exhaustive, 4, 0);
+        let some = explore(&factors(&[2, 3]), ExploreMode::Exhaustive, 4, 0);
         assert_eq!(texts(&some), texts(&all)[..4]);
         assert!(some.cut);
-        let vast = explore(&factors(&[9; 60]), Explore::Exhaustive, 2, 0);
+        let vast = explore(&factors(&[9; 60]), ExploreMode::Exhaustive, 2, 0);
         assert_eq!((vast.space, vast.sets.len(), vast.cut), (u128::MAX, 2, true));
     }
 
@@ -291,29 +293,33 @@ mod tests {
     fn what_is_not_held_is_not_told() {
         let mut factors = factors(&[2, 2]);
         factors[0].alternatives[0] = FactorAlternative { facts: vec![], text: "not b0".into() };
-        let all = explore(&factors, Explore::Exhaustive, 9, 0);
+        let all = explore(&factors, ExploreMode::Exhaustive, 9, 0);
         assert_eq!(texts(&all), ["b1(0)", "b1(1)", "b0(1) b1(0)", "b0(1) b1(1)"]);
         assert_eq!(all.sets[0].facts.len(), 1);
     }
 
     #[test]
     fn no_factors_give_one_empty_set() {
-        for method in
-            [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn]
-        {
+        for method in [
+            ExploreMode::Exhaustive,
+            ExploreMode::Wise(2),
+            ExploreMode::Wise(3),
+            ExploreMode::Random,
+            ExploreMode::Learn,
+        ] {
             assert_eq!(explore(&[], method, 5, 0).sets, [BeliefSet::default()]);
         }
     }
 
     #[test]
     fn pairwise_takes_more_than_was_asked_for_if_it_must() {
-        let found = explore(&factors(&[4, 5, 2]), Explore::Wise(2), 3, 7);
+        let found = explore(&factors(&[4, 5, 2]), ExploreMode::Wise(2), 3, 7);
         assert!(found.sets.len() >= 20 && !found.cut);
     }
 
     #[test]
     fn seeds_matter() {
-        let run = |seed| explore(&factors(&[5; 6]), Explore::Random, 20, seed);
+        let run = |seed| explore(&factors(&[5; 6]), ExploreMode::Random, 20, seed);
         assert_eq!(run(1), run(1));
         assert_ne!(run(1), run(2));
     }
@@ -325,7 +331,7 @@ mod tests {
             sizes in prop::collection::vec(1u32..5, 0..6), tests in 0u32..200, seed: u64,
         ) {
             let product: u32 = sizes.iter().product();
-            let methods = [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
+            let methods = [ExploreMode::Exhaustive, ExploreMode::Wise(2), ExploreMode::Wise(3), ExploreMode::Random, ExploreMode::Learn];
             for method in methods {
                 let found = explore(&factors(&sizes), method, tests, seed);
                 let mut explorer = BeliefExplorer::new(&factors(&sizes), method, tests, seed);
@@ -340,7 +346,7 @@ mod tests {
                     batched.extend(batch);
                 }
                 prop_assert_eq!(batched.len(), found.sets.len());
-                if method != Explore::Learn {
+                if method != ExploreMode::Learn {
                     prop_assert_eq!(&batched, &found.sets);
                 }
                 let found = ExploredBeliefs { sets: batched, ..found };
@@ -349,7 +355,7 @@ mod tests {
                 distinct.dedup();
                 prop_assert_eq!(distinct.len(), found.sets.len());
                 let least = product.min(tests) as usize;
-                if matches!(method, Explore::Wise(_)) {
+                if matches!(method, ExploreMode::Wise(_)) {
                     prop_assert!(found.sets.len() >= least && found.sets.len() <= product as usize);
                 } else {
                     prop_assert_eq!(found.sets.len(), least);

@@ -4,8 +4,8 @@ use std::fmt;
 
 use hrdsl_ir::{
     Program, Value,
-    bdi::{AgentId, Belief, Fact},
-    suite::{Choice, ChoiceKind},
+    bdi::{AgentId, BeliefDecl, InitialFact},
+    suite::{BeliefChoice, ChoiceKind},
 };
 
 use crate::{query::BeliefQueryError, show::call as literal};
@@ -30,7 +30,7 @@ pub struct BeliefFactor {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorAlternative {
     /// The beliefs held; none for a belief that is chosen not to be.
-    pub facts: Vec<Fact>,
+    pub facts: Vec<InitialFact>,
     /// `shows(1, true, false, true)`; if nothing is held `not gets_bored(2)`. With the agent's name and a dot before it
     /// if beliefs of several agents are chosen.
     pub text: String,
@@ -96,7 +96,7 @@ impl std::error::Error for ChooseError {}
 ///
 /// # Errors
 /// See [`ChooseError`].
-pub fn factors(program: &Program, choices: &[Choice]) -> Result<Vec<BeliefFactor>, ChooseError> {
+pub fn factors(program: &Program, choices: &[BeliefChoice]) -> Result<Vec<BeliefFactor>, ChooseError> {
     let several = choices.iter().any(|c| c.agent != choices[0].agent);
     let mut factors = Vec::new();
     let mut alternatives = 0usize;
@@ -115,15 +115,15 @@ pub fn factors(program: &Program, choices: &[Choice]) -> Result<Vec<BeliefFactor
 }
 
 struct SpannedBelief<'a> {
-    choice: &'a Choice,
-    belief: &'a Belief,
+    choice: &'a BeliefChoice,
+    belief: &'a BeliefDecl,
     /// What stands before names.
     owner: String,
 }
 
 impl SpannedBelief<'_> {
     fn held(&self, args: &[Value]) -> FactorAlternative {
-        let fact = Fact { belief: self.choice.belief, args: args.to_vec(), annotations: Vec::new() };
+        let fact = InitialFact { belief: self.choice.belief, args: args.to_vec(), annotations: Vec::new() };
         FactorAlternative { text: self.owner.clone() + &literal(&self.belief.name, args), facts: vec![fact] }
     }
 
@@ -163,7 +163,7 @@ fn span(
 }
 
 /// All ground instances of a belief, in lexicographic order.
-fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
+fn instances(belief: &BeliefDecl) -> Result<Vec<Vec<Value>>, ChooseError> {
     use hrdsl_ir::Type;
     let mut count = 1usize;
     for param in &belief.params {
@@ -201,16 +201,16 @@ fn instances(belief: &Belief) -> Result<Vec<Vec<Value>>, ChooseError> {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::{
-        ActorId, Enumeration, Param, Symbol, Type, Unit,
+        ActorId, Enumeration, Parameter, Symbol, Type, Unit,
         bdi::{Agent, BeliefId},
     };
 
     use super::*;
 
-    fn belief(name: &str, params: &[(&str, Type)]) -> Belief {
-        let params = params.iter().map(|(n, ty)| Param { name: (*n).into(), ty: *ty }).collect();
+    fn belief(name: &str, params: &[(&str, Type)]) -> BeliefDecl {
+        let params = params.iter().map(|(n, ty)| Parameter { name: (*n).into(), ty: *ty }).collect();
         let origin = Default::default();
-        Belief { name: name.into(), params, annotations: vec![], percept: None, negates: None, origin }
+        BeliefDecl { name: name.into(), params, annotations: vec![], percept: None, negates: None, origin }
     }
 
     fn pace() -> Type {
@@ -244,8 +244,8 @@ mod tests {
         Program { agents: vec![human, dog], ..Program::default() }
     }
 
-    fn choose(belief: u16, how: ChoiceKind) -> Choice {
-        Choice { agent: AgentId(0), belief: BeliefId(belief), how, condition: None }
+    fn choose(belief: u16, how: ChoiceKind) -> BeliefChoice {
+        BeliefChoice { agent: AgentId(0), belief: BeliefId(belief), how, condition: None }
     }
 
     fn texts(factor: &BeliefFactor) -> Vec<&str> {
@@ -259,7 +259,7 @@ mod tests {
         assert_eq!(texts(&factors[1]), ["hurried"]);
         assert_eq!(
             factors[0].alternatives[2].facts,
-            [Fact { belief: BeliefId(0), args: vec![Value::Int(2)], annotations: vec![] }]
+            [InitialFact { belief: BeliefId(0), args: vec![Value::Int(2)], annotations: vec![] }]
         );
     }
 
@@ -303,7 +303,8 @@ mod tests {
 
     #[test]
     fn agents_are_named_when_there_are_several() {
-        let dog = Choice { agent: AgentId(1), belief: BeliefId(0), how: ChoiceKind::Any, condition: None };
+        let dog =
+            BeliefChoice { agent: AgentId(1), belief: BeliefId(0), how: ChoiceKind::Any, condition: None };
         let found = factors(&program(), &[choose(3, ChoiceKind::Any), dog]).unwrap();
         assert_eq!(texts(&found[0]), ["not Human.hurried", "Human.hurried"]);
         assert_eq!(found[1].name, "Dog.barks");

@@ -4,8 +4,8 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use hrdsl_ir::{
     Program,
-    bdi::{Agent, AgentId, BeliefId, Context, Fact, Internal},
-    suite::{Choice, Condition},
+    bdi::{Agent, AgentId, BeliefId, InitialFact, InternalAct, PlanContext},
+    suite::{BeliefChoice, BeliefCondition},
 };
 
 use super::{
@@ -27,7 +27,7 @@ use crate::{
 pub fn allows(
     program: &Program,
     agents: &[AgentId],
-    choices: &[Choice],
+    choices: &[BeliefChoice],
     set: &BeliefSet,
 ) -> Result<bool, ChooseError> {
     let mut judge = ConditionEvaluator::new(program, agents, choices)?;
@@ -38,7 +38,7 @@ pub fn allows(
 struct AskedCondition<'p> {
     /// Into the minds.
     mind: usize,
-    condition: &'p Condition,
+    condition: &'p BeliefCondition,
     /// The beliefs that its answer may depend on.
     reads: BTreeSet<BeliefId>,
 }
@@ -56,7 +56,11 @@ pub(super) struct ConditionEvaluator<'p> {
 
 impl<'p> ConditionEvaluator<'p> {
     /// `agents`: those of the run, in order.
-    pub fn new(program: &'p Program, agents: &[AgentId], choices: &'p [Choice]) -> Result<Self, ChooseError> {
+    pub fn new(
+        program: &'p Program,
+        agents: &[AgentId],
+        choices: &'p [BeliefChoice],
+    ) -> Result<Self, ChooseError> {
         let mut judge = Self {
             minds: Vec::new(),
             initial: Vec::new(),
@@ -115,7 +119,11 @@ impl<'p> ConditionEvaluator<'p> {
 
     /// Whether the condition of this number has an answer with these chosen facts. Each time is time 0, and chance starts
     /// with the seed 0.
-    pub fn holds(&mut self, question: usize, chosen: &mut dyn Iterator<Item = (AgentId, &Fact)>) -> bool {
+    pub fn holds(
+        &mut self,
+        question: usize,
+        chosen: &mut dyn Iterator<Item = (AgentId, &InitialFact)>,
+    ) -> bool {
         let AskedCondition { mind: at, condition, .. } = &self.questions[question];
         let mind = &mut self.minds[*at];
         mind.beliefs.clone_from(&self.initial[*at]);
@@ -137,7 +145,7 @@ impl<'p> ConditionEvaluator<'p> {
 }
 
 /// As an agent does when it starts; a fact that does not fit its declaration is left out.
-fn believe(mind: &mut MentalState<'_>, fact: &Fact) {
+fn believe(mind: &mut MentalState<'_>, fact: &InitialFact) {
     let declared = mind.agent.and_then(|a| a.beliefs.get(usize::from(fact.belief.0)));
     if let Some(args) = declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
         let annotations = sourced(Annotations::from_slice(&fact.annotations));
@@ -146,32 +154,34 @@ fn believe(mind: &mut MentalState<'_>, fact: &Fact) {
 }
 
 /// The beliefs that a formula asks, itself and through rules.
-fn reads(agent: &Agent, formula: &Context) -> BTreeSet<BeliefId> {
+fn reads(agent: &Agent, formula: &PlanContext) -> BTreeSet<BeliefId> {
     let mut reads = BTreeSet::new();
     let mut open = vec![formula];
     while let Some(formula) = open.pop() {
         match formula {
-            Context::True | Context::Test(_) | Context::Unify(..) => {}
-            Context::Belief(literal) => {
+            PlanContext::True | PlanContext::Test(_) | PlanContext::Unify(..) => {}
+            PlanContext::Belief(literal) => {
                 if reads.insert(literal.belief) {
                     open.extend(agent.rules.iter().filter(|r| r.belief == literal.belief).map(|r| &r.body));
                 }
             }
-            Context::Not(inner) => open.push(inner),
-            Context::And(all) | Context::Or(all) => open.extend(all),
-            Context::Internal(internal, _) => match &**internal {
-                Internal::FindAll { formula, .. } | Internal::Count { formula, .. } => open.push(formula),
-                Internal::Member { .. }
-                | Internal::Apply { .. }
-                | Internal::Holds { .. }
-                | Internal::Intend { .. }
-                | Internal::Desire { .. }
-                | Internal::Suspended { .. }
-                | Internal::Random { .. }
-                | Internal::Shuffle { .. }
-                | Internal::Time { .. }
-                | Internal::MyName { .. }
-                | Internal::AllNames { .. } => {}
+            PlanContext::Not(inner) => open.push(inner),
+            PlanContext::And(all) | PlanContext::Or(all) => open.extend(all),
+            PlanContext::Internal(internal, _) => match &**internal {
+                InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => {
+                    open.push(formula)
+                }
+                InternalAct::Member { .. }
+                | InternalAct::Apply { .. }
+                | InternalAct::Holds { .. }
+                | InternalAct::Intend { .. }
+                | InternalAct::Desire { .. }
+                | InternalAct::Suspended { .. }
+                | InternalAct::Random { .. }
+                | InternalAct::Shuffle { .. }
+                | InternalAct::Time { .. }
+                | InternalAct::MyName { .. }
+                | InternalAct::AllNames { .. } => {}
             },
         }
     }
@@ -182,10 +192,10 @@ fn reads(agent: &Agent, formula: &Context) -> BTreeSet<BeliefId> {
 mod tests {
     use hrdsl_ir::Span;
     use hrdsl_ir::{
-        ActorId, Expr, Param, Type, Value,
-        bdi::{Belief, Literal, Rule, Term},
+        ActorId, Expr, Parameter, Type, Value,
+        bdi::{AgentTerm, BeliefDecl, BeliefLiteral, BeliefRule},
         expr::BinaryOp,
-        suite::{ChoiceKind, Explore},
+        suite::{ChoiceKind, ExploreMode},
     };
 
     use super::*;
@@ -193,8 +203,8 @@ mod tests {
 
     const N: Type = Type::Int { lo: 0, hi: 3 };
 
-    fn literal(belief: u16, args: Vec<Term>) -> Context {
-        Context::Belief(Literal {
+    fn literal(belief: u16, args: Vec<AgentTerm>) -> PlanContext {
+        PlanContext::Belief(BeliefLiteral {
             origin: Span::default(),
             belief: BeliefId(belief),
             args,
@@ -208,30 +218,32 @@ mod tests {
 
     /// `wants(n)`, `tired`, `limit(n)`, of which `limit(2)` is held, and `rule most(N) when wants(N) && not tired`
     fn program() -> Program {
-        let belief = |name: &str, params: usize| Belief {
+        let belief = |name: &str, params: usize| BeliefDecl {
             negates: None,
             name: name.into(),
-            params: vec![Param { name: "n".into(), ty: N }; params],
+            params: vec![Parameter { name: "n".into(), ty: N }; params],
             annotations: vec![],
             percept: None,
             origin: Default::default(),
         };
-        let body =
-            Context::And(vec![literal(0, vec![Term::Var(0)]), Context::Not(Box::new(literal(1, vec![])))]);
+        let body = PlanContext::And(vec![
+            literal(0, vec![AgentTerm::Var(0)]),
+            PlanContext::Not(Box::new(literal(1, vec![]))),
+        ]);
         let agent = Agent {
             name: "Human".into(),
             actor: ActorId(0),
             beliefs: vec![belief("wants", 1), belief("tired", 0), belief("limit", 1), belief("most", 1)],
             goals: vec![],
-            rules: vec![Rule {
+            rules: vec![BeliefRule {
                 head: Span::default(),
                 belief: BeliefId(3),
-                args: vec![Term::Var(0)],
+                args: vec![AgentTerm::Var(0)],
                 body,
                 vars: vec!["N".into()],
                 origin: Default::default(),
             }],
-            initial_beliefs: vec![Fact {
+            initial_beliefs: vec![InitialFact {
                 belief: BeliefId(2),
                 args: vec![Value::Int(2)],
                 annotations: vec![],
@@ -243,21 +255,25 @@ mod tests {
         Program { agents: vec![agent], ..Program::default() }
     }
 
-    fn choices(context: Option<Context>) -> Vec<Choice> {
-        let condition = context.map(|context| Condition {
+    fn choices(context: Option<PlanContext>) -> Vec<BeliefChoice> {
+        let condition = context.map(|context| BeliefCondition {
             context,
             vars: vec!["X".into(), "Y".into()],
             origin: Default::default(),
         });
-        let choice =
-            |belief, how, condition| Choice { agent: AgentId(0), belief: BeliefId(belief), how, condition };
+        let choice = |belief, how, condition| BeliefChoice {
+            agent: AgentId(0),
+            belief: BeliefId(belief),
+            how,
+            condition,
+        };
         vec![choice(0, ChoiceKind::One, condition), choice(1, ChoiceKind::Any, None)]
     }
 
-    fn explored(context: Option<Context>) -> Result<Vec<String>, String> {
+    fn explored(context: Option<PlanContext>) -> Result<Vec<String>, String> {
         let (program, choices) = (program(), choices(context));
         let factors = factors(&program, &choices).unwrap();
-        let settings = (Explore::Exhaustive, 100, 0);
+        let settings = (ExploreMode::Exhaustive, 100, 0);
         let mut explorer = BeliefExplorer::of(&program, &[AgentId(0)], &choices, &factors, settings)
             .map_err(|e| e.to_string())?;
         let sets = explorer.next_batch();
@@ -268,11 +284,11 @@ mod tests {
     }
 
     /// `most(X) && limit(Y) && X <= Y`, or what comes last.
-    fn at_most(last: Expr) -> Context {
-        Context::And(vec![
-            literal(3, vec![Term::Var(0)]),
-            literal(2, vec![Term::Var(1)]),
-            Context::Test(last),
+    fn at_most(last: Expr) -> PlanContext {
+        PlanContext::And(vec![
+            literal(3, vec![AgentTerm::Var(0)]),
+            literal(2, vec![AgentTerm::Var(1)]),
+            PlanContext::Test(last),
         ])
     }
 
@@ -280,7 +296,7 @@ mod tests {
     fn conditions_are_asked_of_initial_and_chosen_beliefs_through_rules() {
         let below = at_most(binary(BinaryOp::Le, Expr::Var(0), Expr::Var(1)));
         assert_eq!(explored(Some(below.clone())).unwrap(), ["wants(0)", "wants(1)", "wants(2)"]);
-        assert_eq!(explored(Some(Context::Not(Box::new(below)))).unwrap().len(), 5);
+        assert_eq!(explored(Some(PlanContext::Not(Box::new(below)))).unwrap().len(), 5);
         assert_eq!(explored(None).unwrap().len(), 8);
     }
 
@@ -299,7 +315,7 @@ mod tests {
     fn what_cannot_be_asked_is_refused() {
         let error = explored(Some(literal(9, vec![]))).unwrap_err();
         assert_eq!(error, "the condition of a choice of Human is ill-formed");
-        let error = explored(Some(literal(0, vec![Term::Var(7)]))).unwrap_err();
+        let error = explored(Some(literal(0, vec![AgentTerm::Var(7)]))).unwrap_err();
         assert!(error.ends_with("is ill-formed"), "{error}");
     }
 }

@@ -1,6 +1,6 @@
 //! Sets of beliefs, and the rows of numbers that stand for them.
 
-use hrdsl_ir::bdi::{AgentId, Fact};
+use hrdsl_ir::bdi::{AgentId, InitialFact};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -16,7 +16,7 @@ pub const BATCH: usize = 16;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BeliefSet {
     /// In the order of the factors.
-    pub facts: Vec<(AgentId, Fact)>,
+    pub facts: Vec<(AgentId, InitialFact)>,
     /// Each fact as it is written; [`FactorAlternative::text`](super::FactorAlternative::text).
     pub text: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::suite::Explore;
+use hrdsl_ir::suite::ExploreMode;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -30,22 +30,22 @@ pub(super) struct AllowedRows {
 /// As [`explore`](super::explore), but `Learn` is as `Random`.
 pub(super) fn within(
     space: &mut AllowedSpace<'_>,
-    method: Explore,
+    method: ExploreMode,
     tests: usize,
     rng: &mut ChaCha8Rng,
 ) -> AllowedRows {
     match method {
-        Explore::Exhaustive => {
+        ExploreMode::Exhaustive => {
             let (rows, end) = first(space, tests);
             AllowedRows { rows, cut: end != NextRow::End, notes: Vec::new() }
         }
-        Explore::Wise(strength) => {
+        ExploreMode::Wise(strength) => {
             let mut found = covering(space, usize::from(strength).max(2), rng);
             found.cut |= found.rows.len() >= MAX_SETS;
             fill(&mut found, space, tests, rng);
             found
         }
-        Explore::Random | Explore::Learn => {
+        ExploreMode::Random | ExploreMode::Learn => {
             let mut found = AllowedRows::default();
             found.cut = !fill(&mut found, space, tests, rng);
             found
@@ -230,7 +230,7 @@ mod tests {
 
     use super::*;
     use crate::choose::{BATCH, BeliefExplorer, BeliefFactor, ChooseError, FactorAlternative, sets::row_at};
-    use hrdsl_ir::bdi::{AgentId, BeliefId, Fact};
+    use hrdsl_ir::bdi::{AgentId, BeliefId, InitialFact};
 
     /// A condition: the factors in its scope, and how often it holds, of 8; which rows these are comes from a hash.
     type Clause = (BTreeSet<usize>, u8);
@@ -276,7 +276,7 @@ mod tests {
     }
 
     fn factors(sizes: &[u32]) -> Vec<BeliefFactor> {
-        let fact = |f: u16, a: u32| Fact {
+        let fact = |f: u16, a: u32| InitialFact {
             belief: BeliefId(f),
             args: vec![hrdsl_ir::Value::Int(a.into())],
             annotations: vec![],
@@ -294,7 +294,7 @@ mod tests {
     fn explored(
         sizes: &[u32],
         space: AllowedSpace<'_>,
-        method: Explore,
+        method: ExploreMode,
         tests: u32,
         seed: u64,
     ) -> Result<Vec<Row>, ChooseError> {
@@ -308,13 +308,18 @@ mod tests {
             }
             assert!(batch.len() <= BATCH);
             explorer.learn(&vec![1; batch.len()]);
-            let of = |fact: &Fact| fact.args[0].as_f64().map_or(0, |n| n as u32);
+            let of = |fact: &InitialFact| fact.args[0].as_f64().map_or(0, |n| n as u32);
             rows.extend(batch.iter().map(|set| set.facts.iter().map(|(_, fact)| of(fact)).collect::<Row>()));
         }
     }
 
-    const METHODS: [Explore; 5] =
-        [Explore::Exhaustive, Explore::Wise(2), Explore::Wise(3), Explore::Random, Explore::Learn];
+    const METHODS: [ExploreMode; 5] = [
+        ExploreMode::Exhaustive,
+        ExploreMode::Wise(2),
+        ExploreMode::Wise(3),
+        ExploreMode::Random,
+        ExploreMode::Learn,
+    ];
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(96))]
@@ -342,13 +347,13 @@ mod tests {
                 prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", method);
                 let least = allowed.len().min(tests as usize);
                 match method {
-                    Explore::Exhaustive => prop_assert_eq!(&rows[..], &allowed[..least]),
-                    Explore::Wise(strength) => {
+                    ExploreMode::Exhaustive => prop_assert_eq!(&rows[..], &allowed[..least]),
+                    ExploreMode::Wise(strength) => {
                         let (n, t) = (sizes.len(), usize::from(strength));
                         prop_assert_eq!(sub_tuples(&rows, n, t), sub_tuples(&allowed, n, t));
                         prop_assert!(rows.len() >= least);
                     }
-                    Explore::Random | Explore::Learn => prop_assert_eq!(rows.len(), least),
+                    ExploreMode::Random | ExploreMode::Learn => prop_assert_eq!(rows.len(), least),
                 }
             }
         }
@@ -370,7 +375,7 @@ mod tests {
                 let distinct: BTreeSet<&Row> = rows.iter().collect();
                 prop_assert_eq!(distinct.len(), rows.len());
                 // So small a space is found whole at random.
-                if let Explore::Wise(t) = method {
+                if let ExploreMode::Wise(t) = method {
                     let (n, t) = (sizes.len(), usize::from(t));
                     prop_assert_eq!(sub_tuples(&rows, n, t), sub_tuples(&allowed, n, t));
                 }
@@ -387,14 +392,14 @@ mod tests {
     #[test]
     fn few_of_many_beliefs_are_found_in_a_vast_space() {
         // Each three that are held need a row of their own: the strength of 3 would take long.
-        for method in METHODS.into_iter().filter(|method| *method != Explore::Wise(3)) {
+        for method in METHODS.into_iter().filter(|method| *method != ExploreMode::Wise(3)) {
             let mut rng = ChaCha8Rng::seed_from_u64(5);
             let space = few_of_many(&mut rng);
             assert_eq!((space.allowed(), space.is_exact()), (None, false));
             let rows = explored(&[2; 40], space, method, 50, 5).unwrap();
             assert!(rows.iter().all(|row| row.iter().sum::<u32>() <= 3), "{method:?}");
             assert!(rows.len() >= 50, "{method:?}: {}", rows.len());
-            if method == Explore::Wise(2) {
+            if method == ExploreMode::Wise(2) {
                 let held = |r: &Row, f: usize, g: usize| r[f] == 1 && r[g] == 1;
                 let pairs = (0..40).flat_map(|f| (0..f).map(move |g| (f, g)));
                 for (f, g) in pairs {
@@ -409,10 +414,10 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
         let never = |_, row: &Row| row[1] == 2;
         let space = AllowedSpace::new(vec![2, 2], vec![vec![1]], Box::new(never), &mut rng);
-        let error = explored(&[2, 2], space, Explore::Wise(2), 9, 0).unwrap_err();
+        let error = explored(&[2, 2], space, ExploreMode::Wise(2), 9, 0).unwrap_err();
         assert_eq!(error.to_string(), "no belief set fulfils what `where` says of b1");
         let space = AllowedSpace::new(vec![2], vec![vec![]], Box::new(|_, _| false), &mut rng);
-        let error = explored(&[2], space, Explore::Learn, 9, 0).unwrap_err();
+        let error = explored(&[2], space, ExploreMode::Learn, 9, 0).unwrap_err();
         assert_eq!(error.to_string(), "no belief set fulfils what `where` says");
     }
 
@@ -422,7 +427,7 @@ mod tests {
         let differ = |_, row: &Row| row[0] != row[1];
         let space = AllowedSpace::new(vec![3, 3, 2], vec![vec![0, 1]], Box::new(differ), &mut rng);
         let explorer =
-            BeliefExplorer::within(space, &factors(&[3, 3, 2]), (Explore::Wise(2), 9), rng).unwrap();
+            BeliefExplorer::within(space, &factors(&[3, 3, 2]), (ExploreMode::Wise(2), 9), rng).unwrap();
         assert_eq!(
             explorer.notes,
             [

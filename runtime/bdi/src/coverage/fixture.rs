@@ -15,21 +15,22 @@
 //! ```
 
 use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, Expr, Param, Program, Role, Span, Type, Value,
+    Actor, ActorId, Event, EventId, Expr, Parameter, Program, Role, Span, Type, Value,
     bdi::{
-        Agent, Assertion, Belief, BeliefId, Content, ContentId, Context, Goal, GoalId, Literal, Performative,
-        Plan, Step, StepKind, Subject, Term, Trigger, TriggerOn,
+        Agent, AgentTerm, Assertion, BeliefDecl, BeliefId, BeliefLiteral, ContentId, GoalDecl, GoalId,
+        MessageContent, MessageSubject, Performative, Plan, PlanContext, PlanStep, PlanStepKind, PlanTrigger,
+        TriggerOn,
     },
     expr::BinaryOp,
 };
 
-pub fn step(kind: StepKind) -> Step {
-    Step { kind, origin: Default::default() }
+pub fn step(kind: PlanStepKind) -> PlanStep {
+    PlanStep { kind, origin: Default::default() }
 }
 
-fn belief(name: &str, params: usize) -> Belief {
-    let param = Param { name: "n".into(), ty: Type::Int { lo: 0, hi: 4 } };
-    Belief {
+fn belief(name: &str, params: usize) -> BeliefDecl {
+    let param = Parameter { name: "n".into(), ty: Type::Int { lo: 0, hi: 4 } };
+    BeliefDecl {
         negates: None,
         name: name.into(),
         params: vec![param; params],
@@ -39,15 +40,32 @@ fn belief(name: &str, params: usize) -> Belief {
     }
 }
 
-pub fn holds(belief: u16, args: Vec<Term>) -> Context {
-    Context::Belief(Literal { origin: Span::default(), belief: BeliefId(belief), args, annotations: vec![] })
+pub fn holds(belief: u16, args: Vec<AgentTerm>) -> PlanContext {
+    PlanContext::Belief(BeliefLiteral {
+        origin: Span::default(),
+        belief: BeliefId(belief),
+        args,
+        annotations: vec![],
+    })
 }
 
-pub fn plan(label: &str, on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind>) -> Plan {
+pub fn plan(
+    label: &str,
+    on: TriggerOn,
+    args: Vec<AgentTerm>,
+    context: PlanContext,
+    body: Vec<PlanStepKind>,
+) -> Plan {
     Plan {
         label: label.into(),
         atomic: false,
-        trigger: Trigger { name: Span::default(), origin: Span::default(), on, args, annotations: vec![] },
+        trigger: PlanTrigger {
+            name: Span::default(),
+            origin: Span::default(),
+            on,
+            args,
+            annotations: vec![],
+        },
         context,
         body: body.into_iter().map(step).collect(),
         vars: vec!["N".into(), "M".into()],
@@ -55,8 +73,8 @@ pub fn plan(label: &str, on: TriggerOn, args: Vec<Term>, context: Context, body:
     }
 }
 
-fn agent(name: &str, actor: u16, beliefs: Vec<Belief>, goals: &[(&str, u16)], plans: Vec<Plan>) -> Agent {
-    let goal = |(name, arity): &(&str, u16)| Goal { name: (*name).into(), arity: *arity, params: None };
+fn agent(name: &str, actor: u16, beliefs: Vec<BeliefDecl>, goals: &[(&str, u16)], plans: Vec<Plan>) -> Agent {
+    let goal = |(name, arity): &(&str, u16)| GoalDecl { name: (*name).into(), arity: *arity, params: None };
     Agent {
         name: name.into(),
         actor: ActorId(actor),
@@ -70,38 +88,38 @@ fn agent(name: &str, actor: u16, beliefs: Vec<Belief>, goals: &[(&str, u16)], pl
     }
 }
 
-fn wait() -> StepKind {
-    StepKind::Wait { seconds: Expr::float(1.0) }
+fn wait() -> PlanStepKind {
+    PlanStepKind::Wait { seconds: Expr::float(1.0) }
 }
 
-fn int(n: i64) -> Term {
-    Term::Expr(Expr::Const(Value::Int(n)))
+fn int(n: i64) -> AgentTerm {
+    AgentTerm::Expr(Expr::Const(Value::Int(n)))
 }
 
 fn human() -> Agent {
     let (table, leg) = (GoalId(0), GoalId(1));
-    let achieve = |goal, args| StepKind::Achieve { goal, args, within: None };
-    let wanted = Context::And(vec![
-        holds(0, vec![Term::Var(0)]),
-        Context::Test(Expr::binary(BinaryOp::Gt, Expr::Var(0), Expr::int(0))),
-        Context::Not(Box::new(holds(2, vec![]))),
+    let achieve = |goal, args| PlanStepKind::Achieve { goal, args, within: None };
+    let wanted = PlanContext::And(vec![
+        holds(0, vec![AgentTerm::Var(0)]),
+        PlanContext::Test(Expr::binary(BinaryOp::Gt, Expr::Var(0), Expr::int(0))),
+        PlanContext::Not(Box::new(holds(2, vec![]))),
     ]);
-    let tell = StepKind::Send {
+    let tell = PlanStepKind::Send {
         to: Some(Expr::Var(1)),
         performative: Performative::Tell,
         content: ContentId(0),
-        args: vec![Term::Var(0)],
+        args: vec![AgentTerm::Var(0)],
     };
-    let sulk = StepKind::If {
+    let sulk = PlanStepKind::If {
         condition: holds(2, vec![]),
-        then: vec![step(StepKind::Spawn { goal: leg, args: vec![Expr::int(2)] })],
+        then: vec![step(PlanStepKind::Spawn { goal: leg, args: vec![Expr::int(2)] })],
         otherwise: vec![],
     };
-    let tired = StepKind::Add(Assertion { belief: BeliefId(2), args: vec![], annotations: vec![] });
-    let mut mood = plan("sit#1", TriggerOn::Perceived(EventId(0)), vec![], Context::True, vec![sulk]);
+    let tired = PlanStepKind::Add(Assertion { belief: BeliefId(2), args: vec![], annotations: vec![] });
+    let mut mood = plan("sit#1", TriggerOn::Perceived(EventId(0)), vec![], PlanContext::True, vec![sulk]);
     // The step within the block has site 1; `+tired` comes after it.
     mood.body.push(step(tired));
-    let near = || holds(1, vec![Term::Any]);
+    let near = || holds(1, vec![AgentTerm::Any]);
     let on_leg = TriggerOn::GoalAdded(leg);
     let plans = vec![
         plan(
@@ -111,10 +129,10 @@ fn human() -> Agent {
             wanted,
             vec![achieve(leg, vec![Expr::int(1)]), tell, achieve(table, vec![])],
         ),
-        plan("table#2", TriggerOn::GoalAdded(table), vec![], Context::True, vec![]),
+        plan("table#2", TriggerOn::GoalAdded(table), vec![], PlanContext::True, vec![]),
         plan("leg#1", on_leg, vec![int(1)], near(), vec![wait()]),
-        plan("leg#2", on_leg, vec![int(2)], Context::Or(vec![near(), holds(2, vec![])]), vec![wait()]),
-        plan("leg#3", on_leg, vec![Term::Any], Context::True, vec![StepKind::Fail]),
+        plan("leg#2", on_leg, vec![int(2)], PlanContext::Or(vec![near(), holds(2, vec![])]), vec![wait()]),
+        plan("leg#3", on_leg, vec![AgentTerm::Any], PlanContext::True, vec![PlanStepKind::Fail]),
         mood,
     ];
     let beliefs = vec![belief("wants", 1), belief("near", 1), belief("tired", 0)];
@@ -122,8 +140,13 @@ fn human() -> Agent {
 }
 
 pub fn program() -> Program {
-    let seen =
-        plan("seen#1", TriggerOn::BeliefAdded(BeliefId(0)), vec![Term::Any], Context::True, vec![wait()]);
+    let seen = plan(
+        "seen#1",
+        TriggerOn::BeliefAdded(BeliefId(0)),
+        vec![AgentTerm::Any],
+        PlanContext::True,
+        vec![wait()],
+    );
     let robot = agent("Robot", 1, vec![belief("seen", 1)], &[], vec![seen]);
     let actor = |name: &str, role| Actor { name: name.into(), role, origin: Default::default() };
     let discarded = Event {
@@ -139,7 +162,10 @@ pub fn program() -> Program {
         actors: vec![actor("person", Role::Environment), actor("robot", Role::System)],
         events: vec![discarded],
         agents: vec![human(), robot],
-        contents: vec![Content { name: "seen".into(), of: vec![None, Some(Subject::Belief(BeliefId(0)))] }],
+        contents: vec![MessageContent {
+            name: "seen".into(),
+            of: vec![None, Some(MessageSubject::Belief(BeliefId(0)))],
+        }],
         ..Program::default()
     }
 }

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program,
-    bdi::{Agent, BeliefId, ContentId, GoalId, StepKind, TriggerOn},
+    bdi::{Agent, BeliefId, ContentId, GoalId, PlanStepKind, TriggerOn},
 };
 
 use super::universe::{AgentCoverItem, ApplicableCount, sites};
@@ -44,11 +44,11 @@ fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
     let name = |content: ContentId| program.contents.get(usize::from(content.0)).map_or("?", |c| &c.name);
     let steps = agent.plans.get(usize::from(plan)).map(sites).unwrap_or_default();
     match steps.get(usize::from(site)).map(|s| &s.kind) {
-        Some(StepKind::Send { performative, content, .. }) => {
+        Some(PlanStepKind::Send { performative, content, .. }) => {
             format!("{} {}", performative_name(*performative), name(*content))
         }
-        Some(StepKind::Ask { content, .. }) => format!("ask {}", name(*content)),
-        Some(StepKind::AskAll { content, .. }) => format!("ask_all {}", name(*content)),
+        Some(PlanStepKind::Ask { content, .. }) => format!("ask {}", name(*content)),
+        Some(PlanStepKind::AskAll { content, .. }) => format!("ask_all {}", name(*content)),
         Some(_) | None => "?".to_owned(),
     }
 }
@@ -82,14 +82,14 @@ mod tests {
     use hrdsl_ir::Span;
     use hrdsl_ir::{
         Expr,
-        bdi::{Annotation, Context, Internal, Literal, Term},
+        bdi::{AgentTerm, BeliefAnnotation, BeliefLiteral, InternalAct, PlanContext},
         expr::BinaryOp,
     };
 
     use super::{super::fixture, *};
     use crate::show::context;
 
-    fn written(parts: &Context) -> String {
+    fn written(parts: &PlanContext) -> String {
         let program = fixture::program();
         let human = &program.agents[0];
         context(&program, human, &human.plans[0].vars, parts)
@@ -102,36 +102,39 @@ mod tests {
         assert_eq!(written(&human.plans[0].context), "wants(N) && N > 0 && not tired");
         assert_eq!(written(&human.plans[3].context), "near(_) || tired");
         let either = human.plans[3].context.clone();
-        assert_eq!(written(&Context::Not(Box::new(either.clone()))), "not (near(_) || tired)");
+        assert_eq!(written(&PlanContext::Not(Box::new(either.clone()))), "not (near(_) || tired)");
         assert_eq!(
-            written(&Context::And(vec![either, fixture::holds(2, vec![])])),
+            written(&PlanContext::And(vec![either, fixture::holds(2, vec![])])),
             "(near(_) || tired) && tired"
         );
         let sum = |a, b| Expr::binary(BinaryOp::Add, a, b);
         let product = Expr::binary(BinaryOp::Mul, sum(Expr::Var(0), Expr::int(1)), Expr::Var(1));
         let e = Expr::binary(BinaryOp::Le, product, sum(Expr::Var(0), sum(Expr::Var(1), Expr::float(2.5))));
-        assert_eq!(written(&Context::Test(e.clone())), "(N + 1) * M <= N + (M + 2.5)");
+        assert_eq!(written(&PlanContext::Test(e.clone())), "(N + 1) * M <= N + (M + 2.5)");
         assert_eq!(
-            written(&Context::Not(Box::new(Context::Test(Expr::binary(BinaryOp::Or, e.clone(), e))))),
+            written(&PlanContext::Not(Box::new(PlanContext::Test(Expr::binary(BinaryOp::Or, e.clone(), e))))),
             "not ((N + 1) * M <= N + (M + 2.5) || (N + 1) * M <= N + (M + 2.5))"
         );
     }
 
     #[test]
     fn annotations_lists_and_internal_actions_are_written() {
-        let source = Term::Expr(Expr::Const(hrdsl_ir::Value::Symbol(hrdsl_ir::Symbol::intern("percept"))));
-        let literal = Literal {
+        let source =
+            AgentTerm::Expr(Expr::Const(hrdsl_ir::Value::Symbol(hrdsl_ir::Symbol::intern("percept"))));
+        let literal = BeliefLiteral {
             origin: Span::default(),
             belief: BeliefId(0),
-            args: vec![Term::List(vec![Term::Var(0)], Some(Box::new(Term::Any)))],
-            annotations: vec![(Annotation::Source, source)],
+            args: vec![AgentTerm::List(vec![AgentTerm::Var(0)], Some(Box::new(AgentTerm::Any)))],
+            annotations: vec![(BeliefAnnotation::Source, source)],
         };
-        assert_eq!(written(&Context::Belief(literal)), "wants([N | _])[source(percept)]");
-        let count = Internal::Count { formula: fixture::holds(1, vec![Term::Any]), out: Term::Var(1) };
-        assert_eq!(written(&Context::Internal(Box::new(count), Span::default())), ".count(near(_), M)");
-        let intend = Internal::Intend { goal: GoalId(1), args: vec![Term::Any] };
-        assert_eq!(written(&Context::Internal(Box::new(intend), Span::default())), ".intend(leg(_))");
-        let unify = Context::Unify(Term::Var(0), Expr::binary(BinaryOp::Sub, Expr::Var(1), Expr::int(1)));
+        assert_eq!(written(&PlanContext::Belief(literal)), "wants([N | _])[source(percept)]");
+        let count =
+            InternalAct::Count { formula: fixture::holds(1, vec![AgentTerm::Any]), out: AgentTerm::Var(1) };
+        assert_eq!(written(&PlanContext::Internal(Box::new(count), Span::default())), ".count(near(_), M)");
+        let intend = InternalAct::Intend { goal: GoalId(1), args: vec![AgentTerm::Any] };
+        assert_eq!(written(&PlanContext::Internal(Box::new(intend), Span::default())), ".intend(leg(_))");
+        let unify =
+            PlanContext::Unify(AgentTerm::Var(0), Expr::binary(BinaryOp::Sub, Expr::Var(1), Expr::int(1)));
         assert_eq!(written(&unify), "N = M - 1");
     }
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use hrdsl_ir::{
     Expr,
-    bdi::{Agent, Context, Plan, Step, StepKind, Term, Trigger, TriggerOn, each_step},
-    suite::{ItemKind, ModelGoal},
+    bdi::{Agent, AgentTerm, Plan, PlanContext, PlanStep, PlanStepKind, PlanTrigger, TriggerOn, each_step},
+    suite::{CoverItemKind, ModelGoal},
 };
 
 use crate::measure::AgentCounts;
@@ -65,17 +65,17 @@ impl ApplicableCount {
 
 impl AgentCoverItem {
     #[must_use]
-    pub fn kind(self) -> ItemKind {
+    pub fn kind(self) -> CoverItemKind {
         match self {
-            AgentCoverItem::Selected(_) => ItemKind::Selected,
-            AgentCoverItem::Completed(_) => ItemKind::Completed,
-            AgentCoverItem::Failed(_) => ItemKind::Failed,
-            AgentCoverItem::Context { holds: true, .. } => ItemKind::ContextTrue,
-            AgentCoverItem::Context { holds: false, .. } => ItemKind::ContextFalse,
-            AgentCoverItem::Applicable { .. } => ItemKind::Applicable,
-            AgentCoverItem::Message { .. } => ItemKind::Message,
-            AgentCoverItem::Edge { .. } => ItemKind::Edge,
-            AgentCoverItem::Path(_) => ItemKind::Path,
+            AgentCoverItem::Selected(_) => CoverItemKind::Selected,
+            AgentCoverItem::Completed(_) => CoverItemKind::Completed,
+            AgentCoverItem::Failed(_) => CoverItemKind::Failed,
+            AgentCoverItem::Context { holds: true, .. } => CoverItemKind::ContextTrue,
+            AgentCoverItem::Context { holds: false, .. } => CoverItemKind::ContextFalse,
+            AgentCoverItem::Applicable { .. } => CoverItemKind::Applicable,
+            AgentCoverItem::Message { .. } => CoverItemKind::Message,
+            AgentCoverItem::Edge { .. } => CoverItemKind::Edge,
+            AgentCoverItem::Path(_) => CoverItemKind::Path,
         }
     }
 
@@ -105,7 +105,7 @@ impl AgentCoverItem {
 
 /// The steps of a plan by their site.
 #[must_use]
-pub fn sites(plan: &Plan) -> Vec<&Step> {
+pub fn sites(plan: &Plan) -> Vec<&PlanStep> {
     let mut steps = Vec::new();
     each_step(&plan.body, &mut |step| steps.push(step));
     steps
@@ -116,7 +116,7 @@ pub(super) fn numbered(agent: &Agent) -> impl Iterator<Item = (u16, &Plan)> {
     (0u16..).zip(&agent.plans)
 }
 
-/// All items of an agent, by kind in the order of [`ItemKind::ALL`], in each in the order of the text.
+/// All items of an agent, by kind in the order of [`CoverItemKind::ALL`], in each in the order of the text.
 #[must_use]
 pub fn universe(agent: &Agent) -> Vec<AgentCoverItem> {
     let selected = numbered(agent).map(|(p, _)| AgentCoverItem::Selected(p));
@@ -126,7 +126,7 @@ pub fn universe(agent: &Agent) -> Vec<AgentCoverItem> {
         numbered(agent).filter(|(_, plan)| !plan.body.is_empty()).map(|(p, _)| AgentCoverItem::Failed(p));
     let mut all: Vec<AgentCoverItem> = selected.chain(completed).chain(failed).collect();
     for holds in [true, false] {
-        let with = numbered(agent).filter(|(_, plan)| plan.context != Context::True);
+        let with = numbered(agent).filter(|(_, plan)| plan.context != PlanContext::True);
         all.extend(with.map(|(plan, _)| AgentCoverItem::Context { plan, holds }));
     }
     all.extend(applicable(agent));
@@ -157,11 +157,11 @@ pub fn items(agent: &Agent, goal: ModelGoal) -> Vec<AgentCoverItem> {
 
 /// A body with a step `.fail` of its own never ends well.
 fn can_end(plan: &Plan) -> bool {
-    plan.body.iter().all(|s| s.kind != StepKind::Fail)
+    plan.body.iter().all(|s| s.kind != PlanStepKind::Fail)
 }
 
-fn sends(step: &StepKind) -> bool {
-    matches!(step, StepKind::Send { .. } | StepKind::Ask { .. } | StepKind::AskAll { .. })
+fn sends(step: &PlanStepKind) -> bool {
+    matches!(step, PlanStepKind::Send { .. } | PlanStepKind::Ask { .. } | PlanStepKind::AskAll { .. })
 }
 
 /// How many plans can be applicable, for each trigger in the order of its first plan.
@@ -186,12 +186,12 @@ fn applicable(agent: &Agent) -> Vec<AgentCoverItem> {
 /// Whether the plan is applicable to each event of its trigger: no context, and arguments that match anything.
 pub(super) fn is_always_applicable(plan: &Plan) -> bool {
     let mut known = BTreeSet::new();
-    let is_open = |term: &Term| match term {
-        Term::Any => true,
-        Term::Var(v) => known.insert(*v),
-        Term::Expr(_) | Term::List(..) => false,
+    let is_open = |term: &AgentTerm| match term {
+        AgentTerm::Any => true,
+        AgentTerm::Var(v) => known.insert(*v),
+        AgentTerm::Expr(_) | AgentTerm::List(..) => false,
     };
-    plan.context == Context::True
+    plan.context == PlanContext::True
         && plan.trigger.annotations.is_empty()
         && plan.trigger.args.iter().all(is_open)
 }
@@ -201,7 +201,8 @@ fn edges(agent: &Agent) -> Vec<(u16, u16, u16)> {
     let mut edges = Vec::new();
     for (plan, declared) in numbered(agent) {
         for (site, step) in (0u16..).zip(sites(declared)) {
-            let (StepKind::Achieve { goal, args, .. } | StepKind::Spawn { goal, args }) = &step.kind else {
+            let (PlanStepKind::Achieve { goal, args, .. } | PlanStepKind::Spawn { goal, args }) = &step.kind
+            else {
                 continue;
             };
             let on = TriggerOn::GoalAdded(*goal);
@@ -213,13 +214,13 @@ fn edges(agent: &Agent) -> Vec<(u16, u16, u16)> {
 }
 
 /// Whether constants of a trigger rule out what a step calls with.
-fn can_match(trigger: &Trigger, args: &[Expr]) -> bool {
-    let fits = |(term, arg): (&Term, &Expr)| match (term, arg) {
-        (Term::Expr(Expr::Const(a)), Expr::Const(b)) => match (a.as_f64(), b.as_f64()) {
+fn can_match(trigger: &PlanTrigger, args: &[Expr]) -> bool {
+    let fits = |(term, arg): (&AgentTerm, &Expr)| match (term, arg) {
+        (AgentTerm::Expr(Expr::Const(a)), Expr::Const(b)) => match (a.as_f64(), b.as_f64()) {
             (Some(a), Some(b)) => a == b,
             (None, _) | (_, None) => a.key() == b.key(),
         },
-        (Term::Any | Term::Var(_) | Term::Expr(_) | Term::List(..), _) => true,
+        (AgentTerm::Any | AgentTerm::Var(_) | AgentTerm::Expr(_) | AgentTerm::List(..), _) => true,
     };
     trigger.args.iter().zip(args).all(fits)
 }
@@ -229,7 +230,7 @@ fn paths(agent: &Agent) -> BTreeSet<[u16; 3]> {
     let mut calls = vec![BTreeSet::new(); agent.plans.len()];
     for (plan, site, by) in edges(agent) {
         let step = sites(&agent.plans[usize::from(plan)])[usize::from(site)];
-        if matches!(step.kind, StepKind::Achieve { .. }) {
+        if matches!(step.kind, PlanStepKind::Achieve { .. }) {
             calls[usize::from(plan)].insert(by);
         }
     }

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{
     Program,
     bdi::{
-        Agent, AgentId, BeliefId, ContentId, Context, GoalId, Performative, Plan, StepKind, Subject,
-        TriggerOn,
+        Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanContext,
+        PlanStepKind, TriggerOn,
     },
 };
 
@@ -180,14 +180,14 @@ impl<'a> TeamMember<'a> {
         let most = blocked.iter().copied().max().filter(|n| *n > 0)?;
         let at = blocked.iter().position(|n| *n == most)?;
         let part = match &declared.context {
-            Context::And(parts) => parts.get(at)?,
-            Context::True
-            | Context::Belief(_)
-            | Context::Not(_)
-            | Context::Or(_)
-            | Context::Test(_)
-            | Context::Unify(..)
-            | Context::Internal(_, _) => &declared.context,
+            PlanContext::And(parts) => parts.get(at)?,
+            PlanContext::True
+            | PlanContext::Belief(_)
+            | PlanContext::Not(_)
+            | PlanContext::Or(_)
+            | PlanContext::Test(_)
+            | PlanContext::Unify(..)
+            | PlanContext::Internal(_, _) => &declared.context,
         };
         let text = show::context(self.team.program, self.agent, &declared.vars, part);
         Some(match blocked.len() {
@@ -285,7 +285,8 @@ impl<'a> TeamMember<'a> {
     /// The first step of a plan that calls for the goal of another.
     fn call(&self, plan: u16, by: u16) -> Option<u16> {
         let TriggerOn::GoalAdded(wanted) = self.plan(by)?.trigger.on else { return None };
-        let is_call = |kind: &StepKind| matches!(kind, StepKind::Achieve { goal, .. } if *goal == wanted);
+        let is_call =
+            |kind: &PlanStepKind| matches!(kind, PlanStepKind::Achieve { goal, .. } if *goal == wanted);
         let steps = (0u16..).zip(sites(self.plan(plan)?));
         steps.filter(|(_, s)| is_call(&s.kind)).map(|(site, _)| site).next()
     }
@@ -295,8 +296,8 @@ impl<'a> TeamMember<'a> {
         let program = self.team.program;
         match on {
             TriggerOn::GoalAdded(wanted) => {
-                let own = |k: &StepKind| matches!(k, StepKind::Achieve { goal, .. } | StepKind::Spawn { goal, .. } if *goal == wanted);
-                let told = self.messages(Subject::Goal(wanted), &[Performative::Achieve]);
+                let own = |k: &PlanStepKind| matches!(k, PlanStepKind::Achieve { goal, .. } | PlanStepKind::Spawn { goal, .. } if *goal == wanted);
+                let told = self.messages(MessageSubject::Goal(wanted), &[Performative::Achieve]);
                 self.because(self.own_steps(own).chain(told).collect(), on, "adopts it", depth)
             }
             TriggerOn::GoalFailed(wanted) => self.why_never_failed(wanted, depth),
@@ -306,21 +307,22 @@ impl<'a> TeamMember<'a> {
                     let name = program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
                     return format!("`{name}` was never perceived");
                 }
-                let is_it = |content: &ContentId| self.subject(*content) == Some(Subject::Belief(wanted));
-                let own = |k: &StepKind| {
-                    matches!(k, StepKind::Add(a) | StepKind::Replace(a) if a.belief == wanted)
-                        || matches!(k, StepKind::Send { performative, content, .. }
+                let is_it =
+                    |content: &ContentId| self.subject(*content) == Some(MessageSubject::Belief(wanted));
+                let own = |k: &PlanStepKind| {
+                    matches!(k, PlanStepKind::Add(a) | PlanStepKind::Replace(a) if a.belief == wanted)
+                        || matches!(k, PlanStepKind::Send { performative, content, .. }
                             if is_question(*performative) && is_it(content))
                 };
-                let told = self.messages(Subject::Belief(wanted), &[Performative::Tell]);
+                let told = self.messages(MessageSubject::Belief(wanted), &[Performative::Tell]);
                 self.because(self.own_steps(own).chain(told).collect(), on, "adds it", depth)
             }
             TriggerOn::BeliefRemoved(wanted) => {
-                let own = |k: &StepKind| {
-                    matches!(k, StepKind::Remove(l) | StepKind::Abolish(l) if l.belief == wanted)
-                        || matches!(k, StepKind::Replace(a) if a.belief == wanted)
+                let own = |k: &PlanStepKind| {
+                    matches!(k, PlanStepKind::Remove(l) | PlanStepKind::Abolish(l) if l.belief == wanted)
+                        || matches!(k, PlanStepKind::Replace(a) if a.belief == wanted)
                 };
-                let told = self.messages(Subject::Belief(wanted), &[Performative::Untell]);
+                let told = self.messages(MessageSubject::Belief(wanted), &[Performative::Untell]);
                 self.because(self.own_steps(own).chain(told).collect(), on, "removes it", depth)
             }
             TriggerOn::TestAdded(wanted) => self.why_never_asked(wanted, depth),
@@ -353,8 +355,8 @@ impl<'a> TeamMember<'a> {
     }
 
     fn why_never_asked(&self, wanted: BeliefId, depth: usize) -> String {
-        let own = |k: &StepKind| matches!(k, StepKind::Query(l) if l.belief == wanted);
-        let asked = self.messages(Subject::Belief(wanted), &[Performative::AskOne]);
+        let own = |k: &PlanStepKind| matches!(k, PlanStepKind::Query(l) if l.belief == wanted);
+        let asked = self.messages(MessageSubject::Belief(wanted), &[Performative::AskOne]);
         let makers: Vec<EnablingStep<'_>> = self.own_steps(own).chain(asked).collect();
         let is_run = |m: &EnablingStep<'_>| m.who.selected(m.plan) > 0;
         if makers.iter().any(is_run) {
@@ -364,7 +366,7 @@ impl<'a> TeamMember<'a> {
     }
 
     /// The steps of the agent's plans that are so.
-    fn own_steps<F: Fn(&StepKind) -> bool>(self, is_so: F) -> impl Iterator<Item = EnablingStep<'a>> {
+    fn own_steps<F: Fn(&PlanStepKind) -> bool>(self, is_so: F) -> impl Iterator<Item = EnablingStep<'a>> {
         let mut found = Vec::new();
         for (plan, declared) in numbered(self.agent) {
             for (site, step) in (0u16..).zip(sites(declared)) {
@@ -377,20 +379,20 @@ impl<'a> TeamMember<'a> {
     }
 
     /// The steps of other agents that send such a message about this.
-    fn messages(&self, about: Subject, performatives: &[Performative]) -> Vec<EnablingStep<'a>> {
+    fn messages(&self, about: MessageSubject, performatives: &[Performative]) -> Vec<EnablingStep<'a>> {
         let team = self.team;
         let others = team.measured.iter().filter(|(a, _)| *a != self.id).filter_map(|(a, _)| team.member(*a));
         let is_it = |content: &ContentId| self.subject(*content) == Some(about);
         let asks = performatives.contains(&Performative::AskOne);
-        let is_so = |k: &StepKind| {
-            matches!(k, StepKind::Send { performative, content, .. } if performatives.contains(performative) && is_it(content))
-                || matches!(k, StepKind::Ask { content, .. } if asks && is_it(content))
+        let is_so = |k: &PlanStepKind| {
+            matches!(k, PlanStepKind::Send { performative, content, .. } if performatives.contains(performative) && is_it(content))
+                || matches!(k, PlanStepKind::Ask { content, .. } if asks && is_it(content))
         };
         others.flat_map(|other| other.own_steps(is_so).collect::<Vec<_>>()).collect()
     }
 
     /// What a message's content is to this agent.
-    fn subject(&self, content: ContentId) -> Option<Subject> {
+    fn subject(&self, content: ContentId) -> Option<MessageSubject> {
         let content = self.team.program.contents.get(usize::from(content.0))?;
         content.of.get(usize::from(self.id.0)).copied().flatten()
     }

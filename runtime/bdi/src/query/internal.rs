@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     List, Value,
-    bdi::{Context, GoalId, Internal, Term},
+    bdi::{AgentTerm, GoalId, InternalAct, PlanContext},
     expr::EvalError,
     list::{apply, order, same},
     value::seconds,
@@ -20,54 +20,54 @@ impl<'p> QuerySolver<'p> {
         &mut self,
         mind: &MentalState<'p>,
         dice: &mut AgentRng,
-        internal: &'p Internal,
+        internal: &'p InternalAct,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let base = at.base as usize;
         let value = |e, slots: &[Slot]| eval(e, &slots[base..]);
         let (out, result) = match internal {
-            Internal::FindAll { template, formula, .. } => {
+            InternalAct::FindAll { template, formula, .. } => {
                 return Ok(Some(self.collect(internal, formula, Some(template), at)));
             }
-            Internal::Count { formula, .. } => return Ok(Some(self.collect(internal, formula, None, at))),
-            Internal::Member { element, list } => {
+            InternalAct::Count { formula, .. } => return Ok(Some(self.collect(internal, formula, None, at))),
+            InternalAct::Member { element, list } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
                 return self.member(element, list, at);
             }
-            Internal::Apply { function, args, out } => {
+            InternalAct::Apply { function, args, out } => {
                 let args: Vec<Value> =
                     args.iter().map(|a| value(a, &self.slots)).collect::<Result<_, _>>()?;
                 (out, apply(*function, &args)?)
             }
-            Internal::Holds { function, args } => {
+            InternalAct::Holds { function, args } => {
                 let args: Vec<Value> =
                     args.iter().map(|a| value(a, &self.slots)).collect::<Result<_, _>>()?;
                 let holds = apply(*function, &args)? == Some(Value::Bool(true));
                 return Ok(holds.then_some(at.next));
             }
-            Internal::Intend { goal, args } => {
+            InternalAct::Intend { goal, args } => {
                 return self.held(mind, GoalAttitude::Intended, *goal, args, at);
             }
-            Internal::Desire { goal, args } => {
+            InternalAct::Desire { goal, args } => {
                 return self.held(mind, GoalAttitude::Desired, *goal, args, at);
             }
-            Internal::Suspended { goal, args } => {
+            InternalAct::Suspended { goal, args } => {
                 return self.held(mind, GoalAttitude::Suspended, *goal, args, at);
             }
-            Internal::Random { from: None, out } => (out, Some(Value::Float(dice.fraction()))),
-            Internal::Random { from: Some(list), out } => {
+            InternalAct::Random { from: None, out } => (out, Some(Value::Float(dice.fraction()))),
+            InternalAct::Random { from: Some(list), out } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
                 (out, (!list.is_empty()).then(|| list.iter().nth(dice.below(list.len()))).flatten())
             }
-            Internal::Shuffle { list, out } => {
+            InternalAct::Shuffle { list, out } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
                 let mut all: Vec<Value> = list.iter().collect();
                 dice.shuffle(&mut all);
                 (out, Some(Value::List(List::of(&all))))
             }
-            Internal::Time { out } => (out, Some(Value::Float(seconds(mind.now)))),
-            Internal::MyName { out } => (out, Some(Value::Symbol(mind.me.name))),
-            Internal::AllNames { out } => (out, Some(Value::List(mind.me.peers.list))),
+            InternalAct::Time { out } => (out, Some(Value::Float(seconds(mind.now)))),
+            InternalAct::MyName { out } => (out, Some(Value::Symbol(mind.me.name))),
+            InternalAct::AllNames { out } => (out, Some(Value::List(mind.me.peers.list))),
         };
         let Some(result) = result else { return Ok(None) };
         Ok(self.matches(out, result, at)?.then_some(at.next))
@@ -78,7 +78,7 @@ impl<'p> QuerySolver<'p> {
         mind: &MentalState<'p>,
         attitude: GoalAttitude,
         goal: GoalId,
-        args: &'p [Term],
+        args: &'p [AgentTerm],
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let from = self.had.len() as u32;
@@ -93,7 +93,7 @@ impl<'p> QuerySolver<'p> {
 
     pub(super) fn goals(
         &mut self,
-        args: &'p [Term],
+        args: &'p [AgentTerm],
         mut from: u32,
         to: u32,
         at: FormulaPosition,
@@ -117,8 +117,8 @@ impl<'p> QuerySolver<'p> {
 
     fn collect(
         &mut self,
-        what: &'p Internal,
-        formula: &'p Context,
+        what: &'p InternalAct,
+        formula: &'p PlanContext,
         template: Option<&'p hrdsl_ir::Expr>,
         at: FormulaPosition,
     ) -> u32 {
@@ -132,7 +132,7 @@ impl<'p> QuerySolver<'p> {
 
     pub(super) fn member(
         &mut self,
-        element: &'p Term,
+        element: &'p AgentTerm,
         mut list: List,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
@@ -156,31 +156,31 @@ impl<'p> QuerySolver<'p> {
     pub(super) fn gathered(
         &mut self,
         start: usize,
-        what: &'p Internal,
+        what: &'p InternalAct,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let mut all: Vec<Value> = self.collected.drain(start..).collect();
         let (out, value) = match what {
-            Internal::FindAll { set, out, .. } => {
+            InternalAct::FindAll { set, out, .. } => {
                 if *set {
                     all.sort_by(|a, b| order(*a, *b));
                     all.dedup_by(|a, b| same(*a, *b));
                 }
                 (out, Value::List(List::of(&all)))
             }
-            Internal::Count { out, .. } => (out, Value::Int(all.len() as i64)),
+            InternalAct::Count { out, .. } => (out, Value::Int(all.len() as i64)),
             // INVARIANT: only these two collect.
-            Internal::Member { .. }
-            | Internal::Apply { .. }
-            | Internal::Holds { .. }
-            | Internal::Intend { .. }
-            | Internal::Desire { .. }
-            | Internal::Suspended { .. }
-            | Internal::Random { .. }
-            | Internal::Shuffle { .. }
-            | Internal::Time { .. }
-            | Internal::MyName { .. }
-            | Internal::AllNames { .. } => return Ok(None),
+            InternalAct::Member { .. }
+            | InternalAct::Apply { .. }
+            | InternalAct::Holds { .. }
+            | InternalAct::Intend { .. }
+            | InternalAct::Desire { .. }
+            | InternalAct::Suspended { .. }
+            | InternalAct::Random { .. }
+            | InternalAct::Shuffle { .. }
+            | InternalAct::Time { .. }
+            | InternalAct::MyName { .. }
+            | InternalAct::AllNames { .. } => return Ok(None),
         };
         Ok(self.matches(out, value, at)?.then_some(at.next))
     }

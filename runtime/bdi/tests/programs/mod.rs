@@ -4,8 +4,8 @@
 use hrdsl_ir::{
     Actor, ActorId, Expr, Program, Role, Span, Symbol, Value,
     bdi::{
-        Agent, AgentId, Content, ContentId, Context, Fact, Goal, GoalId, Performative, Plan, Step, StepKind,
-        Subject, Term, Trigger, TriggerOn,
+        Agent, AgentId, AgentTerm, ContentId, GoalDecl, GoalId, InitialFact, MessageContent, MessageSubject,
+        Performative, Plan, PlanContext, PlanStep, PlanStepKind, PlanTrigger, TriggerOn,
     },
     expr::BinaryOp,
 };
@@ -14,8 +14,8 @@ pub fn var(v: u16) -> Expr {
     Expr::Var(v)
 }
 
-pub fn less(a: Expr, b: Expr) -> Context {
-    Context::Test(Expr::binary(BinaryOp::Lt, a, b))
+pub fn less(a: Expr, b: Expr) -> PlanContext {
+    PlanContext::Test(Expr::binary(BinaryOp::Lt, a, b))
 }
 
 pub fn plus(a: Expr, n: i64) -> Expr {
@@ -36,15 +36,21 @@ pub fn agent(name: &str) -> Agent {
     }
 }
 
-pub fn goal(name: &str, arity: u16) -> Goal {
-    Goal { name: name.to_owned(), arity, params: None }
+pub fn goal(name: &str, arity: u16) -> GoalDecl {
+    GoalDecl { name: name.to_owned(), arity, params: None }
 }
 
-pub fn plan(on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind>, vars: usize) -> Plan {
+pub fn plan(
+    on: TriggerOn,
+    args: Vec<AgentTerm>,
+    context: PlanContext,
+    body: Vec<PlanStepKind>,
+    vars: usize,
+) -> Plan {
     Plan {
         label: format!("{on:?}"),
         atomic: false,
-        trigger: Trigger {
+        trigger: PlanTrigger {
             name: Span::default(),
             origin: Span::default(),
             on,
@@ -52,14 +58,14 @@ pub fn plan(on: TriggerOn, args: Vec<Term>, context: Context, body: Vec<StepKind
             annotations: Vec::new(),
         },
         context,
-        body: body.into_iter().map(|kind| Step { kind, origin: Span::default() }).collect(),
+        body: body.into_iter().map(|kind| PlanStep { kind, origin: Span::default() }).collect(),
         vars: (0..vars).map(|v| format!("V{v}")).collect(),
         origin: Span::default(),
     }
 }
 
-pub fn achieve(goal: u16, args: Vec<Expr>) -> StepKind {
-    StepKind::Achieve { goal: GoalId(goal), args, within: None }
+pub fn achieve(goal: u16, args: Vec<Expr>) -> PlanStepKind {
+    PlanStepKind::Achieve { goal: GoalId(goal), args, within: None }
 }
 
 pub fn program(agents: Vec<Agent>) -> Program {
@@ -68,7 +74,7 @@ pub fn program(agents: Vec<Agent>) -> Program {
 }
 
 /// Each agent of the program once, with no more beliefs than its own.
-pub fn all(program: &Program) -> Vec<(AgentId, Vec<Fact>)> {
+pub fn all(program: &Program) -> Vec<(AgentId, Vec<InitialFact>)> {
     (0..program.agents.len() as u16).map(|id| (AgentId(id), Vec::new())).collect()
 }
 
@@ -78,10 +84,10 @@ pub fn counter(limit: i64) -> Agent {
     agent.goals.push(goal("count", 1));
     agent.initial_goals.push((GoalId(0), vec![Value::Int(0)]));
     let on = TriggerOn::GoalAdded(GoalId(0));
-    let args = || vec![Term::Var(0)];
+    let args = || vec![AgentTerm::Var(0)];
     let more = less(var(0), Expr::int(limit));
     agent.plans.push(plan(on, args(), more, vec![achieve(0, vec![plus(var(0), 1)])], 1));
-    agent.plans.push(plan(on, args(), Context::True, vec![], 1));
+    agent.plans.push(plan(on, args(), PlanContext::True, vec![], 1));
     agent
 }
 
@@ -92,9 +98,9 @@ pub fn deep(limit: i64) -> Program {
     agent.initial_goals.push((GoalId(0), vec![Value::Int(0)]));
     let on = TriggerOn::GoalAdded(GoalId(0));
     let body = vec![achieve(0, vec![plus(var(0), 1)]), achieve(1, vec![])];
-    agent.plans.push(plan(on, vec![Term::Var(0)], less(var(0), Expr::int(limit)), body, 1));
-    agent.plans.push(plan(on, vec![Term::Any], Context::True, vec![], 0));
-    agent.plans.push(plan(TriggerOn::GoalAdded(GoalId(1)), vec![], Context::True, vec![], 0));
+    agent.plans.push(plan(on, vec![AgentTerm::Var(0)], less(var(0), Expr::int(limit)), body, 1));
+    agent.plans.push(plan(on, vec![AgentTerm::Any], PlanContext::True, vec![], 0));
+    agent.plans.push(plan(TriggerOn::GoalAdded(GoalId(1)), vec![], PlanContext::True, vec![], 0));
     program(vec![agent])
 }
 
@@ -103,21 +109,21 @@ pub fn messages(limit: i64) -> Program {
     let player = |name: &str, other: &str| {
         let mut agent = agent(name);
         agent.goals.push(goal("ball", 1));
-        let send = StepKind::Send {
+        let send = PlanStepKind::Send {
             to: Some(Expr::Const(Value::Symbol(Symbol::intern(other)))),
             performative: Performative::Achieve,
             content: ContentId(0),
-            args: vec![Term::Expr(plus(var(0), 1))],
+            args: vec![AgentTerm::Expr(plus(var(0), 1))],
         };
         let on = TriggerOn::GoalAdded(GoalId(0));
-        agent.plans.push(plan(on, vec![Term::Var(0)], less(var(0), Expr::int(limit)), vec![send], 1));
-        agent.plans.push(plan(on, vec![Term::Any], Context::True, vec![], 0));
+        agent.plans.push(plan(on, vec![AgentTerm::Var(0)], less(var(0), Expr::int(limit)), vec![send], 1));
+        agent.plans.push(plan(on, vec![AgentTerm::Any], PlanContext::True, vec![], 0));
         agent
     };
     let mut program = program(vec![player("ping", "pong"), player("pong", "ping")]);
     program.agents[0].initial_goals.push((GoalId(0), vec![Value::Int(0)]));
-    let subject = Some(Subject::Goal(GoalId(0)));
-    program.contents.push(Content { name: "ball".to_owned(), of: vec![subject; 2] });
+    let subject = Some(MessageSubject::Goal(GoalId(0)));
+    program.contents.push(MessageContent { name: "ball".to_owned(), of: vec![subject; 2] });
     program
 }
 

@@ -1,11 +1,12 @@
 //! Random societies: agents that share names of beliefs and goals, speak to each other, wait, fork and fail.
 
 use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Param, Program, Role, Span, Symbol, Type,
-    Value,
+    Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Parameter, Program, Role, Span, Symbol,
+    Type, Value,
     bdi::{
-        Agent, Annotation, Assertion, Belief, BeliefId, Content, ContentId, Context, Control, Fact, Goal,
-        GoalId, Internal, Literal, Performative, Plan, Step, StepKind, Subject, Term, Trigger, TriggerOn,
+        Agent, AgentTerm, Assertion, BeliefAnnotation, BeliefDecl, BeliefId, BeliefLiteral, ContentId,
+        ControlAct, GoalDecl, GoalId, InitialFact, InternalAct, MessageContent, MessageSubject, Performative,
+        Plan, PlanContext, PlanStep, PlanStepKind, PlanTrigger, TriggerOn,
     },
     expr::BinaryOp,
 };
@@ -28,7 +29,7 @@ struct Maker {
 /// A program of so many agents.
 pub fn society(seed: u64, agents: u16) -> Program {
     let mut maker = Maker { rng: ChaCha8Rng::seed_from_u64(seed), agents, bound: Vec::new() };
-    let param = || Param { name: "p".to_owned(), ty: INT };
+    let param = || Parameter { name: "p".to_owned(), ty: INT };
     let actor = |n: u16| Actor {
         name: format!("actor{n}"),
         role: if n == 0 { Role::System } else { Role::Environment },
@@ -42,10 +43,11 @@ pub fn society(seed: u64, agents: u16) -> Program {
         stimulus: None,
         origin: Span::default(),
     };
-    let subjects = |subject: Subject| vec![Some(subject); usize::from(agents)];
-    let beliefs =
-        (0..BELIEFS).map(|b| Content { name: format!("b{b}"), of: subjects(Subject::Belief(BeliefId(b))) });
-    let goals = (0..GOALS).map(|g| Content { name: format!("g{g}"), of: subjects(Subject::Goal(GoalId(g))) });
+    let subjects = |subject: MessageSubject| vec![Some(subject); usize::from(agents)];
+    let beliefs = (0..BELIEFS)
+        .map(|b| MessageContent { name: format!("b{b}"), of: subjects(MessageSubject::Belief(BeliefId(b))) });
+    let goals = (0..GOALS)
+        .map(|g| MessageContent { name: format!("g{g}"), of: subjects(MessageSubject::Goal(GoalId(g))) });
     Program {
         actors: (0..agents).map(actor).collect(),
         events: (0..EVENTS * agents).map(event).collect(),
@@ -57,8 +59,8 @@ pub fn society(seed: u64, agents: u16) -> Program {
 
 impl Maker {
     fn agent(&mut self, number: u16) -> Agent {
-        let param = || Param { name: "p".to_owned(), ty: INT };
-        let belief = |b: u16| Belief {
+        let param = || Parameter { name: "p".to_owned(), ty: INT };
+        let belief = |b: u16| BeliefDecl {
             negates: None,
             name: format!("b{b}"),
             params: vec![param()],
@@ -66,8 +68,8 @@ impl Maker {
             percept: None,
             origin: Span::default(),
         };
-        let goal = |g: u16| Goal { name: format!("g{g}"), arity: 1, params: None };
-        let fact = |belief, n| Fact { belief, args: vec![Value::Int(n)], annotations: Vec::new() };
+        let goal = |g: u16| GoalDecl { name: format!("g{g}"), arity: 1, params: None };
+        let fact = |belief, n| InitialFact { belief, args: vec![Value::Int(n)], annotations: Vec::new() };
         let plans = self.rng.random_range(4..12);
         Agent {
             name: format!("agent{number}"),
@@ -98,17 +100,17 @@ impl Maker {
             _ => TriggerOn::Perceived(self.event(None)),
         };
         self.bound = vec![0];
-        let context = if at < 3 { Context::True } else { self.context() };
+        let context = if at < 3 { PlanContext::True } else { self.context() };
         let steps = self.rng.random_range(0..5);
         let body = self.steps(of, steps, 2);
         Plan {
             label: format!("p{at}"),
             atomic: self.rng.random_ratio(1, 12),
-            trigger: Trigger {
+            trigger: PlanTrigger {
                 name: Span::default(),
                 origin: Span::default(),
                 on,
-                args: vec![Term::Var(0)],
+                args: vec![AgentTerm::Var(0)],
                 annotations: Vec::new(),
             },
             context,
@@ -133,47 +135,55 @@ impl Maker {
     }
 
     /// A term that may bind a variable, which is bound from then on if that is wanted.
-    fn term(&mut self, binds: bool) -> Term {
+    fn term(&mut self, binds: bool) -> AgentTerm {
         match self.rng.random_range(0..3) {
-            0 => Term::Any,
-            1 => Term::Expr(self.expr()),
+            0 => AgentTerm::Any,
+            1 => AgentTerm::Expr(self.expr()),
             _ => {
                 let var = self.rng.random_range(0..VARS);
                 if binds && !self.bound.contains(&var) {
                     self.bound.push(var);
                 }
-                Term::Var(var)
+                AgentTerm::Var(var)
             }
         }
     }
 
-    fn literal(&mut self, binds: bool) -> Literal {
-        let annotations =
-            if self.rng.random_ratio(1, 5) { vec![(Annotation::Source, Term::Any)] } else { Vec::new() };
-        Literal { origin: Span::default(), belief: self.belief(), args: vec![self.term(binds)], annotations }
+    fn literal(&mut self, binds: bool) -> BeliefLiteral {
+        let annotations = if self.rng.random_ratio(1, 5) {
+            vec![(BeliefAnnotation::Source, AgentTerm::Any)]
+        } else {
+            Vec::new()
+        };
+        BeliefLiteral {
+            origin: Span::default(),
+            belief: self.belief(),
+            args: vec![self.term(binds)],
+            annotations,
+        }
     }
 
-    fn context(&mut self) -> Context {
+    fn context(&mut self) -> PlanContext {
         match self.rng.random_range(0..6) {
-            0 => Context::True,
-            1 => Context::Not(Box::new(Context::Belief(self.literal(false)))),
-            2 => Context::Test(Expr::binary(BinaryOp::Lt, self.expr(), self.expr())),
-            3 => Context::And(vec![Context::Belief(self.literal(true)), self.context()]),
+            0 => PlanContext::True,
+            1 => PlanContext::Not(Box::new(PlanContext::Belief(self.literal(false)))),
+            2 => PlanContext::Test(Expr::binary(BinaryOp::Lt, self.expr(), self.expr())),
+            3 => PlanContext::And(vec![PlanContext::Belief(self.literal(true)), self.context()]),
             4 => {
-                let formula = Context::Belief(self.literal(false));
-                let count = Internal::Count { formula, out: self.term(true) };
-                Context::Internal(Box::new(count), Span::default())
+                let formula = PlanContext::Belief(self.literal(false));
+                let count = InternalAct::Count { formula, out: self.term(true) };
+                PlanContext::Internal(Box::new(count), Span::default())
             }
-            _ => Context::Belief(self.literal(true)),
+            _ => PlanContext::Belief(self.literal(true)),
         }
     }
 
-    fn steps(&mut self, of: u16, count: usize, depth: u32) -> Vec<Step> {
-        (0..count).map(|_| Step { kind: self.step(of, depth), origin: Span::default() }).collect()
+    fn steps(&mut self, of: u16, count: usize, depth: u32) -> Vec<PlanStep> {
+        (0..count).map(|_| PlanStep { kind: self.step(of, depth), origin: Span::default() }).collect()
     }
 
     /// A block's steps bind nothing for those behind it.
-    fn block(&mut self, of: u16, depth: u32) -> Vec<Step> {
+    fn block(&mut self, of: u16, depth: u32) -> Vec<PlanStep> {
         let before = self.bound.clone();
         let count = self.rng.random_range(0..3);
         let steps = self.steps(of, count, depth - 1);
@@ -181,32 +191,34 @@ impl Maker {
         steps
     }
 
-    fn step(&mut self, of: u16, depth: u32) -> StepKind {
+    fn step(&mut self, of: u16, depth: u32) -> PlanStepKind {
         let belief = self.belief();
         let goal = GoalId(self.rng.random_range(0..GOALS));
         let seconds = Expr::float(f64::from(self.rng.random_range(0..8)) / 2.0);
         match self.rng.random_range(0..if depth > 0 { 22 } else { 18 }) {
-            0 => StepKind::Do {
+            0 => PlanStepKind::Do {
                 event: self.event(Some(of)),
                 args: vec![Expr::int(self.rng.random_range(-3..4))],
             },
             1 | 2 => {
                 let within = self.rng.random_bool(0.3).then(|| seconds.clone());
-                StepKind::Achieve { goal, args: vec![self.expr()], within }
+                PlanStepKind::Achieve { goal, args: vec![self.expr()], within }
             }
-            3 => StepKind::Spawn { goal, args: vec![self.expr()] },
-            4 => StepKind::Query(self.literal(true)),
-            5 => StepKind::Test(self.context()),
-            6 => StepKind::Add(Assertion { belief, args: vec![self.expr()], annotations: Vec::new() }),
-            7 => StepKind::Remove(self.literal(false)),
-            8 => StepKind::Replace(Assertion { belief, args: vec![self.expr()], annotations: Vec::new() }),
-            9 => StepKind::Abolish(self.literal(false)),
+            3 => PlanStepKind::Spawn { goal, args: vec![self.expr()] },
+            4 => PlanStepKind::Query(self.literal(true)),
+            5 => PlanStepKind::Test(self.context()),
+            6 => PlanStepKind::Add(Assertion { belief, args: vec![self.expr()], annotations: Vec::new() }),
+            7 => PlanStepKind::Remove(self.literal(false)),
+            8 => {
+                PlanStepKind::Replace(Assertion { belief, args: vec![self.expr()], annotations: Vec::new() })
+            }
+            9 => PlanStepKind::Abolish(self.literal(false)),
             10 | 11 => {
                 let pattern = EventPattern { event: self.event(None), args: vec![ArgPattern::Any] };
                 let within = self.rng.random_bool(0.7).then_some(seconds);
-                StepKind::Await { events: vec![pattern], within }
+                PlanStepKind::Await { events: vec![pattern], within }
             }
-            12 | 13 => StepKind::Wait { seconds },
+            12 | 13 => PlanStepKind::Wait { seconds },
             14 | 15 => self.message(),
             16 => self.question(seconds),
             17 => self.control(goal),
@@ -215,18 +227,18 @@ impl Maker {
                 let condition = self.context();
                 let then = self.block(of, depth);
                 self.bound = before;
-                StepKind::If { condition, then, otherwise: self.block(of, depth) }
+                PlanStepKind::If { condition, then, otherwise: self.block(of, depth) }
             }
             19 => {
                 let before = self.bound.clone();
                 let condition = self.context();
                 let body = self.block(of, depth);
                 self.bound = before;
-                StepKind::For { condition, body }
+                PlanStepKind::For { condition, body }
             }
             _ => {
                 let all = self.rng.random_bool(0.5);
-                StepKind::Fork { branches: vec![self.block(of, depth), self.block(of, depth)], all }
+                PlanStepKind::Fork { branches: vec![self.block(of, depth), self.block(of, depth)], all }
             }
         }
     }
@@ -236,7 +248,7 @@ impl Maker {
         Expr::Const(Value::Symbol(Symbol::intern(&format!("agent{other}"))))
     }
 
-    fn message(&mut self) -> StepKind {
+    fn message(&mut self) -> PlanStepKind {
         let performative = match self.rng.random_range(0..6) {
             0 => Performative::Untell,
             1 | 2 => Performative::Achieve,
@@ -247,30 +259,30 @@ impl Maker {
         let is_goal = performative == Performative::Achieve;
         let content = if is_goal { BELIEFS + self.rng.random_range(0..GOALS) } else { self.belief().0 };
         let to = self.rng.random_ratio(4, 5).then(|| self.other());
-        let args = vec![Term::Expr(self.expr())];
-        StepKind::Send { to, performative, content: ContentId(content), args }
+        let args = vec![AgentTerm::Expr(self.expr())];
+        PlanStepKind::Send { to, performative, content: ContentId(content), args }
     }
 
-    fn question(&mut self, seconds: Expr) -> StepKind {
+    fn question(&mut self, seconds: Expr) -> PlanStepKind {
         let (to, content) = (self.other(), ContentId(self.belief().0));
         let var = self.rng.random_range(0..VARS);
         if !self.bound.contains(&var) {
             self.bound.push(var);
         }
-        StepKind::Ask { to, content, args: vec![Term::Var(var)], within: Some(seconds) }
+        PlanStepKind::Ask { to, content, args: vec![AgentTerm::Var(var)], within: Some(seconds) }
     }
 
-    fn control(&mut self, goal: GoalId) -> StepKind {
+    fn control(&mut self, goal: GoalId) -> PlanStepKind {
         let all = [
-            Control::DropIntention,
-            Control::DropDesire,
-            Control::SucceedGoal,
-            Control::FailGoal,
-            Control::Suspend,
-            Control::Resume,
-            Control::Resume,
+            ControlAct::DropIntention,
+            ControlAct::DropDesire,
+            ControlAct::SucceedGoal,
+            ControlAct::FailGoal,
+            ControlAct::Suspend,
+            ControlAct::Resume,
+            ControlAct::Resume,
         ];
-        let what = *all.choose(&mut self.rng).unwrap_or(&Control::Resume);
-        StepKind::Control { what, goal: Some((goal, vec![Term::Any])) }
+        let what = *all.choose(&mut self.rng).unwrap_or(&ControlAct::Resume);
+        PlanStepKind::Control { what, goal: Some((goal, vec![AgentTerm::Any])) }
     }
 }

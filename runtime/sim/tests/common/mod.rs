@@ -23,12 +23,12 @@ fn deg(x: f64) -> f64 {
     x.to_radians()
 }
 
-pub fn body(name: &str, motion: Motion, shape: Shape, position: Vec3, mass: f64) -> Body {
+pub fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: Vec3, mass: f64) -> Body {
     Body { name: name.into(), motion, shape, position, rotation: [0.0; 3], mass, ghost: false }
 }
 
-pub fn cuboid(x: f64, y: f64, z: f64) -> Shape {
-    Shape::Box { size: [x, y, z] }
+pub fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {
+    BodyShape::Box { size: [x, y, z] }
 }
 
 struct Maker {
@@ -36,13 +36,13 @@ struct Maker {
 }
 
 impl Maker {
-    fn body(&mut self, name: &str, motion: Motion, shape: Shape, at: Vec3, mass: f64) -> BodyId {
+    fn body(&mut self, name: &str, motion: BodyMotion, shape: BodyShape, at: Vec3, mass: f64) -> BodyId {
         self.world.bodies.push(body(name, motion, shape, at, mass));
         BodyId(self.world.bodies.len() as u16 - 1)
     }
 
     fn ghost(&mut self, name: &str, radius: f64, at: Vec3, mass: f64) -> BodyId {
-        let id = self.body(name, Motion::Dynamic, Shape::Sphere { radius }, at, mass);
+        let id = self.body(name, BodyMotion::Dynamic, BodyShape::Sphere { radius }, at, mass);
         self.world.bodies[id.0 as usize].ghost = true;
         id
     }
@@ -53,10 +53,10 @@ impl Maker {
     }
 
     fn bert2(&mut self) {
-        use Motion::{Dynamic, Fixed};
-        let capsule = |radius, length| Shape::Capsule { radius, length };
+        use BodyMotion::{Dynamic, Fixed};
+        let capsule = |radius, length| BodyShape::Capsule { radius, length };
         let torso = self.body("robot.torso", Fixed, cuboid(0.20, 0.35, 0.60), [0.0, 0.0, 0.30], 1.0);
-        let waist = Shape::Cylinder { radius: 0.08, length: 0.10 };
+        let waist = BodyShape::Cylinder { radius: 0.08, length: 0.10 };
         let waist = self.body("robot.waist", Dynamic, waist, [0.0, 0.0, 0.65], 4.0);
         let chest = self.body("robot.chest", Dynamic, cuboid(0.18, 0.30, 0.40), [0.0, 0.0, 0.92], 8.0);
         let shoulder = self.ghost("robot.shoulder", 0.06, [0.0, -0.22, 1.08], 1.5);
@@ -96,11 +96,12 @@ impl Maker {
     }
 
     fn person(&mut self) {
-        use Motion::Kinematic;
+        use BodyMotion::Kinematic;
         let head =
-            self.body("person.head", Kinematic, Shape::Sphere { radius: 0.10 }, [1.25, 0.17, 1.35], 1.0);
+            self.body("person.head", Kinematic, BodyShape::Sphere { radius: 0.10 }, [1.25, 0.17, 1.35], 1.0);
         self.world.bodies[head.0 as usize].rotation = [0.0, 0.0, deg(180.0)];
-        let hand = self.body("person.hand", Kinematic, Shape::Sphere { radius: 0.04 }, [1.0, 0.2, 0.9], 1.0);
+        let hand =
+            self.body("person.hand", Kinematic, BodyShape::Sphere { radius: 0.04 }, [1.0, 0.2, 0.9], 1.0);
         self.gripper("person.grasp", hand, [0.0; 3], 0.10, 100_000_000);
     }
 
@@ -127,19 +128,21 @@ pub fn table() -> World {
         origin: Span::default(),
     };
     let mut m = Maker { world };
-    m.body("floor", Motion::Fixed, cuboid(6.0, 6.0, 0.10), [0.0, 0.0, -0.05], 1.0);
-    m.body("stand", Motion::Fixed, cuboid(0.20, 0.40, 0.4305), [0.3, -0.42, 0.21525], 1.0);
+    m.body("floor", BodyMotion::Fixed, cuboid(6.0, 6.0, 0.10), [0.0, 0.0, -0.05], 1.0);
+    m.body("stand", BodyMotion::Fixed, cuboid(0.20, 0.40, 0.4305), [0.3, -0.42, 0.21525], 1.0);
     m.bert2();
     m.person();
     let legs: Vec<BodyId> = LEGS
         .iter()
         .enumerate()
-        .map(|(i, at)| m.body(&format!("leg{}", i + 1), Motion::Dynamic, cuboid(0.04, 0.04, 0.25), *at, 0.5))
+        .map(|(i, at)| {
+            m.body(&format!("leg{}", i + 1), BodyMotion::Dynamic, cuboid(0.04, 0.04, 0.25), *at, 0.5)
+        })
         .collect();
     for gripper in &mut m.world.grippers {
         gripper.holds.clone_from(&legs);
     }
-    m.world.currents.push(Current { name: "leg".into(), of: legs, by: GRIP });
+    m.world.currents.push(CurrentBody { name: "leg".into(), of: legs, by: GRIP });
     m.world
 }
 
@@ -147,15 +150,15 @@ pub fn named(world: &World, name: &str) -> BodyId {
     BodyId(world.bodies.iter().position(|b| b.name == name).unwrap() as u16)
 }
 
-pub fn signal(name: &str, ty: Type, terms: Vec<Term>, value: Expr) -> Signal {
+pub fn signal(name: &str, ty: Type, terms: Vec<SignalTerm>, value: Expr) -> Signal {
     Signal { name: name.into(), ty, to: Vec::new(), terms, value, recorded: true, origin: Span::default() }
 }
 
-pub fn number(name: &str, term: Term) -> Signal {
+pub fn number(name: &str, term: SignalTerm) -> Signal {
     signal(name, Type::Float(Unit::Metre), vec![term], Expr::Var(0))
 }
 
-pub fn truth(name: &str, term: Term) -> Signal {
+pub fn truth(name: &str, term: SignalTerm) -> Signal {
     signal(name, Type::Bool, vec![term], Expr::Var(0))
 }
 
@@ -171,8 +174,8 @@ pub fn none(_: u16) -> Option<Value> {
     None
 }
 
-pub fn at(of: Option<BodyRef>, place: Vec3) -> Point {
-    Point { of, offset: place.map(Expr::float) }
+pub fn at(of: Option<BodyRef>, place: Vec3) -> WorldPoint {
+    WorldPoint { of, offset: place.map(Expr::float) }
 }
 
 pub fn move_to(target: Vec3) -> MotorCommand {

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use hrdsl_ir::{
     Program,
-    suite::{Delays, WitnessKind},
-    ta::{Ask, Formula, Measure, Network, Query},
+    suite::{DelayChoice, WitnessKind},
+    ta::{Network, Query, QueryFormula, QueryKind, QueryMeasure},
 };
 use serde::Serialize;
 
@@ -47,7 +47,7 @@ pub struct QueryOptions {
     pub budget: SearchBudget,
     /// For what is decided by reachability.
     pub witness: WitnessKind,
-    pub delays: Delays,
+    pub delays: DelayChoice,
     /// For sampled delays.
     pub seed: u64,
     /// Threads of the exploration for what reachability decides; 0 counts as 1.
@@ -125,29 +125,29 @@ pub fn answers(
 }
 
 /// The goal that decides a query, if reachability does.
-fn reachability(ask: &Ask) -> Option<ReachabilityGoal> {
-    let goal = |f: Formula| Some(ReachabilityGoal { what: GoalKind::Formula(f), settled: false });
+fn reachability(ask: &QueryKind) -> Option<ReachabilityGoal> {
+    let goal = |f: QueryFormula| Some(ReachabilityGoal { what: GoalKind::Formula(f), settled: false });
     match ask {
-        Ask::Possibly(f) => goal(f.clone()),
-        Ask::Invariantly(f) => goal(Formula::Not(Box::new(f.clone()))),
-        Ask::PotentiallyAlways(_)
-        | Ask::Eventually(_)
-        | Ask::LeadsTo(..)
-        | Ask::Sup { .. }
-        | Ask::Inf { .. } => None,
+        QueryKind::Possibly(f) => goal(f.clone()),
+        QueryKind::Invariantly(f) => goal(QueryFormula::Not(Box::new(f.clone()))),
+        QueryKind::PotentiallyAlways(_)
+        | QueryKind::Eventually(_)
+        | QueryKind::LeadsTo(..)
+        | QueryKind::Sup { .. }
+        | QueryKind::Inf { .. } => None,
     }
 }
 
 /// All formulas of a query.
-fn formulas(ask: &Ask) -> Vec<Formula> {
+fn formulas(ask: &QueryKind) -> Vec<QueryFormula> {
     match ask {
-        Ask::Possibly(f)
-        | Ask::Invariantly(f)
-        | Ask::PotentiallyAlways(f)
-        | Ask::Eventually(f)
-        | Ask::Sup { when: f, .. }
-        | Ask::Inf { when: f, .. } => vec![f.clone()],
-        Ask::LeadsTo(f, g) => vec![f.clone(), g.clone()],
+        QueryKind::Possibly(f)
+        | QueryKind::Invariantly(f)
+        | QueryKind::PotentiallyAlways(f)
+        | QueryKind::Eventually(f)
+        | QueryKind::Sup { when: f, .. }
+        | QueryKind::Inf { when: f, .. } => vec![f.clone()],
+        QueryKind::LeadsTo(f, g) => vec![f.clone(), g.clone()],
     }
 }
 
@@ -232,12 +232,12 @@ impl QueryEvaluator<'_> {
 
     fn reached(
         &self,
-        ask: &Ask,
+        ask: &QueryKind,
         goal: &ReachabilityGoal,
         outcome: GoalOutcome,
         states: usize,
     ) -> Result<QueryAnswer, SearchError> {
-        let universal = matches!(ask, Ask::Invariantly(_));
+        let universal = matches!(ask, QueryKind::Invariantly(_));
         let plain = |verdict, why| QueryAnswer { verdict, why, run: None, extrema: Vec::new() };
         Ok(match outcome {
             GoalOutcome::Reached(found) => {
@@ -281,20 +281,20 @@ impl QueryEvaluator<'_> {
                 return Ok(run);
             }
         }
-        if timing.delays == Delays::Earliest {
+        if timing.delays == DelayChoice::Earliest {
             return Ok(found);
         }
         build::retimed(self.model, &found, goal, timing).map(Box::new)
     }
 
-    fn ask(&self, ask: &Ask) -> Result<QueryAnswer, SearchError> {
+    fn ask(&self, ask: &QueryKind) -> Result<QueryAnswer, SearchError> {
         match ask {
-            Ask::PotentiallyAlways(f) => self.always(f.into()),
-            Ask::Eventually(f) => self.eventually(&f.into()),
-            Ask::LeadsTo(f, g) => self.leads_to(&f.into(), &g.into()),
-            Ask::Sup { of, when } => self.bounds(ExtremumSide::Sup, of, when),
-            Ask::Inf { of, when } => self.bounds(ExtremumSide::Inf, of, when),
-            Ask::Possibly(_) | Ask::Invariantly(_) => {
+            QueryKind::PotentiallyAlways(f) => self.always(f.into()),
+            QueryKind::Eventually(f) => self.eventually(&f.into()),
+            QueryKind::LeadsTo(f, g) => self.leads_to(&f.into(), &g.into()),
+            QueryKind::Sup { of, when } => self.bounds(ExtremumSide::Sup, of, when),
+            QueryKind::Inf { of, when } => self.bounds(ExtremumSide::Inf, of, when),
+            QueryKind::Possibly(_) | QueryKind::Invariantly(_) => {
                 Err(SearchError::Internal("not decided by this".into()))
             }
         }
@@ -409,7 +409,12 @@ impl QueryEvaluator<'_> {
         }
     }
 
-    fn bounds(&self, side: ExtremumSide, of: &[Measure], when: &Formula) -> Result<QueryAnswer, SearchError> {
+    fn bounds(
+        &self,
+        side: ExtremumSide,
+        of: &[QueryMeasure],
+        when: &QueryFormula,
+    ) -> Result<QueryAnswer, SearchError> {
         use crate::decide::extremum::ExtremumLimit;
         let timing = self.options.timing();
         let all = extrema(self.model, side, of, &when.into(), self.options.budget, timing)?;

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use hrdsl_ir::{
     Expr, Nanos, Value,
     expr::EvalError,
-    ta::{ClockId, Measure},
+    ta::{ClockId, QueryMeasure},
 };
 use serde::Serialize;
 
@@ -92,7 +92,7 @@ enum MeasureTracker {
 pub(crate) fn extrema(
     model: &CompiledNetwork,
     side: ExtremumSide,
-    of: &[Measure],
+    of: &[QueryMeasure],
     when: &StateFormula,
     budget: SearchBudget,
     timing: ScheduleOptions,
@@ -189,14 +189,14 @@ fn improve(best: &mut Option<BestValue>, new: BestValue, side: ExtremumSide) {
 }
 
 impl MeasureTracker {
-    fn of(measure: &Measure, graph: &ZoneGraph) -> Self {
+    fn of(measure: &QueryMeasure, graph: &ZoneGraph) -> Self {
         match measure {
-            Measure::Clock(ClockId(c)) => {
+            QueryMeasure::Clock(ClockId(c)) => {
                 let clock = usize::from(*c) + 1;
                 let bound = graph.most(clock).max(1);
                 MeasureTracker::Clock { clock, bound, best: None, beyond: false, unbounded: None }
             }
-            Measure::Data(e) => MeasureTracker::Number { of: e.clone(), best: None },
+            QueryMeasure::Data(e) => MeasureTracker::Number { of: e.clone(), best: None },
         }
     }
 

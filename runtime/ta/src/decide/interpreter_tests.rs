@@ -8,13 +8,14 @@ use std::{collections::BTreeSet, ops::ControlFlow};
 
 use hrdsl_ir::{
     Expr, Program, Span,
-    expr::{BinaryOp, Index, Place},
-    suite::{Delays, WitnessKind},
+    expr::{ArrayIndex, BinaryOp, Lvalue},
+    suite::{DelayChoice, WitnessKind},
     ta::NetworkId,
     ta::{
-        Ask, Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp,
-        Edge, Formula, Function, FunctionId, Location, LocationId, LocationKind, Network, Party, Query,
-        ReceiveArg, Statement, Sync, Time, TimeTerm, Update, Var,
+        Automaton, AutomatonFunction, AutomatonId, AutomatonVar, Channel, ChannelId, ChannelKind,
+        ChannelParticipant, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, FunctionId,
+        FunctionStatement, Location, LocationId, LocationKind, Network, Query, QueryFormula, QueryKind,
+        ReceiveArg, SyncLabel, TimeSum, TimeTerm,
     },
     value::SECOND,
 };
@@ -30,29 +31,29 @@ use crate::{
 /// Greater than all constants and what clocks are set to.
 const CAP: i64 = 6;
 
-fn var(name: &str, lo: i64, hi: i64) -> Var {
-    Var { name: name.into(), lo, hi, init: lo, is_bool: false, enumeration: None }
+fn var(name: &str, lo: i64, hi: i64) -> AutomatonVar {
+    AutomatonVar { name: name.into(), lo, hi, init: lo, is_bool: false, enumeration: None }
 }
 
 fn q(at: Expr) -> Expr {
     Expr::Element(Box::new(place(at)))
 }
 
-fn place(at: Expr) -> Place {
-    Place { slot: 0, indices: vec![Index { at, count: 2, stride: 1 }] }
+fn place(at: Expr) -> Lvalue {
+    Lvalue { slot: 0, indices: vec![ArrayIndex { at, count: 2, stride: 1 }] }
 }
 
 /// q: (0..2)[2]; front() is q[0]; push(e) moves q[0] to q[1] and sets q[0].
 fn base() -> Program {
-    let channel = |name: &str, kind, urgent, params: Vec<Var>| Channel {
+    let channel = |name: &str, kind, urgent, params: Vec<AutomatonVar>| Channel {
         name: name.into(),
         kind,
         urgent,
         params,
         origin: Span::default(),
     };
-    let party = |n, optional| Party { automaton: AutomatonId(n), optional };
-    let function = |name: &str, params: Vec<Var>, result, pure, body| Function {
+    let party = |n, optional| ChannelParticipant { automaton: AutomatonId(n), optional };
+    let function = |name: &str, params: Vec<AutomatonVar>, result, pure, body| AutomatonFunction {
         name: name.into(),
         owner: None,
         params,
@@ -62,7 +63,7 @@ fn base() -> Program {
         body,
         origin: Span::default(),
     };
-    let assign = |at, value| Statement::Assign { place: place(Expr::int(at)), value };
+    let assign = |at, value| FunctionStatement::Assign { place: place(Expr::int(at)), value };
     Program {
         shared: vec![var("q[0]", 0, 2), var("q[1]", 0, 2)],
         clocks: vec!["g".into()],
@@ -85,7 +86,7 @@ fn base() -> Program {
                 Vec::new(),
                 Some(var("", 0, 2)),
                 true,
-                vec![Statement::Return(Some(q(Expr::int(0))))],
+                vec![FunctionStatement::Return(Some(q(Expr::int(0))))],
             ),
             function(
                 "push",
@@ -104,7 +105,7 @@ fn base() -> Program {
     }
 }
 
-fn time(rng: &mut ChaCha8Rng) -> Time {
+fn time(rng: &mut ChaCha8Rng) -> TimeSum {
     let terms = if rng.random_bool(0.3) {
         let front =
             if rng.random_bool(0.5) { Expr::Apply(FunctionId(0), Vec::new()) } else { q(Expr::int(1)) };
@@ -112,7 +113,7 @@ fn time(rng: &mut ChaCha8Rng) -> Time {
     } else {
         Vec::new()
     };
-    Time { nanos: rng.random_range(0..3) * SECOND, terms }
+    TimeSum { nanos: rng.random_range(0..3) * SECOND, terms }
 }
 
 fn constraint(rng: &mut ChaCha8Rng, ops: &[ClockOp]) -> ClockConstraint {
@@ -120,20 +121,20 @@ fn constraint(rng: &mut ChaCha8Rng, ops: &[ClockOp]) -> ClockConstraint {
     ClockConstraint { clock: ClockId(rng.random_range(0..2)), minus: None, op, bound: time(rng) }
 }
 
-fn update(rng: &mut ChaCha8Rng) -> Update {
+fn update(rng: &mut ChaCha8Rng) -> EdgeAssignment {
     match rng.random_range(0..6) {
-        0 => Update::Assign {
+        0 => EdgeAssignment::Assign {
             place: place(Expr::int(rng.random_range(0..2))),
             value: Expr::int(rng.random_range(0..3)),
         },
-        1 => Update::Call { function: FunctionId(1), args: vec![Expr::int(rng.random_range(0..3))] },
-        2 => Update::Reset { clock: ClockId(1), from: None, to: time(rng) },
+        1 => EdgeAssignment::Call { function: FunctionId(1), args: vec![Expr::int(rng.random_range(0..3))] },
+        2 => EdgeAssignment::Reset { clock: ClockId(1), from: None, to: time(rng) },
         3 => {
-            let by = Time::constant(rng.random_range(0..2) * SECOND);
-            Update::Reset { clock: ClockId(1), from: Some(ClockId(0)), to: by }
+            let by = TimeSum::constant(rng.random_range(0..2) * SECOND);
+            EdgeAssignment::Reset { clock: ClockId(1), from: Some(ClockId(0)), to: by }
         }
-        4 => Update::zero(ClockId(0)),
-        _ => Update::zero(ClockId(1)),
+        4 => EdgeAssignment::zero(ClockId(0)),
+        _ => EdgeAssignment::zero(ClockId(1)),
     }
 }
 
@@ -144,7 +145,7 @@ fn edge(rng: &mut ChaCha8Rng, me: u16, places: u16) -> Edge {
         selects: Vec::new(),
         clock_guard: Vec::new(),
         guard: None,
-        sync: Sync::Internal,
+        sync: SyncLabel::Internal,
         updates: Vec::new(),
         origin: Span::default(),
     };
@@ -152,7 +153,11 @@ fn edge(rng: &mut ChaCha8Rng, me: u16, places: u16) -> Edge {
     let offers = rng.random_bool(0.5);
     let mut clocks = true;
     let bound = |offers: bool, args: Vec<Expr>, got: ReceiveArg| {
-        if offers { Sync::Offer { channel, args } } else { Sync::Accept { channel, args: vec![got] } }
+        if offers {
+            SyncLabel::Offer { channel, args }
+        } else {
+            SyncLabel::Accept { channel, args: vec![got] }
+        }
     };
     match channel.0 {
         0 => {
@@ -165,18 +170,18 @@ fn edge(rng: &mut ChaCha8Rng, me: u16, places: u16) -> Edge {
         }
         1 | 3 => {
             e.sync = if offers {
-                Sync::Offer { channel, args: Vec::new() }
+                SyncLabel::Offer { channel, args: Vec::new() }
             } else {
-                Sync::Accept { channel, args: Vec::new() }
+                SyncLabel::Accept { channel, args: Vec::new() }
             };
             clocks = false;
         }
         4 => {
-            e.sync = Sync::Join { channel };
+            e.sync = SyncLabel::Join { channel };
             clocks = me != 2;
         }
         5 if me != 1 => {
-            e.sync = Sync::Join { channel };
+            e.sync = SyncLabel::Join { channel };
             clocks = false;
         }
         _ => {}
@@ -193,7 +198,7 @@ fn edge(rng: &mut ChaCha8Rng, me: u16, places: u16) -> Edge {
     }
     (0..rng.random_range(0..3)).for_each(|_| e.updates.push(update(rng)));
     if binds && rng.random_bool(0.5) {
-        e.updates.push(Update::Call { function: FunctionId(1), args: vec![Expr::Var(2)] });
+        e.updates.push(EdgeAssignment::Call { function: FunctionId(1), args: vec![Expr::Var(2)] });
     }
     e
 }
@@ -274,13 +279,13 @@ fn queries(p: &Program) -> Vec<((u16, u16), Query)> {
     let places = (0..).zip(&p.automata).flat_map(|(a, m)| (0..m.locations.len() as u16).map(move |l| (a, l)));
     places
         .map(|(automaton, l)| {
-            let at = Formula::At { automaton, location: LocationId(l) };
+            let at = QueryFormula::At { automaton, location: LocationId(l) };
             let query = Query {
                 name: String::new(),
                 title: String::new(),
                 text: String::new(),
                 network: NetworkId(0),
-                ask: Ask::Possibly(at),
+                ask: QueryKind::Possibly(at),
                 origin: Span::default(),
             };
             ((automaton, l), query)
@@ -318,9 +323,9 @@ proptest! {
     fn runs_with_all_options_replay(seed in any::<u64>()) {
         let p = network(&mut ChaCha8Rng::seed_from_u64(seed));
         let go = |witness, delays| runs(&p, QueryOptions { witness, delays, seed, ..QueryOptions::default() });
-        let Some(short) = go(WitnessKind::Shortest, Delays::Earliest) else { return Ok(()) };
+        let Some(short) = go(WitnessKind::Shortest, DelayChoice::Earliest) else { return Ok(()) };
         let (Some(any), Some(fast)) =
-            (go(WitnessKind::Any, Delays::Sampled), go(WitnessKind::Fastest, Delays::Latest)) else { return Ok(()) };
+            (go(WitnessKind::Any, DelayChoice::Sampled), go(WitnessKind::Fastest, DelayChoice::Latest)) else { return Ok(()) };
         for ((s, a), f) in short.iter().zip(&any).zip(&fast) {
             prop_assert_eq!(s.0, a.0);
             prop_assert_eq!(s.0, f.0);

@@ -4,8 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_ir::{
     Expr, Program,
-    expr::Place,
-    ta::{Automaton, ClockConstraint, ClockId, Edge, FunctionId, Location, Statement, Sync, Time, Update},
+    expr::Lvalue,
+    ta::{
+        Automaton, ClockConstraint, ClockId, Edge, EdgeAssignment, FunctionId, FunctionStatement, Location,
+        SyncLabel, TimeSum,
+    },
 };
 
 use super::refusal::NotApplicableError;
@@ -132,8 +135,9 @@ fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicableError> {
         return Err(NotApplicableError::Difference(a.name.clone()));
     }
     for e in &a.edges {
-        let (Sync::Offer { channel: c, .. } | Sync::Accept { channel: c, .. } | Sync::Join { channel: c }) =
-            &e.sync
+        let (SyncLabel::Offer { channel: c, .. }
+        | SyncLabel::Accept { channel: c, .. }
+        | SyncLabel::Join { channel: c }) = &e.sync
         else {
             continue;
         };
@@ -246,21 +250,26 @@ impl<'p> AccessCollector<'p> {
         e.clock_guard.iter().for_each(|c| self.constraint(c));
         e.guard.iter().for_each(|g| self.expr(g));
         match &e.sync {
-            Sync::Send { args, .. } | Sync::Offer { args, .. } => args.iter().for_each(|a| self.expr(a)),
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
+                args.iter().for_each(|a| self.expr(a))
+            }
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => {}
         }
         for u in &e.updates {
             match u {
-                Update::Assign { place, value } => {
+                EdgeAssignment::Assign { place, value } => {
                     self.write(place);
                     self.expr(value);
                 }
-                Update::Reset { clock, from, to } => {
+                EdgeAssignment::Reset { clock, from, to } => {
                     self.clock(*clock, true);
                     from.iter().for_each(|c| self.clock(*c, false));
                     self.time(to);
                 }
-                Update::Call { function, args } => self.call(*function, args),
+                EdgeAssignment::Call { function, args } => self.call(*function, args),
             }
         }
         self.uses
@@ -287,7 +296,7 @@ impl<'p> AccessCollector<'p> {
         }
     }
 
-    fn time(&mut self, t: &Time) {
+    fn time(&mut self, t: &TimeSum) {
         t.terms.iter().for_each(|t| self.expr(&t.value));
     }
 
@@ -297,7 +306,7 @@ impl<'p> AccessCollector<'p> {
         }
     }
 
-    fn write(&mut self, place: &Place) {
+    fn write(&mut self, place: &Lvalue) {
         self.place(place);
         // The indices' own variables are only read.
         let mut slots = vec![place.slot];
@@ -309,7 +318,7 @@ impl<'p> AccessCollector<'p> {
         }
     }
 
-    fn place(&mut self, place: &Place) {
+    fn place(&mut self, place: &Lvalue) {
         place.each_var(&mut |v| self.var(v));
         place.indices.iter().for_each(|i| self.expr(&i.at));
     }
@@ -339,27 +348,27 @@ impl<'p> AccessCollector<'p> {
         }
     }
 
-    fn statement(&mut self, s: &Statement) {
+    fn statement(&mut self, s: &FunctionStatement) {
         match s {
-            Statement::Assign { place, value } => {
+            FunctionStatement::Assign { place, value } => {
                 self.write(place);
                 self.expr(value);
             }
-            Statement::Call { function, args } => self.call(*function, args),
-            Statement::If { condition, then, otherwise } => {
+            FunctionStatement::Call { function, args } => self.call(*function, args),
+            FunctionStatement::If { condition, then, otherwise } => {
                 self.expr(condition);
                 then.iter().chain(otherwise).for_each(|s| self.statement(s));
             }
-            Statement::While { condition, body } => {
+            FunctionStatement::While { condition, body } => {
                 self.expr(condition);
                 body.iter().for_each(|s| self.statement(s));
             }
-            Statement::For { lo, hi, body, .. } => {
+            FunctionStatement::For { lo, hi, body, .. } => {
                 self.expr(lo);
                 self.expr(hi);
                 body.iter().for_each(|s| self.statement(s));
             }
-            Statement::Return(value) => value.iter().for_each(|e| self.expr(e)),
+            FunctionStatement::Return(value) => value.iter().for_each(|e| self.expr(e)),
         }
     }
 }

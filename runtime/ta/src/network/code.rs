@@ -7,8 +7,8 @@ use std::cell::RefCell;
 
 use hrdsl_ir::{
     Enumeration, EventId, Expr, Value,
-    expr::{BinaryOp, EvalError, Function, Index, Place, Scope, UnaryOp},
-    ta::{ChannelId, FunctionId, Var},
+    expr::{ArrayIndex, BinaryOp, EvalError, EvalScope, Lvalue, NumberFunction, UnaryOp},
+    ta::{AutomatonVar, ChannelId, FunctionId},
 };
 
 /// Statements that one evaluation may run.
@@ -61,7 +61,7 @@ pub(crate) enum NumberType {
 }
 
 impl NumberType {
-    pub(crate) fn of(var: &Var) -> Self {
+    pub(crate) fn of(var: &AutomatonVar) -> Self {
         match var.enumeration {
             Some(e) => NumberType::Enum(e),
             None if var.is_bool => NumberType::Bool,
@@ -726,7 +726,7 @@ struct CodeValueScope<'a, 'e> {
     scope: &'a VariableScope,
 }
 
-impl Scope for CodeValueScope<'_, '_> {
+impl EvalScope for CodeValueScope<'_, '_> {
     fn var(&self, slot: u16) -> Option<Value> {
         let (at, ty) = *self.scope.vars.get(usize::from(slot))?;
         let env = self.env.try_borrow().ok()?;
@@ -879,7 +879,7 @@ impl CodeLibrary {
     fn function(
         &self,
         names: &VariableScope,
-        f: Function,
+        f: NumberFunction,
         args: &[Expr],
     ) -> Option<(CompiledExpr, NumberType)> {
         let numbers: Option<Vec<CompiledExpr>> = args
@@ -888,14 +888,16 @@ impl CodeLibrary {
             .collect();
         let mut numbers = numbers?.into_iter();
         let code = match (f, numbers.next(), numbers.next(), numbers.next()) {
-            (Function::Abs, Some(a), None, None) => CompiledExpr::Abs(Box::new(a)),
-            (Function::Min, Some(a), Some(b), None) => {
+            (NumberFunction::Abs, Some(a), None, None) => CompiledExpr::Abs(Box::new(a)),
+            (NumberFunction::Min, Some(a), Some(b), None) => {
                 CompiledExpr::Arith(ArithmeticOp::Min, Box::new((a, b)))
             }
-            (Function::Max, Some(a), Some(b), None) => {
+            (NumberFunction::Max, Some(a), Some(b), None) => {
                 CompiledExpr::Arith(ArithmeticOp::Max, Box::new((a, b)))
             }
-            (Function::Abs | Function::Min | Function::Max | Function::Norm, ..) => return None,
+            (NumberFunction::Abs | NumberFunction::Min | NumberFunction::Max | NumberFunction::Norm, ..) => {
+                return None;
+            }
         };
         Some((fold(code), NumberType::Int))
     }
@@ -949,9 +951,9 @@ impl CodeLibrary {
         }
     }
 
-    pub(crate) fn reach(&self, names: &VariableScope, place: &Place) -> Option<CompiledLvalue> {
+    pub(crate) fn reach(&self, names: &VariableScope, place: &Lvalue) -> Option<CompiledLvalue> {
         let base = names.vars.get(usize::from(place.slot))?.0;
-        let index = |i: &Index| Some((self.compile(names, &i.at, NumberType::Int), i.count, i.stride));
+        let index = |i: &ArrayIndex| Some((self.compile(names, &i.at, NumberType::Int), i.count, i.stride));
         let indices = place.indices.iter().map(index).collect::<Option<Vec<_>>>()?;
         let last: usize =
             place.indices.iter().map(|i| usize::from(i.count.max(1) - 1) * usize::from(i.stride)).sum();

@@ -1,11 +1,12 @@
 //! From a program's network to a [`CompiledNetwork`]: names become places in the state, patterns become numbers, times become units.
 
-use hrdsl_ir::expr::Place;
+use hrdsl_ir::expr::Lvalue;
 use hrdsl_ir::{
     ArgPattern, EventPattern, Expr, Nanos, Program, Type,
     ta::{
-        Automaton, AutomatonId, ChannelId, ChannelKind, ClockConstraint, ClockId, Edge, Formula, Function,
-        Network, ReceiveArg, Statement, Sync, Time, Update, Var,
+        Automaton, AutomatonFunction, AutomatonId, AutomatonVar, ChannelId, ChannelKind, ClockConstraint,
+        ClockId, Edge, EdgeAssignment, FunctionStatement, Network, QueryFormula, ReceiveArg, SyncLabel,
+        TimeSum,
     },
     value::SECOND,
 };
@@ -63,7 +64,8 @@ fn compiled<'p>(
     if observe.counters.iter().any(|c| c.cap < 0) || observe.limits.iter().any(|l| l.at_most < 0) {
         return Err(ModelError::Question("a counter's cap or a limit is negative".into()));
     }
-    let slots: Vec<&Var> = program.shared.iter().chain(automata.iter().flat_map(|a| &a.vars)).collect();
+    let slots: Vec<&AutomatonVar> =
+        program.shared.iter().chain(automata.iter().flat_map(|a| &a.vars)).collect();
     let library = CodeLibrary { ranges: ranges(&automata, &slots, observe), ..CodeLibrary::default() };
     let unit = unit(&automata, &observe.formulas);
     let mut compiler = NetworkCompiler { program, network, unit, library };
@@ -109,7 +111,7 @@ fn compiled<'p>(
 }
 
 /// Of each number of the discrete vector.
-fn ranges(automata: &[&Automaton], slots: &[&Var], observe: &ObservationOptions) -> Vec<(i64, i64)> {
+fn ranges(automata: &[&Automaton], slots: &[&AutomatonVar], observe: &ObservationOptions) -> Vec<(i64, i64)> {
     let mut all: Vec<(i64, i64)> = automata.iter().map(|a| (0, a.locations.len() as i64 - 1)).collect();
     all.extend(slots.iter().map(|v| (v.lo, v.hi)));
     all.extend(observe.counters.iter().map(|c| (0, c.cap)));
@@ -125,21 +127,21 @@ fn ranges(automata: &[&Automaton], slots: &[&Var], observe: &ObservationOptions)
 }
 
 /// The greatest common divisor of all constants; a second if there are none.
-fn unit(automata: &[&Automaton], formulas: &[Formula]) -> Nanos {
+fn unit(automata: &[&Automaton], formulas: &[QueryFormula]) -> Nanos {
     fn gcd(mut a: u64, mut b: u64) -> u64 {
         while b != 0 {
             (a, b) = (b, a % b);
         }
         a
     }
-    let mut times: Vec<&Time> = Vec::new();
+    let mut times: Vec<&TimeSum> = Vec::new();
     for a in automata {
         times.extend(a.locations.iter().flat_map(|l| &l.invariant).map(|c| &c.bound));
         for e in &a.edges {
             times.extend(e.clock_guard.iter().map(|c| &c.bound));
             times.extend(e.updates.iter().filter_map(|u| match u {
-                Update::Reset { to, .. } => Some(to),
-                Update::Assign { .. } | Update::Call { .. } => None,
+                EdgeAssignment::Reset { to, .. } => Some(to),
+                EdgeAssignment::Assign { .. } | EdgeAssignment::Call { .. } => None,
             }));
         }
     }
@@ -152,12 +154,12 @@ fn unit(automata: &[&Automaton], formulas: &[Formula]) -> Nanos {
 }
 
 /// The constraints on clocks in a formula.
-fn clock_parts(formula: &Formula, f: &mut dyn FnMut(&ClockConstraint)) {
+fn clock_parts(formula: &QueryFormula, f: &mut dyn FnMut(&ClockConstraint)) {
     match formula {
-        Formula::At { .. } | Formula::Data(_) | Formula::Deadlock => {}
-        Formula::Clock(c) => f(c),
-        Formula::Not(a) => clock_parts(a, f),
-        Formula::And(all) | Formula::Or(all) => all.iter().for_each(|a| clock_parts(a, f)),
+        QueryFormula::At { .. } | QueryFormula::Data(_) | QueryFormula::Deadlock => {}
+        QueryFormula::Clock(c) => f(c),
+        QueryFormula::Not(a) => clock_parts(a, f),
+        QueryFormula::And(all) | QueryFormula::Or(all) => all.iter().for_each(|a| clock_parts(a, f)),
     }
 }
 
@@ -204,7 +206,7 @@ impl<'p> NetworkCompiler<'p> {
             .enumerate()
             .map(|(i, v)| (VariablePlace::State((members.len() + i) as u32), NumberType::of(v)))
             .collect();
-        let mut todo: Vec<(&Function, VariableScope)> = Vec::new();
+        let mut todo: Vec<(&AutomatonFunction, VariableScope)> = Vec::new();
         for (f, id) in self.program.functions.iter().zip((0..).map(hrdsl_ir::ta::FunctionId)) {
             let owner = f.owner.map(|a| CompiledNetwork::member_of(network, a));
             let (member, vars) = match owner {
@@ -213,7 +215,7 @@ impl<'p> NetworkCompiler<'p> {
                 Some(Some(m)) => (Some(m), members[usize::from(m)].names.vars.clone()),
             };
             self.library.numbers.push((id, member, todo.len() as u32));
-            let range = |v: &Var| (v.lo, v.hi);
+            let range = |v: &AutomatonVar| (v.lo, v.hi);
             self.library.routines.push(CompiledFunction {
                 params: f.params.iter().map(range).collect(),
                 types: f.params.iter().map(NumberType::of).collect(),
@@ -238,9 +240,9 @@ impl<'p> NetworkCompiler<'p> {
     fn body(
         &self,
         names: &VariableScope,
-        f: &Function,
+        f: &AutomatonFunction,
         first: usize,
-        body: &[Statement],
+        body: &[FunctionStatement],
     ) -> Option<Box<[Instruction]>> {
         body.iter().map(|s| self.statement(names, f, first, s)).collect()
     }
@@ -248,37 +250,37 @@ impl<'p> NetworkCompiler<'p> {
     fn statement(
         &self,
         names: &VariableScope,
-        f: &Function,
+        f: &AutomatonFunction,
         first: usize,
-        s: &Statement,
+        s: &FunctionStatement,
     ) -> Option<Instruction> {
         let lib = &self.library;
         Some(match s {
-            Statement::Assign { place, value } => {
+            FunctionStatement::Assign { place, value } => {
                 let (reach, value) = self.assignment(names, place, value)?;
                 Instruction::Assign(reach, value)
             }
-            Statement::Call { function, args } => {
+            FunctionStatement::Call { function, args } => {
                 let routine = lib.routine(*function, names.member)?;
                 Instruction::Call(routine, lib.arguments(names, routine, args)?)
             }
-            Statement::If { condition, then, otherwise } => Instruction::If(
+            FunctionStatement::If { condition, then, otherwise } => Instruction::If(
                 lib.compile(names, condition, NumberType::Bool),
                 self.body(names, f, first, then)?,
                 self.body(names, f, first, otherwise)?,
             ),
-            Statement::While { condition, body } => Instruction::While(
+            FunctionStatement::While { condition, body } => Instruction::While(
                 lib.compile(names, condition, NumberType::Bool),
                 self.body(names, f, first, body)?,
             ),
-            Statement::For { slot, lo, hi, body } => {
+            FunctionStatement::For { slot, lo, hi, body } => {
                 let local = usize::from(*slot).checked_sub(first)?;
                 names.vars.get(usize::from(*slot))?;
                 let (lo, hi) =
                     (lib.compile(names, lo, NumberType::Int), lib.compile(names, hi, NumberType::Int));
                 Instruction::For(local as u32, lo, hi, self.body(names, f, first, body)?)
             }
-            Statement::Return(value) => {
+            FunctionStatement::Return(value) => {
                 let ty = f.result.as_ref().map(NumberType::of);
                 let code = |e| ty.map(|ty| lib.compile(names, e, ty));
                 Instruction::Return(match value {
@@ -292,7 +294,7 @@ impl<'p> NetworkCompiler<'p> {
     fn assignment(
         &self,
         names: &VariableScope,
-        place: &Place,
+        place: &Lvalue,
         value: &Expr,
     ) -> Option<(CompiledLvalue, CompiledExpr)> {
         let reach = self.library.reach(names, place)?;
@@ -325,10 +327,10 @@ impl<'p> NetworkCompiler<'p> {
             };
             let spot = &mut locations[usize::from(edge.from.0)];
             match &edge.sync {
-                Sync::Internal | Sync::Send { .. } => spot.active.push(index),
-                Sync::Receive { .. } | Sync::Accept { .. } => spot.receiving.push(index),
-                Sync::Join { .. } => spot.joining.push(index),
-                Sync::Offer { channel, .. } => {
+                SyncLabel::Internal | SyncLabel::Send { .. } => spot.active.push(index),
+                SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => spot.receiving.push(index),
+                SyncLabel::Join { .. } => spot.joining.push(index),
+                SyncLabel::Offer { channel, .. } => {
                     spot.active.push(index);
                     if self.program.channels.get(usize::from(channel.0)).is_some_and(|c| c.urgent) {
                         spot.urgent.push(index);
@@ -355,8 +357,8 @@ impl<'p> NetworkCompiler<'p> {
         let mut binders: Vec<NumberType> = edge.selects.iter().map(NumberType::of).collect();
         let mut locals: Vec<(i64, i64)> = edge.selects.iter().map(|v| (v.lo, v.hi)).collect();
         let sync = match &edge.sync {
-            Sync::Internal => EdgeSync::Internal,
-            Sync::Join { channel } => {
+            SyncLabel::Internal => EdgeSync::Internal,
+            SyncLabel::Join { channel } => {
                 let Some(ChannelKind::Joint(parties)) =
                     self.program.channels.get(usize::from(channel.0)).map(|c| &c.kind)
                 else {
@@ -366,7 +368,7 @@ impl<'p> NetworkCompiler<'p> {
                 let party = parties.iter().find(|p| p.automaton == id).ok_or_else(unknown)?;
                 EdgeSync::Join { channel: *channel, optional: party.optional }
             }
-            Sync::Receive { event, args } => {
+            SyncLabel::Receive { event, args } => {
                 let params = self.params(SyncMedium::Event(*event)).ok_or_else(unknown)?;
                 EdgeSync::In(self.pattern(
                     SyncMedium::Event(*event),
@@ -376,7 +378,7 @@ impl<'p> NetworkCompiler<'p> {
                     &mut locals,
                 ))
             }
-            Sync::Accept { channel, args } => {
+            SyncLabel::Accept { channel, args } => {
                 let params = self.params(SyncMedium::Channel(*channel)).ok_or_else(unknown)?;
                 EdgeSync::In(self.pattern(
                     SyncMedium::Channel(*channel),
@@ -386,15 +388,20 @@ impl<'p> NetworkCompiler<'p> {
                     &mut locals,
                 ))
             }
-            Sync::Send { .. } | Sync::Offer { .. } => EdgeSync::Internal,
+            SyncLabel::Send { .. } | SyncLabel::Offer { .. } => EdgeSync::Internal,
         };
         names.vars.extend(binders.iter().enumerate().map(|(i, &ty)| (VariablePlace::Local(i as u32), ty)));
         let sync = match &edge.sync {
-            Sync::Send { event, args } => self.signal(automaton, &names, SyncMedium::Event(*event), args)?,
-            Sync::Offer { channel, args } => {
+            SyncLabel::Send { event, args } => {
+                self.signal(automaton, &names, SyncMedium::Event(*event), args)?
+            }
+            SyncLabel::Offer { channel, args } => {
                 self.signal(automaton, &names, SyncMedium::Channel(*channel), args)?
             }
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => sync,
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => sync,
         };
         let guard = self.clocks(automaton, &names, first, &locals, &edge.clock_guard)?;
         let data = edge.guard.as_ref().map(|g| self.library.compile(&names, g, NumberType::Bool));
@@ -415,23 +422,23 @@ impl<'p> NetworkCompiler<'p> {
         first: usize,
         names: &VariableScope,
         locals: &[(i64, i64)],
-        update: &Update,
+        update: &EdgeAssignment,
     ) -> Result<EdgeUpdate> {
         let unknown = || malformed(&automaton.name, "an edge uses something unknown");
         Ok(match update {
-            Update::Assign { place, value } => {
+            EdgeAssignment::Assign { place, value } => {
                 let (reach, value) = self.assignment(names, place, value).ok_or_else(unknown)?;
                 if matches!(reach.base, VariablePlace::Local(_)) {
                     return Err(unknown());
                 }
                 EdgeUpdate::Assign(reach, value)
             }
-            Update::Reset { clock, from, to } => EdgeUpdate::Reset {
+            EdgeAssignment::Reset { clock, from, to } => EdgeUpdate::Reset {
                 clock: self.clock(*clock, first),
                 from: from.map(|c| self.clock(c, first)),
                 to: self.times(automaton, names, locals, to)?,
             },
-            Update::Call { function, args } => {
+            EdgeAssignment::Call { function, args } => {
                 let lib = &self.library;
                 let routine = lib.routine(*function, names.member).ok_or_else(unknown)?;
                 EdgeUpdate::Call(routine, lib.arguments(names, routine, args).ok_or_else(unknown)?)
@@ -480,7 +487,7 @@ impl<'p> NetworkCompiler<'p> {
         automaton: &Automaton,
         names: &VariableScope,
         locals: &[(i64, i64)],
-        time: &Time,
+        time: &TimeSum,
     ) -> Result<TimeExpr> {
         let far = || ModelError::Constants { automaton: automaton.name.clone() };
         let mut terms = Vec::new();
@@ -525,7 +532,7 @@ impl<'p> NetworkCompiler<'p> {
 
     /// Types and ranges of what it carries.
     fn params(&self, medium: SyncMedium) -> Option<Vec<(NumberType, i64, i64)>> {
-        let finite = |v: &Var| (NumberType::of(v), v.lo, v.hi);
+        let finite = |v: &AutomatonVar| (NumberType::of(v), v.lo, v.hi);
         match medium {
             SyncMedium::Channel(ChannelId(c)) => {
                 Some(self.program.channels.get(usize::from(c))?.params.iter().map(finite).collect())
@@ -666,7 +673,7 @@ impl<'p> NetworkCompiler<'p> {
     fn formula_clocks(
         &self,
         observe: &ObservationOptions,
-        slots: &[&Var],
+        slots: &[&AutomatonVar],
         members: usize,
     ) -> Result<ClockConstraints> {
         let vars = slots

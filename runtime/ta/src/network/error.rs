@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Span, Type, Value,
     expr::EvalError,
-    ta::{Automaton, Edge, LocationId, Var},
+    ta::{Automaton, AutomatonVar, Edge, LocationId},
 };
 
 /// What errors call an edge.
@@ -63,7 +63,7 @@ pub enum ModelError {
     Zeno { automaton: String, location: String },
 }
 
-pub(crate) fn range_fault(edge: Box<EdgeName>, var: &Var, value: i64) -> ModelError {
+pub(crate) fn range_fault(edge: Box<EdgeName>, var: &AutomatonVar, value: i64) -> ModelError {
     ModelError::Range { edge, variable: var.name.clone(), value, lo: var.lo, hi: var.hi }
 }
 

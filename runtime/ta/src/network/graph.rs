@@ -5,8 +5,8 @@
 
 use hrdsl_ir::{
     Nanos, Value,
-    exec::{self, Functions, Memory},
-    expr::{EvalError, Scope},
+    exec::{self, FunctionTable, VariableMemory},
+    expr::{EvalError, EvalScope},
     ta::{FunctionId, LocationId},
 };
 
@@ -393,7 +393,7 @@ impl CompiledNetwork<'_> {
     }
 
     /// The least and greatest that a time of a formula can be, in units.
-    fn span(&self, time: &hrdsl_ir::ta::Time) -> (i64, i64) {
+    fn span(&self, time: &hrdsl_ir::ta::TimeSum) -> (i64, i64) {
         let names = self.slot_scope();
         let term = |t: &hrdsl_ir::ta::TimeTerm| {
             (t.factor / self.unit, self.library.compile(&names, &t.value, NumberType::Int))
@@ -410,8 +410,8 @@ impl CompiledNetwork<'_> {
         let memory = FunctionScope { model: self, state, own };
         let count = self.shared + own.map_or(0, |m| m.automaton.vars.len());
         let base = u16::try_from(count).unwrap_or(u16::MAX);
-        let functions = Functions::new(self.program);
-        exec::View::new(&functions, &memory, base, &[]).apply(function, args)
+        let functions = FunctionTable::new(self.program);
+        exec::MemoryView::new(&functions, &memory, base, &[]).apply(function, args)
     }
 }
 
@@ -422,7 +422,7 @@ struct FunctionScope<'a, 'p> {
     own: Option<&'a CompiledAutomaton<'p>>,
 }
 
-impl Memory for FunctionScope<'_, '_> {
+impl VariableMemory for FunctionScope<'_, '_> {
     fn read(&self, slot: u16) -> Option<Value> {
         let slot = usize::from(slot);
         let at = match slot.checked_sub(self.model.shared) {

@@ -7,7 +7,7 @@
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Type, Value,
-    ta::{AutomatonId, ChannelId, LocationId, LocationKind, Network, Var},
+    ta::{AutomatonId, AutomatonVar, ChannelId, LocationId, LocationKind, Network},
 };
 
 use crate::network::{
@@ -28,7 +28,7 @@ pub struct ObservationOptions {
     /// The edge that last defined each variable is a part of the state.
     pub uses: bool,
     /// Their constants have a part in the bounds of extrapolation.
-    pub formulas: Vec<hrdsl_ir::ta::Formula>,
+    pub formulas: Vec<hrdsl_ir::ta::QueryFormula>,
     /// Zones have all clocks, not only those that matter in their locations: then a clock's number is its index.
     pub all_clocks: bool,
 }
@@ -46,7 +46,7 @@ pub struct CompiledNetwork<'p> {
     pub(crate) program: &'p Program,
     pub(crate) name: &'p str,
     pub(crate) members: Vec<CompiledAutomaton<'p>>,
-    pub(crate) slots: Vec<&'p Var>,
+    pub(crate) slots: Vec<&'p AutomatonVar>,
     /// How many of the slots are shared.
     #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub(crate) shared: usize,

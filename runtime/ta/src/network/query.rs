@@ -2,8 +2,8 @@
 
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Program, Value,
-    expr::{EvalError, Scope},
-    ta::{self as ir, ClockConstraint, ClockId, ClockOp, FunctionId, LocationId, Time},
+    expr::{EvalError, EvalScope},
+    ta::{self as ir, ClockConstraint, ClockId, ClockOp, FunctionId, LocationId, TimeSum},
 };
 use smallvec::{SmallVec, smallvec};
 
@@ -50,7 +50,7 @@ pub enum GoalKind {
     },
     Condition(StateFormula),
     /// A formula over locations, variables and clocks; it holds where the zone meets it.
-    Formula(hrdsl_ir::ta::Formula),
+    Formula(hrdsl_ir::ta::QueryFormula),
 }
 
 impl ReachabilityGoal {
@@ -155,7 +155,7 @@ pub trait SymbolicView: StateView {
 /// A view as the scope of expressions.
 pub(crate) struct StateViewScope<'a>(pub(crate) &'a dyn StateView);
 
-impl Scope for StateViewScope<'_> {
+impl EvalScope for StateViewScope<'_> {
     fn var(&self, slot: u16) -> Option<Value> {
         self.0.slot(slot)
     }
@@ -165,19 +165,19 @@ impl Scope for StateViewScope<'_> {
     }
 }
 
-impl From<&ir::Formula> for StateFormula {
-    fn from(f: &ir::Formula) -> Self {
-        let all = |fs: &[ir::Formula]| fs.iter().map(StateFormula::from).collect();
+impl From<&ir::QueryFormula> for StateFormula {
+    fn from(f: &ir::QueryFormula) -> Self {
+        let all = |fs: &[ir::QueryFormula]| fs.iter().map(StateFormula::from).collect();
         match f {
-            ir::Formula::At { automaton, location } => {
+            ir::QueryFormula::At { automaton, location } => {
                 StateFormula::At { automaton: usize::from(*automaton), location: *location }
             }
-            ir::Formula::Data(e) => StateFormula::Data(e.clone()),
-            ir::Formula::Clock(c) => StateFormula::Clock(c.clone()),
-            ir::Formula::Deadlock => StateFormula::Deadlock,
-            ir::Formula::Not(f) => StateFormula::from(&**f).not(),
-            ir::Formula::And(fs) => StateFormula::And(all(fs)),
-            ir::Formula::Or(fs) => StateFormula::Or(all(fs)),
+            ir::QueryFormula::Data(e) => StateFormula::Data(e.clone()),
+            ir::QueryFormula::Clock(c) => StateFormula::Clock(c.clone()),
+            ir::QueryFormula::Deadlock => StateFormula::Deadlock,
+            ir::QueryFormula::Not(f) => StateFormula::from(&**f).not(),
+            ir::QueryFormula::And(fs) => StateFormula::And(all(fs)),
+            ir::QueryFormula::Or(fs) => StateFormula::Or(all(fs)),
         }
     }
 }
@@ -186,7 +186,7 @@ impl From<&ir::Formula> for StateFormula {
 ///
 /// # Errors
 /// If a term has no value or the sum is too large.
-pub(crate) fn nanos(time: &Time, scope: &dyn Scope) -> Result<Nanos, EvalError> {
+pub(crate) fn nanos(time: &TimeSum, scope: &dyn EvalScope) -> Result<Nanos, EvalError> {
     let mut sum = time.nanos;
     for term in &time.terms {
         let n = term.value.eval_in(scope)?.as_int().ok_or(EvalError::Type)?;

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use hrdsl_ir::{
     ArgPattern, EventId, Value,
     expr::EvalError,
-    ta::{LocationKind, ReceiveArg, Var},
+    ta::{AutomatonVar, LocationKind, ReceiveArg},
 };
 use smallvec::SmallVec;
 
@@ -114,7 +114,7 @@ pub(crate) struct EnumerationScratch {
 }
 
 /// All combinations of the selects' values, the first select slowest.
-pub(crate) fn choices(selects: &[Var]) -> Vec<Binders> {
+pub(crate) fn choices(selects: &[AutomatonVar]) -> Vec<Binders> {
     let mut all = vec![Binders::new()];
     for s in selects {
         let mut longer = Vec::new();

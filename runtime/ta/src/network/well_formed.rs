@@ -2,10 +2,10 @@
 
 use hrdsl_ir::{
     Expr, Program,
-    expr::Place,
+    expr::Lvalue,
     ta::{
-        Automaton, AutomatonId, ChannelId, ChannelKind, ClockConstraint, ClockId, Function, LocationId,
-        Statement, Sync, Time, Update, Var,
+        Automaton, AutomatonFunction, AutomatonId, AutomatonVar, ChannelId, ChannelKind, ClockConstraint,
+        ClockId, EdgeAssignment, FunctionStatement, LocationId, SyncLabel, TimeSum,
     },
 };
 
@@ -80,24 +80,27 @@ fn fault(program: &Program, id: AutomatonId, a: &Automaton) -> Option<String> {
         .map(|f| format!("the function `{}` calls or assigns what is not there", f.name))
 }
 
-fn range_is_sound(v: &Var) -> bool {
+fn range_is_sound(v: &AutomatonVar) -> bool {
     v.lo <= v.init && v.init <= v.hi
 }
 
 /// Whether the range is that of the enumeration's indices, if there is one: then no symbol can leave it.
-fn range_has_values(v: &Var) -> bool {
+fn range_has_values(v: &AutomatonVar) -> bool {
     v.enumeration.is_none_or(|e| v.lo == 0 && i64::try_from(e.values().len()) == Ok(v.hi.saturating_add(1)))
 }
 
-fn terms(time: &Time) -> impl Iterator<Item = &Expr> {
+fn terms(time: &TimeSum) -> impl Iterator<Item = &Expr> {
     time.terms.iter().map(|t| &t.value)
 }
 
 /// The arguments that an edge sends.
-fn sent(sync: &Sync) -> &[Expr] {
+fn sent(sync: &SyncLabel) -> &[Expr] {
     match sync {
-        Sync::Send { args, .. } | Sync::Offer { args, .. } => args,
-        Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => &[],
+        SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => args,
+        SyncLabel::Internal
+        | SyncLabel::Receive { .. }
+        | SyncLabel::Accept { .. }
+        | SyncLabel::Join { .. } => &[],
     }
 }
 
@@ -118,35 +121,35 @@ impl WellFormedScope<'_> {
         self.clock_exists(c.clock) && c.minus.is_none_or(|m| self.clock_exists(m))
     }
 
-    fn update_exists(&self, update: &Update) -> bool {
+    fn update_exists(&self, update: &EdgeAssignment) -> bool {
         match update {
-            Update::Assign { place, value } => {
+            EdgeAssignment::Assign { place, value } => {
                 place_is_within(place, self.program.shared.len() + self.automaton.vars.len())
                     && place.indices.iter().all(|i| self.functions_exist(&i.at))
                     && self.functions_exist(value)
             }
-            Update::Reset { clock, from, to } => {
+            EdgeAssignment::Reset { clock, from, to } => {
                 self.clock_exists(*clock)
                     && from.is_none_or(|f| self.clock_exists(f))
                     && terms(to).all(|e| self.functions_exist(e))
             }
-            Update::Call { function, args } => {
+            EdgeAssignment::Call { function, args } => {
                 self.call_exists(usize::from(function.0), args.len())
                     && args.iter().all(|e| self.functions_exist(e))
             }
         }
     }
 
-    fn sync_exists(&self, sync: &Sync) -> bool {
+    fn sync_exists(&self, sync: &SyncLabel) -> bool {
         let events = &self.program.events;
         let arity = |event: &hrdsl_ir::EventId| events.get(usize::from(event.0)).map(|e| e.params.len());
         match sync {
-            Sync::Internal => true,
-            Sync::Send { event, args } => arity(event) == Some(args.len()),
-            Sync::Receive { event, args } => arity(event) == Some(args.len()),
-            Sync::Offer { channel, args } => self.channel_fits(*channel, args.len(), false),
-            Sync::Accept { channel, args } => self.channel_fits(*channel, args.len(), false),
-            Sync::Join { channel } => self.channel_fits(*channel, 0, true),
+            SyncLabel::Internal => true,
+            SyncLabel::Send { event, args } => arity(event) == Some(args.len()),
+            SyncLabel::Receive { event, args } => arity(event) == Some(args.len()),
+            SyncLabel::Offer { channel, args } => self.channel_fits(*channel, args.len(), false),
+            SyncLabel::Accept { channel, args } => self.channel_fits(*channel, args.len(), false),
+            SyncLabel::Join { channel } => self.channel_fits(*channel, 0, true),
         }
     }
 
@@ -163,7 +166,8 @@ impl WellFormedScope<'_> {
     }
 
     fn call_exists(&self, function: usize, args: usize) -> bool {
-        let known = |f: &Function| f.params.len() == args && (f.owner.is_none() || f.owner == self.id);
+        let known =
+            |f: &AutomatonFunction| f.params.len() == args && (f.owner.is_none() || f.owner == self.id);
         self.program.functions.get(function).is_some_and(known)
     }
 
@@ -183,7 +187,7 @@ impl WellFormedScope<'_> {
         }
     }
 
-    fn function_is_sound(&self, f: &Function) -> bool {
+    fn function_is_sound(&self, f: &AutomatonFunction) -> bool {
         let owner = match f.owner {
             None => Some(0),
             Some(a) => self.program.automata.get(usize::from(a.0)).map(|a| a.vars.len()),
@@ -196,35 +200,35 @@ impl WellFormedScope<'_> {
             && f.body.iter().all(|s| WellFormedScope { id: f.owner, ..*self }.statement_exists(s, count))
     }
 
-    fn statement_exists(&self, s: &Statement, count: usize) -> bool {
-        let block = |all: &[Statement]| all.iter().all(|s| self.statement_exists(s, count));
+    fn statement_exists(&self, s: &FunctionStatement, count: usize) -> bool {
+        let block = |all: &[FunctionStatement]| all.iter().all(|s| self.statement_exists(s, count));
         match s {
-            Statement::Assign { place, value } => {
+            FunctionStatement::Assign { place, value } => {
                 place_is_within(place, count)
                     && place.indices.iter().all(|i| self.functions_exist(&i.at))
                     && self.functions_exist(value)
             }
-            Statement::Call { function, args } => {
+            FunctionStatement::Call { function, args } => {
                 self.call_exists(usize::from(function.0), args.len())
                     && args.iter().all(|e| self.functions_exist(e))
             }
-            Statement::If { condition, then, otherwise } => {
+            FunctionStatement::If { condition, then, otherwise } => {
                 self.functions_exist(condition) && block(then) && block(otherwise)
             }
-            Statement::While { condition, body } => self.functions_exist(condition) && block(body),
-            Statement::For { slot, lo, hi, body } => {
+            FunctionStatement::While { condition, body } => self.functions_exist(condition) && block(body),
+            FunctionStatement::For { slot, lo, hi, body } => {
                 usize::from(*slot) < count
                     && self.functions_exist(lo)
                     && self.functions_exist(hi)
                     && block(body)
             }
-            Statement::Return(value) => value.as_ref().is_none_or(|v| self.functions_exist(v)),
+            FunctionStatement::Return(value) => value.as_ref().is_none_or(|v| self.functions_exist(v)),
         }
     }
 }
 
 /// Whether each element of an lvalue is one of so many variables.
-fn place_is_within(place: &Place, count: usize) -> bool {
+fn place_is_within(place: &Lvalue, count: usize) -> bool {
     let last = place.indices.iter().map(|i| usize::from(i.count.saturating_sub(1)) * usize::from(i.stride));
     place.indices.iter().all(|i| i.count > 0) && usize::from(place.slot) + last.sum::<usize>() < count
 }
@@ -235,9 +239,9 @@ mod tests {
 
     #[test]
     fn each_element_of_a_place_counts() {
-        let at = |count, stride| hrdsl_ir::expr::Index { at: Expr::int(0), count, stride };
-        let place = Place { slot: 2, indices: vec![at(3, 4), at(4, 1)] };
+        let at = |count, stride| hrdsl_ir::expr::ArrayIndex { at: Expr::int(0), count, stride };
+        let place = Lvalue { slot: 2, indices: vec![at(3, 4), at(4, 1)] };
         assert!(place_is_within(&place, 14) && !place_is_within(&place, 13));
-        assert!(!place_is_within(&Place { slot: 0, indices: vec![at(0, 1)] }, 9));
+        assert!(!place_is_within(&Lvalue { slot: 0, indices: vec![at(0, 1)] }, 9));
     }
 }

@@ -1,6 +1,6 @@
 //! Goals, compiled so that a search looks at few of them: edges by number, locations by place, the rest where it is new.
 
-use hrdsl_ir::ta::Formula;
+use hrdsl_ir::ta::QueryFormula;
 
 use crate::{
     network::{
@@ -203,9 +203,9 @@ fn state_formula(model: &CompiledNetwork, names: &VariableScope, f: &StateFormul
 fn symbolic(
     model: &CompiledNetwork,
     names: &VariableScope,
-    f: &Formula,
+    f: &QueryFormula,
 ) -> Result<SymbolicFormula, ModelError> {
-    let many = |fs: &[Formula], empty: i64, and: bool| -> Result<SymbolicFormula, ModelError> {
+    let many = |fs: &[QueryFormula], empty: i64, and: bool| -> Result<SymbolicFormula, ModelError> {
         let parts: Vec<SymbolicFormula> =
             fs.iter().map(|f| symbolic(model, names, f)).collect::<Result<_, _>>()?;
         let (data, mut rest): (Vec<_>, Vec<_>) =
@@ -222,7 +222,7 @@ fn symbolic(
         Ok(if and { SymbolicFormula::And(rest) } else { SymbolicFormula::Or(rest) })
     };
     Ok(match f {
-        Formula::At { automaton, location } => {
+        QueryFormula::At { automaton, location } => {
             let known = model.members.get(usize::from(*automaton));
             if known.is_none_or(|m| usize::from(location.0) >= m.locations.len()) {
                 return Err(ModelError::Question("a formula speaks of a location that is not there".into()));
@@ -233,8 +233,8 @@ fn symbolic(
                 i64::from(location.0),
             ))
         }
-        Formula::Data(e) => SymbolicFormula::Data(model.library.compile(names, e, NumberType::Bool)),
-        Formula::Clock(c) => {
+        QueryFormula::Data(e) => SymbolicFormula::Data(model.library.compile(names, e, NumberType::Bool)),
+        QueryFormula::Clock(c) => {
             let clock = |c: hrdsl_ir::ta::ClockId| c.0 + 1;
             let (i, j) = (clock(c.clock), c.minus.map_or(0, clock));
             if usize::from(i.max(j)) >= model.dim {
@@ -247,10 +247,10 @@ fn symbolic(
             let time = TimeExpr { units: c.bound.nanos / model.unit, terms: terms.map(term).collect() };
             SymbolicFormula::Clock(ParametricConstraint { i, j, op: c.op, time, span: (0, 0) })
         }
-        Formula::Deadlock => {
+        QueryFormula::Deadlock => {
             return Err(ModelError::Question("`deadlock` is no goal of a search by zones alone".into()));
         }
-        Formula::Not(f) => {
+        QueryFormula::Not(f) => {
             let formula = symbolic(model, names, f)?;
             if let SymbolicFormula::Data(code) = formula {
                 SymbolicFormula::Data(CompiledExpr::Not(Box::new(code)))
@@ -258,8 +258,8 @@ fn symbolic(
                 SymbolicFormula::Not(Box::new(formula))
             }
         }
-        Formula::And(fs) => many(fs, 1, true)?,
-        Formula::Or(fs) => many(fs, 0, false)?,
+        QueryFormula::And(fs) => many(fs, 1, true)?,
+        QueryFormula::Or(fs) => many(fs, 0, false)?,
     })
 }
 

@@ -8,11 +8,11 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
-    exec::{self, Functions, Memory},
+    exec::{self, FunctionTable, VariableMemory},
     expr::EvalError,
     ta::{
-        Automaton, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge, FunctionId,
-        LocationId, LocationKind, ReceiveArg, Sync, Time, Update, Var,
+        Automaton, AutomatonVar, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
+        EdgeAssignment, FunctionId, LocationId, LocationKind, ReceiveArg, SyncLabel, TimeSum,
     },
 };
 
@@ -27,7 +27,7 @@ use crate::network::{
 #[derive(Clone)]
 pub(crate) struct ConcreteInterpreter<'p> {
     pub(crate) program: &'p Program,
-    functions: Arc<Functions<'p>>,
+    functions: Arc<FunctionTable<'p>>,
     pub(crate) members: Vec<&'p Automaton>,
     pub(crate) location: Vec<LocationId>,
     shared: Vec<i64>,
@@ -43,12 +43,12 @@ pub(crate) struct ConcreteInterpreter<'p> {
 /// The variables that an automaton knows.
 struct AutomatonScope<'m> {
     program: &'m Program,
-    vars: &'m [Var],
+    vars: &'m [AutomatonVar],
     shared: &'m [i64],
     own: &'m [i64],
 }
 
-impl Memory for AutomatonScope<'_> {
+impl VariableMemory for AutomatonScope<'_> {
     fn read(&self, slot: u16) -> Option<Value> {
         read(self.program, self.vars, self.shared, self.own, slot)
     }
@@ -61,12 +61,12 @@ impl Memory for AutomatonScope<'_> {
 /// The same, to be assigned.
 struct AutomatonScopeMut<'m> {
     program: &'m Program,
-    vars: &'m [Var],
+    vars: &'m [AutomatonVar],
     shared: &'m mut [i64],
     own: &'m mut [i64],
 }
 
-impl Memory for AutomatonScopeMut<'_> {
+impl VariableMemory for AutomatonScopeMut<'_> {
     fn read(&self, slot: u16) -> Option<Value> {
         read(self.program, self.vars, self.shared, self.own, slot)
     }
@@ -85,7 +85,7 @@ impl Memory for AutomatonScopeMut<'_> {
     }
 }
 
-fn read(program: &Program, vars: &[Var], shared: &[i64], own: &[i64], slot: u16) -> Option<Value> {
+fn read(program: &Program, vars: &[AutomatonVar], shared: &[i64], own: &[i64], slot: u16) -> Option<Value> {
     let at = usize::from(slot);
     match program.shared.get(at) {
         Some(var) => var.value(*shared.get(at)?),
@@ -101,7 +101,7 @@ impl<'p> ConcreteInterpreter<'p> {
     pub(crate) fn new(program: &'p Program, members: &[&'p Automaton], ticks: i64) -> Self {
         Self {
             program,
-            functions: Arc::new(Functions::new(program)),
+            functions: Arc::new(FunctionTable::new(program)),
             location: members.iter().map(|a| a.initial).collect(),
             shared: program.shared.iter().map(|v| v.init).collect(),
             own: members.iter().map(|a| a.vars.iter().map(|v| v.init).collect()).collect(),
@@ -149,7 +149,7 @@ impl<'p> ConcreteInterpreter<'p> {
     }
 
     /// A time of this automaton in ticks.
-    pub(crate) fn span(&self, member: usize, binders: &[Value], time: &Time) -> Result<i128, EvalError> {
+    pub(crate) fn span(&self, member: usize, binders: &[Value], time: &TimeSum) -> Result<i128, EvalError> {
         if time.terms.is_empty() {
             return Ok(i128::from(time.nanos) * self.ticks);
         }
@@ -157,11 +157,11 @@ impl<'p> ConcreteInterpreter<'p> {
         Ok(i128::from(n) * self.ticks)
     }
 
-    fn view<T>(&self, member: usize, binders: &[Value], f: impl FnOnce(&exec::View<'_>) -> T) -> T {
+    fn view<T>(&self, member: usize, binders: &[Value], f: impl FnOnce(&exec::MemoryView<'_>) -> T) -> T {
         let vars = &self.members[member].vars;
         let memory =
             AutomatonScope { program: self.program, vars, shared: &self.shared, own: &self.own[member] };
-        f(&exec::View::new(&self.functions, &memory, slots(self.program, vars), binders))
+        f(&exec::MemoryView::new(&self.functions, &memory, slots(self.program, vars), binders))
     }
 
     /// Whether clock constraints hold now.
@@ -269,11 +269,11 @@ impl<'p> ConcreteInterpreter<'p> {
     }
 
     /// One of an edge's updates.
-    pub(crate) fn update(&mut self, m: &AutomatonMove, u: &Update) -> Result<(), ModelError> {
+    pub(crate) fn update(&mut self, m: &AutomatonMove, u: &EdgeAssignment) -> Result<(), ModelError> {
         match u {
-            Update::Reset { clock, from, to } => self.set_clock(m, *clock, *from, to),
-            Update::Assign { place, value } => self.change(m, |view| view.assign(place, value)),
-            Update::Call { function, args } => self.change(m, |view| view.call(*function, args)),
+            EdgeAssignment::Reset { clock, from, to } => self.set_clock(m, *clock, *from, to),
+            EdgeAssignment::Assign { place, value } => self.change(m, |view| view.assign(place, value)),
+            EdgeAssignment::Call { function, args } => self.change(m, |view| view.call(*function, args)),
         }
     }
 
@@ -282,7 +282,7 @@ impl<'p> ConcreteInterpreter<'p> {
         m: &AutomatonMove,
         clock: ClockId,
         from: Option<ClockId>,
-        to: &Time,
+        to: &TimeSum,
     ) -> Result<(), ModelError> {
         let plus = self.span(m.automaton, &m.binders, to).map_err(|e| self.fault(m, e))?;
         let zero = from.map_or(self.now, |from| self.zero_at(m.automaton, from)) - plus;
@@ -302,13 +302,13 @@ impl<'p> ConcreteInterpreter<'p> {
     fn change(
         &mut self,
         m: &AutomatonMove,
-        f: impl FnOnce(&exec::View<'_>) -> Result<(), EvalError>,
+        f: impl FnOnce(&exec::MemoryView<'_>) -> Result<(), EvalError>,
     ) -> Result<(), ModelError> {
         let vars = &self.members[m.automaton].vars;
         let result = {
             let own = &mut self.own[m.automaton];
             let mut memory = AutomatonScopeMut { program: self.program, vars, shared: &mut self.shared, own };
-            f(&exec::View::open(&self.functions, &mut memory, slots(self.program, vars), &m.binders))
+            f(&exec::MemoryView::open(&self.functions, &mut memory, slots(self.program, vars), &m.binders))
         };
         result.map_err(|e| match e {
             EvalError::Outside { slot, value } => {
@@ -345,7 +345,7 @@ impl<'p> ConcreteInterpreter<'p> {
     }
 
     /// All variables of the network with the numbers that they keep: the shared ones, then each automaton's.
-    pub(crate) fn numbers(&self) -> Vec<(&'p Var, i64)> {
+    pub(crate) fn numbers(&self) -> Vec<(&'p AutomatonVar, i64)> {
         let shared = self.program.shared.iter().zip(&self.shared);
         let own = self.members.iter().zip(&self.own);
         let own = own.flat_map(|(a, own)| a.vars.iter().zip(own));
@@ -360,7 +360,7 @@ impl<'p> ConcreteInterpreter<'p> {
             None => 0,
             Some(a) => self.members.iter().position(|m| std::ptr::eq(*m, a)).ok_or(EvalError::Type)?,
         };
-        self.view(member, &[], |view| hrdsl_ir::expr::Scope::apply(view, function, args))
+        self.view(member, &[], |view| hrdsl_ir::expr::EvalScope::apply(view, function, args))
     }
 
     pub(crate) fn names(&self, m: &AutomatonMove) -> Box<EdgeName> {
@@ -387,16 +387,16 @@ impl<'p> ConcreteInterpreter<'p> {
         let mut out = Vec::new();
         for (i, edge) in self.members[member].edges.iter().enumerate() {
             let pattern: &[ReceiveArg] = match (&edge.sync, medium) {
-                (Sync::Receive { event, args }, SyncMedium::Event(e)) if *event == e => args,
-                (Sync::Accept { channel, args }, SyncMedium::Channel(c)) if *channel == c => args,
-                (Sync::Join { channel }, SyncMedium::Channel(c)) if *channel == c => &[],
+                (SyncLabel::Receive { event, args }, SyncMedium::Event(e)) if *event == e => args,
+                (SyncLabel::Accept { channel, args }, SyncMedium::Channel(c)) if *channel == c => args,
+                (SyncLabel::Join { channel }, SyncMedium::Channel(c)) if *channel == c => &[],
                 (
-                    Sync::Internal
-                    | Sync::Send { .. }
-                    | Sync::Receive { .. }
-                    | Sync::Offer { .. }
-                    | Sync::Accept { .. }
-                    | Sync::Join { .. },
+                    SyncLabel::Internal
+                    | SyncLabel::Send { .. }
+                    | SyncLabel::Receive { .. }
+                    | SyncLabel::Offer { .. }
+                    | SyncLabel::Accept { .. }
+                    | SyncLabel::Join { .. },
                     _,
                 ) => continue,
             };
@@ -447,7 +447,7 @@ impl<'p> ConcreteInterpreter<'p> {
         let mut out = Vec::new();
         for (automaton, a) in self.members.iter().enumerate() {
             for (edge, e) in a.edges.iter().enumerate() {
-                let Sync::Offer { channel, args } = &e.sync else { continue };
+                let SyncLabel::Offer { channel, args } = &e.sync else { continue };
                 if *channel != id || e.from != self.location[automaton] {
                     continue;
                 }
@@ -498,7 +498,7 @@ impl<'p> ConcreteInterpreter<'p> {
         for (automaton, a) in self.members.iter().enumerate() {
             for (edge, e) in a.edges.iter().enumerate().filter(|(_, e)| e.from == self.location[automaton]) {
                 // What takes something moves with whoever sends it, and binds the arguments then.
-                if matches!(e.sync, Sync::Receive { .. } | Sync::Accept { .. }) {
+                if matches!(e.sync, SyncLabel::Receive { .. } | SyncLabel::Accept { .. }) {
                     continue;
                 }
                 for binders in choices(&e.selects) {
@@ -534,12 +534,12 @@ impl<'p> ConcreteInterpreter<'p> {
             Ok(all)
         };
         match &self.edge(m).sync {
-            Sync::Internal => groups.push(vec![vec![m.clone()]]),
-            Sync::Send { event, args } => {
+            SyncLabel::Internal => groups.push(vec![vec![m.clone()]]),
+            SyncLabel::Send { event, args } => {
                 let args = self.arguments(m, *event, args)?;
                 groups.push(hear(SyncMedium::Event(*event), &args)?);
             }
-            Sync::Offer { channel, args } => {
+            SyncLabel::Offer { channel, args } => {
                 let Some(declared) = self.channel(*channel) else { return Ok(()) };
                 let args = self.offered(m, declared, args)?;
                 let all = hear(SyncMedium::Channel(*channel), &args)?;
@@ -550,8 +550,8 @@ impl<'p> ConcreteInterpreter<'p> {
                     }
                 }
             }
-            Sync::Join { channel } => groups.extend(self.multiway(*channel, m)?),
-            Sync::Receive { .. } | Sync::Accept { .. } => {}
+            SyncLabel::Join { channel } => groups.extend(self.multiway(*channel, m)?),
+            SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => {}
         }
         Ok(())
     }
@@ -660,10 +660,12 @@ impl<'p> ConcreteInterpreter<'p> {
 }
 
 /// Whether such an edge can begin a transition.
-fn starts(sync: &Sync) -> bool {
+fn starts(sync: &SyncLabel) -> bool {
     match sync {
-        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => true,
-        Sync::Receive { .. } | Sync::Accept { .. } => false,
+        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Offer { .. } | SyncLabel::Join { .. } => {
+            true
+        }
+        SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => false,
     }
 }
 
@@ -690,6 +692,6 @@ pub(crate) fn clock_name(program: &Program, automaton: &Automaton, clock: ClockI
 }
 
 /// How many variables an automaton knows.
-fn slots(program: &Program, vars: &[Var]) -> u16 {
+fn slots(program: &Program, vars: &[AutomatonVar]) -> u16 {
     u16::try_from(program.shared.len() + vars.len()).unwrap_or(u16::MAX)
 }

@@ -11,7 +11,8 @@ use hrdsl_ir::{
     EventId, Nanos, Program, Value,
     expr::EvalError,
     ta::{
-        AutomatonId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, Sync, Update,
+        AutomatonId, ChannelKind, ClockConstraint, ClockId, ClockOp, EdgeAssignment, LocationId,
+        LocationKind, SyncLabel,
     },
 };
 use rand::{RngExt, SeedableRng};
@@ -85,7 +86,7 @@ impl<'p> VirtualTimePlayer<'p> {
         self.advance(now)?;
         for e in 0..self.machine.members[0].edges.len() {
             let edge = &self.machine.members[0].edges[e];
-            let Sync::Receive { event: wanted, args: pattern } = &edge.sync else { continue };
+            let SyncLabel::Receive { event: wanted, args: pattern } = &edge.sync else { continue };
             let mut bound = Binders::new();
             if *wanted != event || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
                 continue;
@@ -105,14 +106,14 @@ impl<'p> VirtualTimePlayer<'p> {
         self.advance(now)?;
         while let Some(edge) = self.next_move()? {
             match &self.machine.edge(&edge.step).sync {
-                Sync::Send { event, args } => {
+                SyncLabel::Send { event, args } => {
                     out.push((*event, self.machine.arguments(&edge.step, *event, args)?));
                 }
-                Sync::Internal
-                | Sync::Receive { .. }
-                | Sync::Offer { .. }
-                | Sync::Accept { .. }
-                | Sync::Join { .. } => {}
+                SyncLabel::Internal
+                | SyncLabel::Receive { .. }
+                | SyncLabel::Offer { .. }
+                | SyncLabel::Accept { .. }
+                | SyncLabel::Join { .. } => {}
             }
             self.go(edge)?;
         }
@@ -143,13 +144,13 @@ impl<'p> VirtualTimePlayer<'p> {
     }
 
     /// Whether it can take such an edge without having received anything.
-    fn is_active(&self, sync: &Sync) -> bool {
+    fn is_active(&self, sync: &SyncLabel) -> bool {
         match sync {
-            Sync::Internal | Sync::Send { .. } => true,
-            Sync::Offer { channel, .. } => {
+            SyncLabel::Internal | SyncLabel::Send { .. } => true,
+            SyncLabel::Offer { channel, .. } => {
                 self.machine.channel(*channel).is_some_and(|c| c.kind == ChannelKind::Broadcast)
             }
-            Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => false,
+            SyncLabel::Receive { .. } | SyncLabel::Accept { .. } | SyncLabel::Join { .. } => false,
         }
     }
 
@@ -300,10 +301,10 @@ impl<'p> VirtualTimePlayer<'p> {
         let mut trial = self.machine.clone();
         for u in &self.machine.edge(m).updates {
             match u {
-                Update::Assign { .. } | Update::Call { .. } => {
+                EdgeAssignment::Assign { .. } | EdgeAssignment::Call { .. } => {
                     trial.update(m, u).map_err(|_| EvalError::Type)?;
                 }
-                Update::Reset { clock, from, to } => {
+                EdgeAssignment::Reset { clock, from, to } => {
                     let to = trial.span(0, &m.binders, to)?;
                     let from = from.map_or(ClockOrigin { runs: false, at: 0 }, |f| zeros[usize::from(f.0)]);
                     let at = if from.runs { from.at - to } else { from.at + to };

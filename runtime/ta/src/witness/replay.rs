@@ -7,7 +7,8 @@ use hrdsl_ir::{
     EventId, Program, Value,
     expr::EvalError,
     ta::{
-        Automaton, ChannelId, ChannelKind, ClockConstraint, FunctionId, LocationId, LocationKind, Sync, Var,
+        Automaton, AutomatonVar, ChannelId, ChannelKind, ClockConstraint, FunctionId, LocationId,
+        LocationKind, SyncLabel,
     },
 };
 
@@ -41,7 +42,7 @@ impl fmt::Display for WitnessReplayError {
 pub(crate) struct ReplayedState<'p> {
     machine: ConcreteInterpreter<'p>,
     /// Variables and the numbers that they keep.
-    slots: Vec<(&'p Var, i64)>,
+    slots: Vec<(&'p AutomatonVar, i64)>,
     counters: Vec<i64>,
     ticks: i64,
     /// No automaton is in a committed location.
@@ -234,26 +235,26 @@ fn starts(machine: &ConcreteInterpreter, first: &AutomatonMove, s: &WitnessRunSt
     let same =
         |own: &[Value], values: &[Value]| own.iter().map(|v| v.key()).eq(values.iter().map(|v| v.key()));
     match (&edge.sync, &s.event, &s.channel) {
-        (Sync::Internal, None, None) => Ok(()),
-        (Sync::Send { event, args }, Some((sent, values)), None) if event == sent => {
+        (SyncLabel::Internal, None, None) => Ok(()),
+        (SyncLabel::Send { event, args }, Some((sent, values)), None) if event == sent => {
             let own = machine.arguments(first, *event, args).map_err(|e| e.to_string())?;
             if same(&own, values) { Ok(()) } else { Err("the sender sends other arguments".into()) }
         }
-        (Sync::Offer { channel, args }, None, Some((over, values))) if channel == over => {
+        (SyncLabel::Offer { channel, args }, None, Some((over, values))) if channel == over => {
             let declared = machine.channel(*channel).ok_or("the channel is not there")?;
             let own = machine.offered(first, declared, args).map_err(|e| e.to_string())?;
             if same(&own, values) { Ok(()) } else { Err("other arguments are offered".into()) }
         }
-        (Sync::Join { channel }, None, Some((over, values))) if channel == over && values.is_empty() => {
+        (SyncLabel::Join { channel }, None, Some((over, values))) if channel == over && values.is_empty() => {
             Ok(())
         }
         (
-            Sync::Internal
-            | Sync::Send { .. }
-            | Sync::Receive { .. }
-            | Sync::Offer { .. }
-            | Sync::Accept { .. }
-            | Sync::Join { .. },
+            SyncLabel::Internal
+            | SyncLabel::Send { .. }
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Offer { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. },
             _,
             _,
         ) => Err("the first edge does something else".into()),

@@ -6,7 +6,7 @@
 //! to a unit; then it is a fraction of one. In ticks all constraints are closed and whole, so that greatest and sampled
 //! times, too, are those of a network of whole differences: what a prefix allows of the next time is an interval.
 
-use hrdsl_ir::{Nanos, suite::Delays, value::SECOND};
+use hrdsl_ir::{Nanos, suite::DelayChoice, value::SECOND};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -20,7 +20,7 @@ pub const DAWDLE: Nanos = SECOND;
 pub struct ScheduleOptions {
     /// `Latest`: each as late as the whole path allows, [`DAWDLE`] after its earliest time if nothing bounds it. `Sampled`:
     /// one after the other, evenly in the interval that the times before it leave (at most `DAWDLE` long if it has no end).
-    pub delays: Delays,
+    pub delays: DelayChoice,
     /// For sampled delays.
     pub seed: u64,
     /// The last time stays the least possible.
@@ -121,9 +121,9 @@ impl PathSchedule {
         }
         let spans = net.spans(self.now);
         match timing.delays {
-            Delays::Earliest => {}
-            Delays::Latest => net.choose(|least, most| most.unwrap_or(least + dawdle(ticks))),
-            Delays::Sampled => {
+            DelayChoice::Earliest => {}
+            DelayChoice::Latest => net.choose(|least, most| most.unwrap_or(least + dawdle(ticks))),
+            DelayChoice::Sampled => {
                 let mut rng = ChaCha8Rng::seed_from_u64(timing.seed);
                 net.choose(|least, most| {
                     let most = most.unwrap_or(least + dawdle(ticks));
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(least(2, &constraints), None);
     }
 
-    fn timing(delays: Delays, seed: u64) -> ScheduleOptions {
+    fn timing(delays: DelayChoice, seed: u64) -> ScheduleOptions {
         ScheduleOptions { delays, seed, prompt: false }
     }
 
@@ -310,8 +310,8 @@ mod tests {
     #[test]
     fn times_are_earliest_or_latest() {
         let at = |delays| two().solve(10, timing(delays, 0)).unwrap().at;
-        assert_eq!(at(Delays::Earliest), [0, 20, 30]);
-        assert_eq!(at(Delays::Latest), [0, 59, 69]);
+        assert_eq!(at(DelayChoice::Earliest), [0, 20, 30]);
+        assert_eq!(at(DelayChoice::Latest), [0, 59, 69]);
     }
 
     #[test]
@@ -319,7 +319,7 @@ mod tests {
         let mut s = PathSchedule::new(1);
         s.next(true);
         s.next(false);
-        let times = s.solve(SECOND, timing(Delays::Latest, 0)).unwrap();
+        let times = s.solve(SECOND, timing(DelayChoice::Latest, 0)).unwrap();
         assert_eq!(
             (times.at.as_slice(), times.can_last(1), times.can_last(0)),
             ([0, DAWDLE, DAWDLE].as_slice(), false, true)
@@ -335,7 +335,7 @@ mod tests {
         // y = x + 1, so y == 6 when x == 5.
         s.require(DifferenceConstraint { i: 0, j: 2, bound: DbmBound::le(-6) });
         s.require(DifferenceConstraint { i: 2, j: 0, bound: DbmBound::le(6) });
-        assert_eq!(s.solve(1, timing(Delays::Earliest, 0)).unwrap().at, [0, 0, 5]);
+        assert_eq!(s.solve(1, timing(DelayChoice::Earliest, 0)).unwrap().at, [0, 0, 5]);
     }
 
     proptest! {
@@ -351,10 +351,10 @@ mod tests {
                 earlier,
                 by: (n, e),
             }));
-            let earliest = s.solve(5, timing(Delays::Earliest, seed));
+            let earliest = s.solve(5, timing(DelayChoice::Earliest, seed));
             prop_assert_eq!(earliest.is_some(), least(6, &s.constraints).is_some());
             let Some(earliest) = earliest else { return Ok(()) };
-            for delays in [Delays::Earliest, Delays::Latest, Delays::Sampled] {
+            for delays in [DelayChoice::Earliest, DelayChoice::Latest, DelayChoice::Sampled] {
                 for prompt in [false, true] {
                     let t = s.solve(5, ScheduleOptions { delays, seed, prompt }).unwrap();
                     for c in &s.constraints {
@@ -366,8 +366,8 @@ mod tests {
                     prop_assert!(!prompt || t.at[5] == earliest.at[5]);
                 }
             }
-            let latest = s.solve(5, timing(Delays::Latest, 0)).unwrap();
-            let sampled = s.solve(5, timing(Delays::Sampled, seed)).unwrap();
+            let latest = s.solve(5, timing(DelayChoice::Latest, 0)).unwrap();
+            let sampled = s.solve(5, timing(DelayChoice::Sampled, seed)).unwrap();
             // Where the path bounds a time, no sample is later than the latest.
             let mut net = DifferenceSystem::new(6, i128::from(5 * latest.ticks), &s.constraints);
             prop_assert!(net.settle_all());

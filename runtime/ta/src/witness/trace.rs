@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use hrdsl_ir::{
     Nanos, Program, Value,
-    ta::{Automaton, ChannelId, ChannelKind, ClockId, LocationId, Network, Update},
+    ta::{Automaton, ChannelId, ChannelKind, ClockId, EdgeAssignment, LocationId, Network},
 };
 use serde::Serialize;
 
@@ -221,8 +221,8 @@ impl<'a> WitnessTraceBuilder<'a> {
         edge.updates
             .iter()
             .filter_map(|u| match u {
-                Update::Assign { .. } | Update::Call { .. } => None,
-                Update::Reset { clock, from, to } => {
+                EdgeAssignment::Assign { .. } | EdgeAssignment::Call { .. } => None,
+                EdgeAssignment::Reset { clock, from, to } => {
                     let time = seconds(to.nanos, 1);
                     let plain = to.terms.is_empty();
                     Some(match (from, plain, to.nanos) {

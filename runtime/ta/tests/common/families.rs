@@ -6,9 +6,9 @@ use hrdsl_ir::{
     ta::{
         AutomatonId,
         ChannelKind::{HandShake, Joint},
+        ChannelParticipant,
         ClockOp::{Eq, Ge, Gt as After, Le, Lt as Before},
         LocationKind::{Committed, Normal},
-        Party,
     },
 };
 
@@ -242,7 +242,7 @@ pub fn philosophers(count: i64) -> Program {
 /// All processes wait, then go on at once, within a second of the last.
 pub fn parallel(count: i64) -> Program {
     let mut p = program();
-    let party = |i| Party { automaton: AutomatonId(i), optional: false };
+    let party = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
     let go = channel(&mut p, "go", Joint((0..count as u16).map(party).collect()), &[]);
     for i in 0..count {
         let mut a = automaton(&format!("P{i}"), &["x"]);

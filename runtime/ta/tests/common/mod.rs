@@ -4,11 +4,12 @@
 pub mod families;
 
 use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, Event, EventId, Expr, Param, Program, Role, Span, Type, Value,
-    expr::{BinaryOp, Index, Place},
+    Actor, ActorId, ArgPattern, Event, EventId, Expr, Parameter, Program, Role, Span, Type, Value,
+    expr::{ArrayIndex, BinaryOp, Lvalue},
     ta::{
-        Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
-        Location, LocationId, LocationKind, Network, ReceiveArg, Sync, Time, Update, Var,
+        Automaton, AutomatonId, AutomatonVar, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId,
+        ClockOp, Edge, EdgeAssignment, Location, LocationId, LocationKind, Network, ReceiveArg, SyncLabel,
+        TimeSum,
     },
     value::SECOND,
 };
@@ -28,14 +29,14 @@ pub fn shared(p: &mut Program, name: &str, lo: i64, hi: i64, init: i64) -> u16 {
     p.shared.len() as u16 - 1
 }
 
-pub fn var(name: &str, lo: i64, hi: i64, init: i64) -> Var {
-    Var { name: name.into(), lo, hi, init, is_bool: false, enumeration: None }
+pub fn var(name: &str, lo: i64, hi: i64, init: i64) -> AutomatonVar {
+    AutomatonVar { name: name.into(), lo, hi, init, is_bool: false, enumeration: None }
 }
 
 pub fn event(p: &mut Program, name: &str, params: &[Type]) -> EventId {
     p.events.push(Event {
         name: name.into(),
-        params: params.iter().map(|&ty| Param { name: "p".into(), ty }).collect(),
+        params: params.iter().map(|&ty| Parameter { name: "p".into(), ty }).collect(),
         from: ActorId(0),
         to: Vec::new(),
         stimulus: None,
@@ -57,8 +58,8 @@ pub fn channel(p: &mut Program, name: &str, kind: ChannelKind, params: &[(i64, i
 }
 
 /// An element of an array of `count` variables that begins at `slot`.
-pub fn place(slot: u16, at: Expr, count: i64) -> Place {
-    Place { slot, indices: vec![Index { at, count: count as u16, stride: 1 }] }
+pub fn place(slot: u16, at: Expr, count: i64) -> Lvalue {
+    Lvalue { slot, indices: vec![ArrayIndex { at, count: count as u16, stride: 1 }] }
 }
 
 pub fn element(slot: u16, at: Expr, count: i64) -> Expr {
@@ -109,7 +110,7 @@ pub fn normal(a: &mut Automaton, name: &str) -> LocationId {
 
 /// `clock op n` seconds
 pub fn clock(clock: u16, op: ClockOp, n: i64) -> ClockConstraint {
-    ClockConstraint { clock: ClockId(clock), minus: None, op, bound: Time::constant(n * SECOND) }
+    ClockConstraint { clock: ClockId(clock), minus: None, op, bound: TimeSum::constant(n * SECOND) }
 }
 
 /// An edge under construction.
@@ -122,7 +123,7 @@ pub fn edge(from: LocationId, to: LocationId) -> E {
         selects: Vec::new(),
         clock_guard: Vec::new(),
         guard: None,
-        sync: Sync::Internal,
+        sync: SyncLabel::Internal,
         updates: Vec::new(),
         origin: Span::default(),
     })
@@ -141,53 +142,53 @@ impl E {
         self
     }
     pub fn send(mut self, event: EventId) -> Self {
-        self.0.sync = Sync::Send { event, args: Vec::new() };
+        self.0.sync = SyncLabel::Send { event, args: Vec::new() };
         self
     }
     pub fn send_args(mut self, event: EventId, args: &[Expr]) -> Self {
-        self.0.sync = Sync::Send { event, args: args.to_vec() };
+        self.0.sync = SyncLabel::Send { event, args: args.to_vec() };
         self
     }
     pub fn on(mut self, event: EventId) -> Self {
-        self.0.sync = Sync::Receive { event, args: Vec::new() };
+        self.0.sync = SyncLabel::Receive { event, args: Vec::new() };
         self
     }
     pub fn on_args(mut self, event: EventId, args: &[ReceiveArg]) -> Self {
-        self.0.sync = Sync::Receive { event, args: args.to_vec() };
+        self.0.sync = SyncLabel::Receive { event, args: args.to_vec() };
         self
     }
     pub fn offer(mut self, channel: ChannelId, args: &[Expr]) -> Self {
-        self.0.sync = Sync::Offer { channel, args: args.to_vec() };
+        self.0.sync = SyncLabel::Offer { channel, args: args.to_vec() };
         self
     }
     /// Accepts exactly these arguments.
     pub fn accept(mut self, channel: ChannelId, args: &[i64]) -> Self {
         let is = |n: &i64| ReceiveArg::Match(ArgPattern::Is(Value::Int(*n)));
-        self.0.sync = Sync::Accept { channel, args: args.iter().map(is).collect() };
+        self.0.sync = SyncLabel::Accept { channel, args: args.iter().map(is).collect() };
         self
     }
     /// Accepts any argument and binds it.
     pub fn bind(mut self, channel: ChannelId) -> Self {
-        self.0.sync = Sync::Accept { channel, args: vec![ReceiveArg::Bind] };
+        self.0.sync = SyncLabel::Accept { channel, args: vec![ReceiveArg::Bind] };
         self
     }
     pub fn join(mut self, channel: ChannelId) -> Self {
-        self.0.sync = Sync::Join { channel };
+        self.0.sync = SyncLabel::Join { channel };
         self
     }
-    pub fn put(mut self, place: Place, value: Expr) -> Self {
-        self.0.updates.push(Update::Assign { place, value });
+    pub fn put(mut self, place: Lvalue, value: Expr) -> Self {
+        self.0.updates.push(EdgeAssignment::Assign { place, value });
         self
     }
     pub fn set(mut self, slot: u16, value: Expr) -> Self {
-        self.0.updates.push(Update::Assign { place: Place::slot(slot), value });
+        self.0.updates.push(EdgeAssignment::Assign { place: Lvalue::slot(slot), value });
         self
     }
     pub fn reset(mut self, clock: u16) -> Self {
-        self.0.updates.push(Update::zero(ClockId(clock)));
+        self.0.updates.push(EdgeAssignment::zero(ClockId(clock)));
         self
     }
-    pub fn select(mut self, v: Var) -> Self {
+    pub fn select(mut self, v: AutomatonVar) -> Self {
         self.0.selects.push(v);
         self
     }

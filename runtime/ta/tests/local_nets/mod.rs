@@ -3,11 +3,11 @@
 use hrdsl_ir::{
     EventId, Program,
     ta::{
-        Automaton, AutomatonId, ChannelId, ChannelKind, ClockId,
+        Automaton, AutomatonId, ChannelId, ChannelKind, ChannelParticipant, ClockId,
         ClockOp::{self, Ge, Gt, Le, Lt},
-        Edge, LocationId,
+        Edge, EdgeAssignment, LocationId,
         LocationKind::{Committed, Normal, Urgent},
-        Party, Time, Update,
+        TimeSum,
     },
     value::SECOND,
 };
@@ -42,7 +42,8 @@ pub fn random(members: &[Member], optional: [bool; 3]) -> Program {
     let shake = channel(&mut p, "shake", ChannelKind::HandShake, &[(0, 1)]);
     let cast = channel(&mut p, "cast", ChannelKind::Broadcast, &[]);
     let here = members.len().min(3);
-    let parties = (0..here).map(|i| Party { automaton: AutomatonId(i as u16), optional: optional[i] });
+    let parties =
+        (0..here).map(|i| ChannelParticipant { automaton: AutomatonId(i as u16), optional: optional[i] });
     let all = channel(&mut p, "all", ChannelKind::Joint(parties.collect()), &[]);
     let tell = event(&mut p, "tell", &[]);
     shared(&mut p, "s", 0, 2, 0);
@@ -94,7 +95,7 @@ fn random_edge(
     }
     if let Some((c, from, by)) = draft.reset.filter(|r| r.0 == 0 || m.clocks > 0) {
         let (clock, from) = (ClockId(named(c)), from.map(|y| ClockId(named(y))));
-        e.0.updates.push(Update::Reset { clock, from, to: Time::constant(by * SECOND) });
+        e.0.updates.push(EdgeAssignment::Reset { clock, from, to: TimeSum::constant(by * SECOND) });
     }
     if let Some(k) = draft.shared.0 {
         e = e.when(eq(v(0), n(k)));

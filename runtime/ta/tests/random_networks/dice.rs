@@ -2,10 +2,11 @@
 
 use hrdsl_ir::{
     ArgPattern, EventId, Expr, Program, Span, Type, Value,
-    expr::{BinaryOp, Index, Place},
+    expr::{ArrayIndex, BinaryOp, Lvalue},
     ta::{
-        Automaton, AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Function,
-        FunctionId, LocationId, LocationKind, Party, ReceiveArg, Statement, Sync, Time, TimeTerm, Update,
+        Automaton, AutomatonFunction, AutomatonId, Channel, ChannelId, ChannelKind, ChannelParticipant,
+        ClockConstraint, ClockId, ClockOp, EdgeAssignment, FunctionId, FunctionStatement, LocationId,
+        LocationKind, ReceiveArg, SyncLabel, TimeSum, TimeTerm,
     },
     value::SECOND,
 };
@@ -57,8 +58,8 @@ impl Dice {
     }
 }
 
-fn q_at(at: Expr) -> Place {
-    Place { slot: Q, indices: vec![Index { at, count: 2, stride: 1 }] }
+fn q_at(at: Expr) -> Lvalue {
+    Lvalue { slot: Q, indices: vec![ArrayIndex { at, count: 2, stride: 1 }] }
 }
 
 fn rem(a: Expr, k: i64) -> Expr {
@@ -94,8 +95,8 @@ pub fn network(seed: u64, flavour: Flavour) -> Program {
 }
 
 fn channels(d: &mut Dice, p: &mut Program, count: u16) {
-    let mut parties: Vec<Party> =
-        (0..count).map(|i| Party { automaton: AutomatonId(i), optional: d.one_in(3) }).collect();
+    let mut parties: Vec<ChannelParticipant> =
+        (0..count).map(|i| ChannelParticipant { automaton: AutomatonId(i), optional: d.one_in(3) }).collect();
     if d.one_in(3) {
         parties.reverse();
     }
@@ -114,7 +115,7 @@ fn channels(d: &mut Dice, p: &mut Program, count: u16) {
 
 /// f0: the next of three; f1: turns the array round; f2: as long as …; f3: changes and gives a value.
 fn functions(p: &mut Program) {
-    let function = |name: &str, params, locals, result, pure, body| Function {
+    let function = |name: &str, params, locals, result, pure, body| AutomatonFunction {
         name: String::from(name),
         owner: None,
         params,
@@ -125,8 +126,8 @@ fn functions(p: &mut Program) {
         origin: Span::default(),
     };
     let k = v(OWN);
-    let assign = |place, value| Statement::Assign { place, value };
-    let next = Statement::Return(Some(rem(plus(k.clone(), 1), 3)));
+    let assign = |place, value| FunctionStatement::Assign { place, value };
+    let next = FunctionStatement::Return(Some(rem(plus(k.clone(), 1), 3)));
     p.functions.push(function(
         "next",
         vec![var("k", 0, 2, 0)],
@@ -136,30 +137,30 @@ fn functions(p: &mut Program) {
         vec![next],
     ));
     let swap = vec![
-        assign(Place::slot(OWN), Expr::Element(Box::new(q_at(n(0))))),
+        assign(Lvalue::slot(OWN), Expr::Element(Box::new(q_at(n(0))))),
         assign(q_at(n(0)), Expr::Element(Box::new(q_at(n(1))))),
         assign(q_at(n(1)), k.clone()),
     ];
     p.functions.push(function("swap", Vec::new(), vec![var("t", 0, 1, 0)], None, false, swap));
     let bit = Expr::Element(Box::new(q_at(v(OWN + 1))));
-    let count = Statement::For {
+    let count = FunctionStatement::For {
         slot: OWN + 1,
         lo: n(0),
         hi: n(1),
-        body: vec![Statement::If {
+        body: vec![FunctionStatement::If {
             condition: eq(bit, n(1)),
-            then: vec![assign(Place::slot(OWN), plus(k.clone(), 1))],
+            then: vec![assign(Lvalue::slot(OWN), plus(k.clone(), 1))],
             otherwise: Vec::new(),
         }],
     };
-    let down = Statement::While {
+    let down = FunctionStatement::While {
         condition: bin(BinaryOp::Gt, k.clone(), v(S)),
-        body: vec![assign(Place::slot(OWN), bin(BinaryOp::Sub, k.clone(), n(1)))],
+        body: vec![assign(Lvalue::slot(OWN), bin(BinaryOp::Sub, k.clone(), n(1)))],
     };
-    let body = vec![assign(Place::slot(OWN), n(0)), count, down, Statement::Return(Some(k.clone()))];
+    let body = vec![assign(Lvalue::slot(OWN), n(0)), count, down, FunctionStatement::Return(Some(k.clone()))];
     let locals = vec![var("sum", 0, 2, 0), var("i", 0, 1, 0)];
     p.functions.push(function("ones", Vec::new(), locals, Some(var("r", 0, 2, 0)), true, body));
-    let set = vec![assign(q_at(n(1)), rem(k.clone(), 2)), assign(Place::slot(S), k.clone())];
+    let set = vec![assign(q_at(n(1)), rem(k.clone(), 2)), assign(Lvalue::slot(S), k.clone())];
     p.functions.push(function("store", vec![var("k", 0, 2, 0)], Vec::new(), None, false, set));
 }
 
@@ -212,7 +213,7 @@ fn one(d: &mut Dice, p: &mut Program, i: u16, count: u16) {
 }
 
 /// A time in which a variable has a part: `base + s` seconds or less.
-fn timed(d: &mut Dice, base: i64) -> Time {
+fn timed(d: &mut Dice, base: i64) -> TimeSum {
     let value = match d.below(40) {
         // A fault, if it is 2.
         0 => Expr::Element(Box::new(q_at(v(S)))),
@@ -221,11 +222,11 @@ fn timed(d: &mut Dice, base: i64) -> Time {
         _ => Expr::Element(Box::new(q_at(v(OWN)))),
     };
     let factor = if d.one_in(4) { -SECOND } else { SECOND };
-    Time { nanos: base * SECOND, terms: vec![TimeTerm { factor, value }] }
+    TimeSum { nanos: base * SECOND, terms: vec![TimeTerm { factor, value }] }
 }
 
 fn difference(d: &mut Dice) -> ClockConstraint {
-    let bound = Time::constant((d.upto(5) - 2) * SECOND);
+    let bound = TimeSum::constant((d.upto(5) - 2) * SECOND);
     ClockConstraint { clock: ClockId(0), minus: Some(ClockId(1)), op: d.op(), bound }
 }
 
@@ -239,12 +240,14 @@ fn random_edge(d: &mut Dice, p: &Program, a: &mut Automaton, clocks: u16, two: b
     }
     it = synced(d, p, it, selected);
     let mute = match &it.0.sync {
-        Sync::Offer { channel, .. } | Sync::Join { channel } => p.channels[usize::from(channel.0)].urgent,
-        Sync::Accept { channel, .. } => {
+        SyncLabel::Offer { channel, .. } | SyncLabel::Join { channel } => {
+            p.channels[usize::from(channel.0)].urgent
+        }
+        SyncLabel::Accept { channel, .. } => {
             let c = &p.channels[usize::from(channel.0)];
             c.urgent && c.kind != ChannelKind::Broadcast
         }
-        Sync::Internal | Sync::Send { .. } | Sync::Receive { .. } => false,
+        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Receive { .. } => false,
     };
     while !mute && d.one_in(2) {
         it = it.clock(d.below(u32::from(clocks)) as u16, d.op(), d.upto(3));
@@ -291,24 +294,24 @@ fn synced(d: &mut Dice, p: &Program, it: E, selected: bool) -> E {
             let arg = if selected { binder } else { number(d, 3) };
             it = it.send_args(e, &[arg]);
         }
-        2 => it = taken(d, it, selected, 2, |args| Sync::Receive { event: EventId(0), args }),
-        3 => it.0.sync = Sync::Offer { channel: over(0), args: Vec::new() },
-        4 => it.0.sync = Sync::Accept { channel: over(0), args: Vec::new() },
+        2 => it = taken(d, it, selected, 2, |args| SyncLabel::Receive { event: EventId(0), args }),
+        3 => it.0.sync = SyncLabel::Offer { channel: over(0), args: Vec::new() },
+        4 => it.0.sync = SyncLabel::Accept { channel: over(0), args: Vec::new() },
         5 | 6 => {
             let channel = over(1 + d.below(2) as u16);
             let arg = if selected { rem(binder, 2) } else { number(d, 2) };
             if d.one_in(2) {
-                it.0.sync = Sync::Offer { channel, args: vec![arg] };
+                it.0.sync = SyncLabel::Offer { channel, args: vec![arg] };
             } else {
-                it = taken(d, it, selected, 1, |args| Sync::Accept { channel, args });
+                it = taken(d, it, selected, 1, |args| SyncLabel::Accept { channel, args });
             }
         }
         7 => {
             let channel = over(1 + d.below(2) as u16);
-            it = taken(d, it, selected, 1, |args| Sync::Accept { channel, args });
+            it = taken(d, it, selected, 1, |args| SyncLabel::Accept { channel, args });
         }
         // Only participants join.
-        _ if is_party(p) => it.0.sync = Sync::Join { channel: over(3) },
+        _ if is_party(p) => it.0.sync = SyncLabel::Join { channel: over(3) },
         _ => {}
     }
     it
@@ -324,7 +327,13 @@ fn is_party(p: &Program) -> bool {
 }
 
 /// An edge that takes one argument of `0..=most`: any, one value, or bound.
-fn taken(d: &mut Dice, mut it: E, selected: bool, most: u32, sync: impl Fn(Vec<ReceiveArg>) -> Sync) -> E {
+fn taken(
+    d: &mut Dice,
+    mut it: E,
+    selected: bool,
+    most: u32,
+    sync: impl Fn(Vec<ReceiveArg>) -> SyncLabel,
+) -> E {
     let arg = match d.below(3) {
         0 => ReceiveArg::Match(ArgPattern::Any),
         1 => ReceiveArg::Match(ArgPattern::Is(Value::Int(d.upto(most)))),
@@ -377,27 +386,30 @@ fn updated(d: &mut Dice, mut it: E, clocks: u16, selected: bool) -> E {
 /// Clocks that are set, arrays, functions, and now and then a fault.
 fn richly(d: &mut Dice, mut it: E, clocks: u16) -> E {
     let any = |d: &mut Dice| ClockId(d.below(u32::from(clocks)) as u16);
-    let mut push = |u: Update| it.0.updates.push(u);
+    let mut push = |u: EdgeAssignment| it.0.updates.push(u);
     if d.one_in(6) {
-        let to = if d.one_in(3) { timed(d, 1) } else { Time::constant(d.upto(3) * SECOND) };
-        push(Update::Reset { clock: any(d), from: None, to });
+        let to = if d.one_in(3) { timed(d, 1) } else { TimeSum::constant(d.upto(3) * SECOND) };
+        push(EdgeAssignment::Reset { clock: any(d), from: None, to });
     }
     if d.one_in(6) {
-        let to = Time::constant(if d.one_in(3) { SECOND } else { 0 });
-        push(Update::Reset { clock: any(d), from: Some(any(d)), to });
+        let to = TimeSum::constant(if d.one_in(3) { SECOND } else { 0 });
+        push(EdgeAssignment::Reset { clock: any(d), from: Some(any(d)), to });
     }
     match d.below(12) {
-        0 => push(Update::Call { function: FunctionId(1), args: Vec::new() }),
-        1 => push(Update::Call { function: FunctionId(3), args: vec![v(S)] }),
-        2 | 3 => push(Update::Assign { place: q_at(v(OWN)), value: rem(v(S), 2) }),
-        4 => push(Update::Assign { place: Place::slot(S), value: Expr::Apply(FunctionId(0), vec![v(S)]) }),
+        0 => push(EdgeAssignment::Call { function: FunctionId(1), args: Vec::new() }),
+        1 => push(EdgeAssignment::Call { function: FunctionId(3), args: vec![v(S)] }),
+        2 | 3 => push(EdgeAssignment::Assign { place: q_at(v(OWN)), value: rem(v(S), 2) }),
+        4 => push(EdgeAssignment::Assign {
+            place: Lvalue::slot(S),
+            value: Expr::Apply(FunctionId(0), vec![v(S)]),
+        }),
         _ => {}
     }
     if d.one_in(60) {
-        push(Update::Assign { place: q_at(v(S)), value: n(1) });
+        push(EdgeAssignment::Assign { place: q_at(v(S)), value: n(1) });
     }
     if d.one_in(60) {
-        push(Update::Assign { place: Place::slot(S), value: plus(v(S), 1) });
+        push(EdgeAssignment::Assign { place: Lvalue::slot(S), value: plus(v(S), 1) });
     }
     it
 }

@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Program, Span,
     ta::NetworkId,
-    ta::{Ask, ClockConstraint, ClockId, ClockOp, Formula, LocationId, Query, Time},
+    ta::{ClockConstraint, ClockId, ClockOp, LocationId, Query, QueryFormula, QueryKind, TimeSum},
     value::SECOND,
 };
 use hrdsl_ta::{
@@ -38,16 +38,16 @@ pub fn disagreement(p: &Program) -> Result<Option<String>, String> {
 pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
     let formulas = formulas(p);
     let [f, g, h, ..] = formulas.as_slice() else { return Ok(None) };
-    let at = |automaton, l| Formula::At { automaton, location: LocationId(l) };
-    let left = Formula::Not(Box::new(at(0, 0)));
+    let at = |automaton, l| QueryFormula::At { automaton, location: LocationId(l) };
+    let left = QueryFormula::Not(Box::new(at(0, 0)));
     let asked = [
-        (Ask::Possibly(Formula::Deadlock), graph.possibly(&Formula::Deadlock)?),
-        (Ask::PotentiallyAlways(at(0, 0)), graph.always(&at(0, 0))?),
-        (Ask::PotentiallyAlways(f.clone()), graph.always(f)?),
-        (Ask::Eventually(left.clone()), graph.eventually(&left)?),
-        (Ask::Eventually(g.clone()), graph.eventually(g)?),
-        (Ask::LeadsTo(at(0, 1), at(0, 0)), graph.leads_to(&at(0, 1), &at(0, 0))?),
-        (Ask::LeadsTo(g.clone(), h.clone()), graph.leads_to(g, h)?),
+        (QueryKind::Possibly(QueryFormula::Deadlock), graph.possibly(&QueryFormula::Deadlock)?),
+        (QueryKind::PotentiallyAlways(at(0, 0)), graph.always(&at(0, 0))?),
+        (QueryKind::PotentiallyAlways(f.clone()), graph.always(f)?),
+        (QueryKind::Eventually(left.clone()), graph.eventually(&left)?),
+        (QueryKind::Eventually(g.clone()), graph.eventually(g)?),
+        (QueryKind::LeadsTo(at(0, 1), at(0, 0)), graph.leads_to(&at(0, 1), &at(0, 0))?),
+        (QueryKind::LeadsTo(g.clone(), h.clone()), graph.leads_to(g, h)?),
     ];
     for (ask, expected) in asked {
         let query = Query {
@@ -103,7 +103,7 @@ fn goals(p: &Program) -> Vec<ReachabilityGoal> {
 }
 
 /// A few formulas over locations, variables and clocks.
-pub fn formulas(p: &Program) -> Vec<Formula> {
+pub fn formulas(p: &Program) -> Vec<QueryFormula> {
     let network = &p.networks[0].automata;
     let clocks =
         p.clocks.len() + network.iter().map(|a| p.automata[usize::from(a.0)].clocks.len()).sum::<usize>();
@@ -115,20 +115,20 @@ pub fn formulas(p: &Program) -> Vec<Formula> {
         for (m, a) in network.iter().enumerate() {
             let at = LocationId(below(p.automata[usize::from(a.0)].locations.len()) as u16);
             if below(3) > 0 {
-                parts.push(Formula::At { automaton: m as u16, location: at });
+                parts.push(QueryFormula::At { automaton: m as u16, location: at });
             }
         }
         if below(2) == 0 {
-            parts.push(Formula::Data(eq(v(0), n(below(3) as i64))));
+            parts.push(QueryFormula::Data(eq(v(0), n(below(3) as i64))));
         }
         if below(2) == 0 {
             let op = [ClockOp::Lt, ClockOp::Le, ClockOp::Eq, ClockOp::Ge, ClockOp::Gt][below(5)];
-            let bound = Time::constant(below(4) as i64 * SECOND);
+            let bound = TimeSum::constant(below(4) as i64 * SECOND);
             let c = ClockConstraint { clock: ClockId(below(clocks) as u16), minus: None, op, bound };
-            parts.push(Formula::Clock(c));
+            parts.push(QueryFormula::Clock(c));
         }
-        let all_of = Formula::And(parts);
-        all.push(if i % 5 == 4 { Formula::Not(Box::new(all_of)) } else { all_of });
+        let all_of = QueryFormula::And(parts);
+        all.push(if i % 5 == 4 { QueryFormula::Not(Box::new(all_of)) } else { all_of });
     }
     all
 }

@@ -2,10 +2,10 @@
 
 use hrdsl_ir::{
     Expr, Program, Span,
-    expr::{BinaryOp, Index, Place},
+    expr::{ArrayIndex, BinaryOp, Lvalue},
     ta::{
-        AutomatonId, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationKind, Party,
-        ReceiveArg, Sync, Time, TimeTerm,
+        AutomatonId, Channel, ChannelId, ChannelKind, ChannelParticipant, ClockConstraint, ClockId, ClockOp,
+        LocationKind, ReceiveArg, SyncLabel, TimeSum, TimeTerm,
     },
     value::SECOND,
 };
@@ -21,17 +21,17 @@ fn agrees(p: &Program) {
 }
 
 /// `s` is 0, 1 or 2, `q` has two elements: `q[s]` is a fault, if `s` is 2.
-fn array() -> (Program, Time) {
+fn array() -> (Program, TimeSum) {
     let mut p = program();
     shared(&mut p, "s", 0, 2, 0);
     shared(&mut p, "q0", 0, 1, 0);
     shared(&mut p, "q1", 0, 1, 1);
-    let element = Place { slot: 1, indices: vec![Index { at: v(0), count: 2, stride: 1 }] };
+    let element = Lvalue { slot: 1, indices: vec![ArrayIndex { at: v(0), count: 2, stride: 1 }] };
     let value = Expr::Element(Box::new(element));
-    (p, Time { nanos: SECOND, terms: vec![TimeTerm { factor: SECOND, value }] })
+    (p, TimeSum { nanos: SECOND, terms: vec![TimeTerm { factor: SECOND, value }] })
 }
 
-fn at_least(bound: Time) -> ClockConstraint {
+fn at_least(bound: TimeSum) -> ClockConstraint {
     ClockConstraint { clock: ClockId(0), minus: None, op: ClockOp::Ge, bound }
 }
 
@@ -68,11 +68,11 @@ fn divided(kind: ChannelKind) -> Program {
     let origin = Span::default();
     p.channels.push(Channel { name: "c".into(), kind, urgent: false, params: Vec::new(), origin });
     let channel = ChannelId(0);
-    let accept = || Sync::Accept { channel, args: Vec::<ReceiveArg>::new() };
+    let accept = || SyncLabel::Accept { channel, args: Vec::<ReceiveArg>::new() };
     let syncs = if joint {
-        [Sync::Join { channel }, Sync::Join { channel }]
+        [SyncLabel::Join { channel }, SyncLabel::Join { channel }]
     } else {
-        [Sync::Offer { channel, args: Vec::new() }, accept()]
+        [SyncLabel::Offer { channel, args: Vec::new() }, accept()]
     };
     for (i, sync) in syncs.into_iter().enumerate() {
         let mut a = automaton(["A", "B"][i], &["x"]);
@@ -100,7 +100,7 @@ fn divided(kind: ChannelKind) -> Program {
 
 #[test]
 fn a_committed_location_forbids_the_fault_of_a_party() {
-    let party = |i| Party { automaton: AutomatonId(i), optional: false };
+    let party = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
     agrees(&divided(ChannelKind::Joint(vec![party(0), party(1)])));
 }
 

@@ -10,7 +10,7 @@ pub use hrdsl_bdi::{IntentionSummary, LogDetail, RunStatus, show};
 use hrdsl_harness::{Harness, HarnessRun, Player, RunTermination};
 use hrdsl_ir::{
     Nanos, Program,
-    bdi::{AgentId, Fact},
+    bdi::{AgentId, InitialFact},
     suite::PlayerRef,
 };
 use hrdsl_trace::Trace;
@@ -88,7 +88,7 @@ impl ModelRunOptions {
 pub fn model_run(
     program: &Program,
     players: &[PlayerRef],
-    facts: &[(AgentId, Fact)],
+    facts: &[(AgentId, InitialFact)],
     options: &ModelRunOptions,
 ) -> ModelRun {
     let (company, run) = ModelCast { program, players, facts, options }.run(false);
@@ -115,7 +115,7 @@ pub struct ModelInspection {
 pub fn inspect(
     program: &Program,
     players: &[PlayerRef],
-    facts: &[(AgentId, Fact)],
+    facts: &[(AgentId, InitialFact)],
     options: &ModelRunOptions,
 ) -> ModelInspection {
     let (company, run) = ModelCast { program, players, facts, options }.run(true);
@@ -139,7 +139,7 @@ pub fn inspect(
 struct ModelCast<'p, 'a> {
     program: &'p Program,
     players: &'a [PlayerRef],
-    facts: &'a [(AgentId, Fact)],
+    facts: &'a [(AgentId, InitialFact)],
     options: &'a ModelRunOptions,
 }
 
@@ -149,11 +149,11 @@ impl<'p> ModelCast<'p, '_> {
         let agent = |player: &PlayerRef| match player {
             PlayerRef::Agent(id) => {
                 let own = self.facts.iter().filter(|(a, _)| a == id).map(|(_, f)| f.clone());
-                Some((*id, own.collect::<Vec<Fact>>()))
+                Some((*id, own.collect::<Vec<InitialFact>>()))
             }
             PlayerRef::Automaton(_) => None,
         };
-        let agents: Vec<(AgentId, Vec<Fact>)> = self.players.iter().filter_map(agent).collect();
+        let agents: Vec<(AgentId, Vec<InitialFact>)> = self.players.iter().filter_map(agent).collect();
         let mut society = Society::with_detail(program, &agents, self.options.seed, self.options.detail);
         society.set_cycle_limit(self.options.cycles);
         society.measure();

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     ArgPattern, Expr, Type, Value,
-    ta::{ChannelKind, Edge, ReceiveArg, Sync, Var},
+    ta::{AutomatonVar, ChannelKind, Edge, ReceiveArg, SyncLabel},
 };
 
 use super::{Writer, expr::Exprs, expr::number};
@@ -130,24 +130,24 @@ impl Writer<'_> {
         let sent = |args: &'e [Expr]| args.iter().map(Argument::Sent).collect();
         let taken = |args: &[ReceiveArg]| args.iter().map(|a| Argument::Taken(*a)).collect();
         Ok(match &edge.sync {
-            Sync::Internal => (String::new(), Vec::new(), Vec::new()),
-            Sync::Send { event: e, args } => {
+            SyncLabel::Internal => (String::new(), Vec::new(), Vec::new()),
+            SyncLabel::Send { event: e, args } => {
                 let (name, domains) = event(e)?;
                 (name, domains, sent(args))
             }
-            Sync::Receive { event: e, args } => {
+            SyncLabel::Receive { event: e, args } => {
                 let (name, domains) = event(e)?;
                 (name, domains, taken(args))
             }
-            Sync::Offer { channel: c, args } => {
+            SyncLabel::Offer { channel: c, args } => {
                 let (name, domains) = channel(c);
                 (name, domains, sent(args))
             }
-            Sync::Accept { channel: c, args } => {
+            SyncLabel::Accept { channel: c, args } => {
                 let (name, domains) = channel(c);
                 (name, domains, taken(args))
             }
-            Sync::Join { channel: c } => (channel(c).0, Vec::new(), Vec::new()),
+            SyncLabel::Join { channel: c } => (channel(c).0, Vec::new(), Vec::new()),
         })
     }
 
@@ -190,21 +190,22 @@ impl Writer<'_> {
             body.extend(exprs.update(u, &mut fresh)?);
         }
         let part = match &edge.sync {
-            Sync::Internal => Part::Alone,
-            Sync::Send { .. } => Part::Announces(flat),
-            Sync::Receive { .. } => Part::Hears(flat),
-            Sync::Offer { channel, .. } => match self.kind(channel.0) {
+            SyncLabel::Internal => Part::Alone,
+            SyncLabel::Send { .. } => Part::Announces(flat),
+            SyncLabel::Receive { .. } => Part::Hears(flat),
+            SyncLabel::Offer { channel, .. } => match self.kind(channel.0) {
                 ChannelKind::Broadcast => Part::Announces(flat),
                 ChannelKind::HandShake | ChannelKind::Joint(_) => Part::Offers(flat),
             },
-            Sync::Accept { channel, .. } => match self.kind(channel.0) {
+            SyncLabel::Accept { channel, .. } => match self.kind(channel.0) {
                 ChannelKind::Broadcast => Part::Hears(flat),
                 ChannelKind::HandShake | ChannelKind::Joint(_) => Part::Accepts(flat),
             },
-            Sync::Join { channel } => Part::Joins(usize::from(channel.0)),
+            SyncLabel::Join { channel } => Part::Joins(usize::from(channel.0)),
         };
-        if let Sync::Offer { channel, .. } | Sync::Accept { channel, .. } | Sync::Join { channel } =
-            &edge.sync
+        if let SyncLabel::Offer { channel, .. }
+        | SyncLabel::Accept { channel, .. }
+        | SyncLabel::Join { channel } = &edge.sync
         {
             let channel = &self.program.channels[usize::from(channel.0)];
             if channel.urgent {
@@ -233,7 +234,7 @@ fn crossed(all: Vec<Vec<Value>>, values: &[Value]) -> Vec<Vec<Value>> {
     pairs.take(MAX_INSTANCES + 1).map(|(start, v)| with(start, v)).collect()
 }
 
-fn values(var: &Var) -> Vec<Value> {
+fn values(var: &AutomatonVar) -> Vec<Value> {
     let most = i64::try_from(MAX_INSTANCES).unwrap_or(i64::MAX);
     (var.lo..=var.hi.min(var.lo.saturating_add(most))).filter_map(|n| var.value(n)).collect()
 }

@@ -2,8 +2,8 @@
 
 use hrdsl_ir::{
     Enumeration, Expr, Nanos, Program, Type, Value,
-    expr::{BinaryOp, Function, Place, UnaryOp},
-    ta::{self, ClockConstraint, ClockId, ClockOp, Statement, Time, Update},
+    expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
+    ta::{self, ClockConstraint, ClockId, ClockOp, EdgeAssignment, FunctionStatement, TimeSum},
 };
 
 use super::names::Names;
@@ -88,7 +88,7 @@ impl<'a> Exprs<'a> {
     }
 
     /// An element by its indices: arrays of arrays are one array.
-    fn place(&self, place: &Place, depth: u8) -> Text {
+    fn place(&self, place: &Lvalue, depth: u8) -> Text {
         if place.indices.is_empty() {
             return self.var(place.slot);
         }
@@ -234,7 +234,7 @@ impl<'a> Exprs<'a> {
         })
     }
 
-    fn call(&self, function: Function, args: &[Expr], depth: u8) -> Text {
+    fn call(&self, function: NumberFunction, args: &[Expr], depth: u8) -> Text {
         let args: Vec<String> = args.iter().map(|a| self.term(a, depth)).collect::<Result<_, _>>()?;
         let choose = |sign: &str| {
             let fold =
@@ -242,10 +242,10 @@ impl<'a> Exprs<'a> {
             args.iter().skip(1).fold(args.first().cloned().unwrap_or_default(), fold)
         };
         match (function, args.as_slice()) {
-            (Function::Abs, [a]) => Ok(format!("(if {a}<0 then -{a} else {a})")),
-            (Function::Min, [_, ..]) => Ok(choose("<=")),
-            (Function::Max, [_, ..]) => Ok(choose(">=")),
-            (Function::Abs | Function::Min | Function::Max | Function::Norm, _) => {
+            (NumberFunction::Abs, [a]) => Ok(format!("(if {a}<0 then -{a} else {a})")),
+            (NumberFunction::Min, [_, ..]) => Ok(choose("<=")),
+            (NumberFunction::Max, [_, ..]) => Ok(choose(">=")),
+            (NumberFunction::Abs | NumberFunction::Min | NumberFunction::Max | NumberFunction::Norm, _) => {
                 Err("this function has no counterpart in TChecker".to_owned())
             }
         }
@@ -256,7 +256,7 @@ impl<'a> Exprs<'a> {
         let Some(f) = self.program.functions.get(function) else {
             return Err("a function is not there".to_owned());
         };
-        let [Statement::Return(Some(value))] = f.body.as_slice() else {
+        let [FunctionStatement::Return(Some(value))] = f.body.as_slice() else {
             return Err(format!(
                 "the function `{}` is more than one expression: TChecker has no functions",
                 f.name
@@ -270,7 +270,7 @@ impl<'a> Exprs<'a> {
         inner.int(value, depth + 1)
     }
 
-    fn inside<'b>(&'b self, f: &ta::Function, texts: &'b [(String, bool)]) -> Exprs<'b> {
+    fn inside<'b>(&'b self, f: &ta::AutomatonFunction, texts: &'b [(String, bool)]) -> Exprs<'b> {
         let known = if f.owner.is_some() { self.own_slots() } else { self.names.shared_slots };
         let bound = Bound::Texts(texts, known);
         Exprs { program: self.program, names: self.names, automaton: self.automaton, unit: self.unit, bound }
@@ -285,7 +285,7 @@ impl<'a> Exprs<'a> {
         &self.names.clocks[at]
     }
 
-    fn time(&self, time: &Time) -> Text {
+    fn time(&self, time: &TimeSum) -> Text {
         let mut parts = Vec::new();
         for term in &time.terms {
             parts.push(format!("{}*{}", self.term(&term.value, 0)?, term.factor / self.unit));
@@ -316,18 +316,18 @@ impl<'a> Exprs<'a> {
     /// What TChecker cannot say.
     pub fn update(
         &self,
-        update: &Update,
+        update: &EdgeAssignment,
         fresh: &mut dyn FnMut(&str) -> String,
     ) -> Result<Vec<String>, String> {
         match update {
-            Update::Assign { place, value } => {
+            EdgeAssignment::Assign { place, value } => {
                 Ok(vec![format!("{}={}", self.place(place, 0)?, self.int(value, 0)?)])
             }
-            Update::Reset { clock, from, to } => {
+            EdgeAssignment::Reset { clock, from, to } => {
                 let from = from.map_or(String::new(), |f| format!("{}+", self.clock(f)));
                 Ok(vec![format!("{}={from}{}", self.clock(*clock), self.time(to)?)])
             }
-            Update::Call { function, args } => self.called(usize::from(function.0), args, 0, fresh),
+            EdgeAssignment::Call { function, args } => self.called(usize::from(function.0), args, 0, fresh),
         }
     }
 
@@ -361,7 +361,7 @@ impl<'a> Exprs<'a> {
         }
         let inner = self.inside(f, &texts);
         let body = match f.body.split_last() {
-            Some((Statement::Return(None), rest)) => rest,
+            Some((FunctionStatement::Return(None), rest)) => rest,
             Some(_) | None => &f.body,
         };
         inner.statements(body, depth + 1, fresh, &mut out)?;
@@ -370,20 +370,20 @@ impl<'a> Exprs<'a> {
 
     fn statements(
         &self,
-        body: &[Statement],
+        body: &[FunctionStatement],
         depth: u8,
         fresh: &mut dyn FnMut(&str) -> String,
         out: &mut Vec<String>,
     ) -> Result<(), String> {
         for statement in body {
             match statement {
-                Statement::Assign { place, value } => {
+                FunctionStatement::Assign { place, value } => {
                     out.push(format!("{}={}", self.place(place, depth)?, self.int(value, depth)?));
                 }
-                Statement::Call { function, args } => {
+                FunctionStatement::Call { function, args } => {
                     out.extend(self.called(usize::from(function.0), args, depth, fresh)?);
                 }
-                Statement::If { condition, then, otherwise } => {
+                FunctionStatement::If { condition, then, otherwise } => {
                     let (mut a, mut b) = (Vec::new(), Vec::new());
                     self.statements(then, depth, fresh, &mut a)?;
                     self.statements(otherwise, depth, fresh, &mut b)?;
@@ -391,12 +391,12 @@ impl<'a> Exprs<'a> {
                     let then = if a.is_empty() { "nop".to_owned() } else { a.join("; ") };
                     out.push(format!("if {} then {then}{tail} end", self.all(condition, depth)?));
                 }
-                Statement::While { condition, body } => {
+                FunctionStatement::While { condition, body } => {
                     let mut inner = Vec::new();
                     self.statements(body, depth, fresh, &mut inner)?;
                     out.push(format!("while {} do {} end", self.all(condition, depth)?, inner.join("; ")));
                 }
-                Statement::For { slot, lo, hi, body } => {
+                FunctionStatement::For { slot, lo, hi, body } => {
                     let (at, last) = (self.var(*slot)?, fresh("last"));
                     out.push(format!("local {last}={}", self.int(hi, depth)?));
                     out.push(format!("{at}={}", self.int(lo, depth)?));
@@ -405,7 +405,7 @@ impl<'a> Exprs<'a> {
                     inner.push(format!("{at}={at}+1"));
                     out.push(format!("while {at}<={last} do {} end", inner.join("; ")));
                 }
-                Statement::Return(_) => {
+                FunctionStatement::Return(_) => {
                     return Err("a function returns before its end: TChecker has no `return`".to_owned());
                 }
             }

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program,
-    ta::{Automaton, Network, Var},
+    ta::{Automaton, AutomatonVar, Network},
 };
 
 /// Words that TChecker keeps for itself.
@@ -83,7 +83,7 @@ impl Names {
     }
 
     /// Variables whose names differ in an index only are one array.
-    fn variables(&mut self, vars: &[Var], prefix: &str) {
+    fn variables(&mut self, vars: &[AutomatonVar], prefix: &str) {
         let mut last: Option<(String, i64, i64)> = None;
         for v in vars {
             let array = v.name.contains('[').then(|| {

@@ -101,8 +101,9 @@ impl Writer<'_> {
         let channel_name = self.program.channels[channel].name.clone();
         let ChannelKind::Joint(parties) = &self.program.channels[channel].kind else { return };
         let part = Part::Joins(channel);
-        let at =
-            |party: &hrdsl_ir::ta::Party| self.network.automata.iter().position(|a| *a == party.automaton);
+        let at = |party: &hrdsl_ir::ta::ChannelParticipant| {
+            self.network.automata.iter().position(|a| *a == party.automaton)
+        };
         let present: Vec<(usize, bool)> =
             parties.iter().filter_map(|party| Some((at(party)?, party.optional))).collect();
         let has = |p: usize| instances[p].iter().any(|i| i.part == part);

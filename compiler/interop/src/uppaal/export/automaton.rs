@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use hrdsl_ir::ArgPattern;
 use hrdsl_ir::ta::{
-    Automaton, ClockOp, Edge, FunctionId, Location, LocationKind, ReceiveArg, Sync, Update, Var,
+    Automaton, AutomatonVar, ClockOp, Edge, EdgeAssignment, FunctionId, Location, LocationKind, ReceiveArg,
+    SyncLabel,
 };
 use indexmap::IndexSet;
 
@@ -130,15 +131,15 @@ impl Exporter<'_> {
         text + "    </transition>\n"
     }
 
-    fn sync(&self, at: usize, sync: &Sync, binders: &mut Binders) -> Said<String> {
+    fn sync(&self, at: usize, sync: &SyncLabel, binders: &mut Binders) -> Said<String> {
         let id = self.network.automata[at];
         match sync {
-            Sync::Internal => Ok(String::new()),
-            Sync::Send { event, args } => offer(self.events.get(event), args, &binders.context),
-            Sync::Offer { channel, args } => offer(self.channels.get(channel), args, &binders.context),
-            Sync::Receive { event, args } => accept(self.events.get(event), args, binders),
-            Sync::Accept { channel, args } => accept(self.channels.get(channel), args, binders),
-            Sync::Join { channel } => {
+            SyncLabel::Internal => Ok(String::new()),
+            SyncLabel::Send { event, args } => offer(self.events.get(event), args, &binders.context),
+            SyncLabel::Offer { channel, args } => offer(self.channels.get(channel), args, &binders.context),
+            SyncLabel::Receive { event, args } => accept(self.events.get(event), args, binders),
+            SyncLabel::Accept { channel, args } => accept(self.channels.get(channel), args, binders),
+            SyncLabel::Join { channel } => {
                 let known = self.channels.get(channel).ok_or("a channel that is not known here")?;
                 Ok(match self.part(*channel, id) {
                     Part::Offer => format!("{}!", known.name),
@@ -162,13 +163,13 @@ struct Binders {
 
 impl Binders {
     /// Adds a select; it is the next variable of the edge's expressions.
-    fn bind(&mut self, var: &Var) -> String {
+    fn bind(&mut self, var: &AutomatonVar) -> String {
         let name = self.select(var);
         self.context.slots.slots.push(Slot { text: name.clone(), as_number: var.is_bool, ..slot(var) });
         name
     }
 
-    fn select(&mut self, var: &Var) -> String {
+    fn select(&mut self, var: &AutomatonVar) -> String {
         let name = self.names.fresh(&var.name);
         self.selects.push(format!("{name} : int[{},{}]", var.lo, var.hi));
         name
@@ -244,23 +245,23 @@ fn guard(edge: &Edge, context: &Context) -> Said<String> {
     Ok(parts.join(" && "))
 }
 
-fn updates(all: &[Update], context: &Context) -> Said<String> {
+fn updates(all: &[EdgeAssignment], context: &Context) -> Said<String> {
     let mut parts = Vec::new();
     for update in all {
         parts.push(match update {
-            Update::Assign { place, value } => {
+            EdgeAssignment::Assign { place, value } => {
                 let value = context.expr(value, context.enumeration_of(place))?;
                 format!("{} = {}", context.place(place)?, value.text)
             }
-            Update::Reset { from: Some(_), .. } => {
+            EdgeAssignment::Reset { from: Some(_), .. } => {
                 return Err("that a clock is set to another clock: it sets clocks to integers".to_owned());
             }
-            Update::Reset { clock, from: None, to } => {
+            EdgeAssignment::Reset { clock, from: None, to } => {
                 let name =
                     context.clocks.get(usize::from(clock.0)).ok_or("a clock that is not known here")?;
                 format!("{name} = {}", context.time(to)?.text)
             }
-            Update::Call { function, args } => context.apply(function.0, args)?,
+            EdgeAssignment::Call { function, args } => context.apply(function.0, args)?,
         });
     }
     Ok(parts.join(", "))

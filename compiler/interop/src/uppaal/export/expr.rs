@@ -2,8 +2,8 @@
 
 use hrdsl_ir::{
     Enumeration, Expr, Value,
-    expr::{BinaryOp, Function, Place, UnaryOp},
-    ta::{ClockConstraint, ClockOp, Time},
+    expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
+    ta::{ClockConstraint, ClockOp, TimeSum},
 };
 
 use super::slots::Slots;
@@ -153,21 +153,23 @@ impl Context {
         }
     }
 
-    fn call(&self, function: Function, args: &[Expr]) -> Said<Text> {
+    fn call(&self, function: NumberFunction, args: &[Expr]) -> Said<Text> {
         let args = args.iter().map(|a| self.expr(a, None)).collect::<Said<Vec<_>>>()?;
         match (function, args.as_slice()) {
-            (Function::Min, [a, b]) => {
+            (NumberFunction::Min, [a, b]) => {
                 Ok(Text::new(format!("{} <? {}", a.at(Level::Sum), b.at(Level::Sum)), Level::Extreme))
             }
-            (Function::Max, [a, b]) => {
+            (NumberFunction::Max, [a, b]) => {
                 Ok(Text::new(format!("{} >? {}", a.at(Level::Sum), b.at(Level::Sum)), Level::Extreme))
             }
-            (Function::Abs, [a]) => {
+            (NumberFunction::Abs, [a]) => {
                 let negative = Text::new(format!("-{}", a.at(Level::Atom)), Level::Unary).text;
                 Ok(Text::new(format!("({} >? {negative})", a.at(Level::Sum)), Level::Atom))
             }
-            (Function::Norm, _) => Err("`norm`".to_owned()),
-            (Function::Min | Function::Max | Function::Abs, _) => Err("a call without arguments".to_owned()),
+            (NumberFunction::Norm, _) => Err("`norm`".to_owned()),
+            (NumberFunction::Min | NumberFunction::Max | NumberFunction::Abs, _) => {
+                Err("a call without arguments".to_owned())
+            }
         }
     }
 
@@ -184,7 +186,7 @@ impl Context {
     // ── Places ──
 
     /// A variable, or an element that indices choose.
-    pub fn place(&self, place: &Place) -> Said<String> {
+    pub fn place(&self, place: &Lvalue) -> Said<String> {
         let slot = usize::from(place.slot);
         if place.indices.is_empty() {
             let slot = self.slots.slots.get(slot).ok_or("a variable that is not known here")?;
@@ -199,8 +201,9 @@ impl Context {
         for (size, stride) in group.dims.iter().zip(group.strides()) {
             let constant = left / stride;
             left %= stride;
-            let fits =
-                |i: &&hrdsl_ir::expr::Index| usize::from(i.stride) == stride && usize::from(i.count) == *size;
+            let fits = |i: &&hrdsl_ir::expr::ArrayIndex| {
+                usize::from(i.stride) == stride && usize::from(i.count) == *size
+            };
             let index = match place.indices.iter().find(fits) {
                 Some(index) => self.expr(&index.at, None)?.text,
                 None => constant.to_string(),
@@ -210,13 +213,13 @@ impl Context {
         Ok(text)
     }
 
-    pub fn enumeration_of(&self, place: &Place) -> Option<Enumeration> {
+    pub fn enumeration_of(&self, place: &Lvalue) -> Option<Enumeration> {
         self.slots.slots.get(usize::from(place.slot)).and_then(|s| s.enumeration)
     }
 
     // ── Time ──
 
-    pub fn time(&self, time: &Time) -> Said<Text> {
+    pub fn time(&self, time: &TimeSum) -> Said<Text> {
         let mut terms = Vec::new();
         for term in &time.terms {
             let factor = self.units(term.factor)?;

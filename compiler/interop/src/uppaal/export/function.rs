@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hrdsl_ir::{
     Expr, Program,
-    ta::{Automaton, Function, FunctionId, Statement, Sync, Time, Update},
+    ta::{Automaton, AutomatonFunction, EdgeAssignment, FunctionId, FunctionStatement, SyncLabel, TimeSum},
 };
 use indexmap::IndexSet;
 
@@ -45,7 +45,7 @@ pub fn in_expr(e: &Expr, note: &mut dyn FnMut(FunctionId)) {
 /// The functions that an automaton calls itself.
 pub fn called_by(automaton: &Automaton, note: &mut dyn FnMut(FunctionId)) {
     let in_time =
-        |t: &Time, note: &mut dyn FnMut(FunctionId)| t.terms.iter().for_each(|t| in_expr(&t.value, note));
+        |t: &TimeSum, note: &mut dyn FnMut(FunctionId)| t.terms.iter().for_each(|t| in_expr(&t.value, note));
     for location in &automaton.locations {
         location.invariant.iter().for_each(|c| in_time(&c.bound, note));
         location.holds.iter().for_each(|e| in_expr(e, note));
@@ -54,17 +54,22 @@ pub fn called_by(automaton: &Automaton, note: &mut dyn FnMut(FunctionId)) {
         edge.clock_guard.iter().for_each(|c| in_time(&c.bound, note));
         edge.guard.iter().for_each(|e| in_expr(e, note));
         match &edge.sync {
-            Sync::Send { args, .. } | Sync::Offer { args, .. } => args.iter().for_each(|e| in_expr(e, note)),
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
+                args.iter().for_each(|e| in_expr(e, note))
+            }
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => {}
         }
         for update in &edge.updates {
             match update {
-                Update::Assign { place, value } => {
+                EdgeAssignment::Assign { place, value } => {
                     place.indices.iter().for_each(|i| in_expr(&i.at, note));
                     in_expr(value, note);
                 }
-                Update::Reset { to, .. } => in_time(to, note),
-                Update::Call { function, args } => {
+                EdgeAssignment::Reset { to, .. } => in_time(to, note),
+                EdgeAssignment::Call { function, args } => {
                     note(*function);
                     args.iter().for_each(|e| in_expr(e, note));
                 }
@@ -73,20 +78,22 @@ pub fn called_by(automaton: &Automaton, note: &mut dyn FnMut(FunctionId)) {
     }
 }
 
-fn calls(function: &Function) -> IndexSet<FunctionId> {
+fn calls(function: &AutomatonFunction) -> IndexSet<FunctionId> {
     let mut called = IndexSet::new();
-    fn statements(all: &[Statement], called: &mut IndexSet<FunctionId>) {
+    fn statements(all: &[FunctionStatement], called: &mut IndexSet<FunctionId>) {
         for statement in all {
             match statement {
-                Statement::Call { function, .. } => {
+                FunctionStatement::Call { function, .. } => {
                     called.insert(*function);
                 }
-                Statement::If { then, otherwise, .. } => {
+                FunctionStatement::If { then, otherwise, .. } => {
                     statements(then, called);
                     statements(otherwise, called);
                 }
-                Statement::While { body, .. } | Statement::For { body, .. } => statements(body, called),
-                Statement::Assign { .. } | Statement::Return(_) => {}
+                FunctionStatement::While { body, .. } | FunctionStatement::For { body, .. } => {
+                    statements(body, called)
+                }
+                FunctionStatement::Assign { .. } | FunctionStatement::Return(_) => {}
             }
         }
     }
@@ -155,7 +162,7 @@ impl Writer {
         Self { context, names, extra: Vec::new(), result: None }
     }
 
-    fn function(mut self, function: &Function, name: &str) -> Said<String> {
+    fn function(mut self, function: &AutomatonFunction, name: &str) -> Said<String> {
         let mut slots = Slots::default();
         let mut params = Vec::new();
         for param in &function.params {
@@ -183,23 +190,23 @@ impl Writer {
         Ok(text + &body + "}\n")
     }
 
-    fn statements(&mut self, all: &[Statement], depth: usize) -> Said<String> {
+    fn statements(&mut self, all: &[FunctionStatement], depth: usize) -> Said<String> {
         all.iter().map(|s| self.statement(s, depth)).collect()
     }
 
-    fn statement(&mut self, statement: &Statement, depth: usize) -> Said<String> {
+    fn statement(&mut self, statement: &FunctionStatement, depth: usize) -> Said<String> {
         let pad = "  ".repeat(depth);
         let expr = |cx: &Context, e: &Expr| cx.expr(e, None).map(|t| t.text);
         Ok(match statement {
-            Statement::Assign { place, value } => {
+            FunctionStatement::Assign { place, value } => {
                 let of = self.context.enumeration_of(place);
                 let (to, value) = (self.context.place(place)?, self.context.expr(value, of)?);
                 format!("{pad}{to} = {};\n", value.text)
             }
-            Statement::Call { function, args } => {
+            FunctionStatement::Call { function, args } => {
                 format!("{pad}{};\n", self.context.apply(function.0, args)?)
             }
-            Statement::If { condition, then, otherwise } => {
+            FunctionStatement::If { condition, then, otherwise } => {
                 let mut text = format!("{pad}if ({}) {{\n", expr(&self.context, condition)?);
                 text += &self.statements(then, depth + 1)?;
                 if !otherwise.is_empty() {
@@ -208,13 +215,13 @@ impl Writer {
                 }
                 text + &pad + "}\n"
             }
-            Statement::While { condition, body } => {
+            FunctionStatement::While { condition, body } => {
                 let condition = expr(&self.context, condition)?;
                 format!("{pad}while ({condition}) {{\n{}{pad}}}\n", self.statements(body, depth + 1)?)
             }
-            Statement::For { slot, lo, hi, body } => self.for_loop(*slot, lo, hi, body, depth)?,
-            Statement::Return(None) => format!("{pad}return;\n"),
-            Statement::Return(Some(value)) => {
+            FunctionStatement::For { slot, lo, hi, body } => self.for_loop(*slot, lo, hi, body, depth)?,
+            FunctionStatement::Return(None) => format!("{pad}return;\n"),
+            FunctionStatement::Return(Some(value)) => {
                 format!("{pad}return {};\n", self.context.expr(value, self.result)?.text)
             }
         })
@@ -225,7 +232,7 @@ impl Writer {
         slot: u16,
         lo: &Expr,
         hi: &Expr,
-        body: &[Statement],
+        body: &[FunctionStatement],
         depth: usize,
     ) -> Said<String> {
         let pad = "  ".repeat(depth);
@@ -253,22 +260,24 @@ fn is_constant(lo: &Expr, hi: &Expr) -> bool {
 }
 
 /// Slots of loops that declare their variable.
-fn loops(all: &[Statement]) -> IndexSet<usize> {
+fn loops(all: &[FunctionStatement]) -> IndexSet<usize> {
     let mut out = IndexSet::new();
     for statement in all {
         match statement {
-            Statement::For { slot, lo, hi, body } => {
+            FunctionStatement::For { slot, lo, hi, body } => {
                 if is_constant(lo, hi) {
                     out.insert(usize::from(*slot));
                 }
                 out.extend(loops(body));
             }
-            Statement::While { body, .. } => out.extend(loops(body)),
-            Statement::If { then, otherwise, .. } => {
+            FunctionStatement::While { body, .. } => out.extend(loops(body)),
+            FunctionStatement::If { then, otherwise, .. } => {
                 out.extend(loops(then));
                 out.extend(loops(otherwise));
             }
-            Statement::Assign { .. } | Statement::Call { .. } | Statement::Return(_) => {}
+            FunctionStatement::Assign { .. }
+            | FunctionStatement::Call { .. }
+            | FunctionStatement::Return(_) => {}
         }
     }
     out

@@ -19,8 +19,8 @@ mod slots;
 use hrdsl_ir::{
     Enumeration, EventId, Expr, Nanos, Program, Span, Type,
     ta::{
-        Ask, Automaton, AutomatonId, ChannelId, ChannelKind, Formula, FunctionId, Measure, Network, Party,
-        Query, Statement, Sync, Var,
+        Automaton, AutomatonId, AutomatonVar, ChannelId, ChannelKind, ChannelParticipant, FunctionId,
+        FunctionStatement, Network, Query, QueryFormula, QueryKind, QueryMeasure, SyncLabel,
     },
 };
 use indexmap::{IndexMap, IndexSet};
@@ -46,7 +46,7 @@ pub struct Exported {
 #[derive(Clone, Debug)]
 struct Channel {
     name: String,
-    params: Vec<Var>,
+    params: Vec<AutomatonVar>,
     broadcast: bool,
     urgent: bool,
 }
@@ -138,7 +138,7 @@ impl<'p> Exporter<'p> {
         // Processes keep their names before all others: reports speak of them.
         let processes = automata.map(|a| names.fresh(&a.name)).collect();
         let none = || vec![None; program.functions.len()];
-        let of = |v: &Var| v.enumeration;
+        let of = |v: &AutomatonVar| v.enumeration;
         let global = Context {
             functions: none(),
             results: program.functions.iter().map(|f| f.result.as_ref().and_then(of)).collect(),
@@ -244,13 +244,15 @@ impl<'p> Exporter<'p> {
 
     /// Finds the events and channels that the network uses.
     fn media(&mut self) {
-        let syncs: Vec<(&'p Sync, Span)> =
+        let syncs: Vec<(&'p SyncLabel, Span)> =
             self.automata().flat_map(|a| a.edges.iter().map(|e| (&e.sync, e.origin))).collect();
         for (sync, span) in syncs {
             match sync {
-                Sync::Internal => {}
-                Sync::Send { event, .. } | Sync::Receive { event, .. } => self.event(*event, span),
-                Sync::Offer { channel, .. } | Sync::Accept { channel, .. } | Sync::Join { channel } => {
+                SyncLabel::Internal => {}
+                SyncLabel::Send { event, .. } | SyncLabel::Receive { event, .. } => self.event(*event, span),
+                SyncLabel::Offer { channel, .. }
+                | SyncLabel::Accept { channel, .. }
+                | SyncLabel::Join { channel } => {
                     self.channel(*channel);
                 }
             }
@@ -276,7 +278,7 @@ impl<'p> Exporter<'p> {
                     (0, 0, false, None)
                 }
             };
-            params.push(Var { name: param.name.clone(), lo, hi, init: lo, is_bool, enumeration });
+            params.push(AutomatonVar { name: param.name.clone(), lo, hi, init: lo, is_bool, enumeration });
         }
         let name = self.names.fresh(&event.name);
         self.events.insert(id, Channel { name, params, broadcast: true, urgent: false });
@@ -308,12 +310,12 @@ impl<'p> Exporter<'p> {
         self.channels.insert(id, Channel { name, params, broadcast, urgent });
     }
 
-    fn present(&self, parties: &[Party]) -> Vec<Party> {
+    fn present(&self, parties: &[ChannelParticipant]) -> Vec<ChannelParticipant> {
         parties.iter().filter(|p| self.network.automata.contains(&p.automaton)).copied().collect()
     }
 
     /// Whether a multi-way channel is a broadcast; `None`: it is neither that nor a binary synchronisation.
-    fn joint(&self, parties: &[Party]) -> Option<bool> {
+    fn joint(&self, parties: &[ChannelParticipant]) -> Option<bool> {
         let present = self.present(parties);
         match present.as_slice() {
             [one] if !one.optional => Some(false),
@@ -367,28 +369,31 @@ fn duration(nanos: Nanos) -> String {
     found.map_or_else(|| format!("{nanos} ns"), |(n, unit)| format!("{} {unit}", nanos / n))
 }
 
-fn formulas(ask: &Ask) -> Vec<&Formula> {
+fn formulas(ask: &QueryKind) -> Vec<&QueryFormula> {
     match ask {
-        Ask::Possibly(f) | Ask::Invariantly(f) | Ask::PotentiallyAlways(f) | Ask::Eventually(f) => vec![f],
-        Ask::LeadsTo(f, g) => vec![f, g],
-        Ask::Sup { when, .. } | Ask::Inf { when, .. } => vec![when],
+        QueryKind::Possibly(f)
+        | QueryKind::Invariantly(f)
+        | QueryKind::PotentiallyAlways(f)
+        | QueryKind::Eventually(f) => vec![f],
+        QueryKind::LeadsTo(f, g) => vec![f, g],
+        QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => vec![when],
     }
 }
 
-fn called_in(ask: &Ask, note: &mut dyn FnMut(FunctionId)) {
-    fn each(formula: &Formula, note: &mut dyn FnMut(FunctionId)) {
+fn called_in(ask: &QueryKind, note: &mut dyn FnMut(FunctionId)) {
+    fn each(formula: &QueryFormula, note: &mut dyn FnMut(FunctionId)) {
         match formula {
-            Formula::Data(e) => function::in_expr(e, note),
-            Formula::Clock(c) => c.bound.terms.iter().for_each(|t| function::in_expr(&t.value, note)),
-            Formula::Not(f) => each(f, note),
-            Formula::And(all) | Formula::Or(all) => all.iter().for_each(|f| each(f, note)),
-            Formula::At { .. } | Formula::Deadlock => {}
+            QueryFormula::Data(e) => function::in_expr(e, note),
+            QueryFormula::Clock(c) => c.bound.terms.iter().for_each(|t| function::in_expr(&t.value, note)),
+            QueryFormula::Not(f) => each(f, note),
+            QueryFormula::And(all) | QueryFormula::Or(all) => all.iter().for_each(|f| each(f, note)),
+            QueryFormula::At { .. } | QueryFormula::Deadlock => {}
         }
     }
     formulas(ask).into_iter().for_each(|f| each(f, note));
-    if let Ask::Sup { of, .. } | Ask::Inf { of, .. } = ask {
+    if let QueryKind::Sup { of, .. } | QueryKind::Inf { of, .. } = ask {
         for measure in of {
-            if let Measure::Data(e) = measure {
+            if let QueryMeasure::Data(e) = measure {
                 function::in_expr(e, note);
             }
         }
@@ -396,26 +401,26 @@ fn called_in(ask: &Ask, note: &mut dyn FnMut(FunctionId)) {
 }
 
 /// What an expression or statement needs of the slots of a function: used by both halves of this module.
-fn all_exprs<'s>(statement: &'s Statement, note: &mut dyn FnMut(&'s Expr)) {
+fn all_exprs<'s>(statement: &'s FunctionStatement, note: &mut dyn FnMut(&'s Expr)) {
     match statement {
-        Statement::Assign { place, value } => {
+        FunctionStatement::Assign { place, value } => {
             place.indices.iter().for_each(|i| note(&i.at));
             note(value);
         }
-        Statement::Call { args, .. } => args.iter().for_each(note),
-        Statement::If { condition, then, otherwise } => {
+        FunctionStatement::Call { args, .. } => args.iter().for_each(note),
+        FunctionStatement::If { condition, then, otherwise } => {
             note(condition);
             then.iter().chain(otherwise).for_each(|s| all_exprs(s, note));
         }
-        Statement::While { condition, body } => {
+        FunctionStatement::While { condition, body } => {
             note(condition);
             body.iter().for_each(|s| all_exprs(s, note));
         }
-        Statement::For { lo, hi, body, .. } => {
+        FunctionStatement::For { lo, hi, body, .. } => {
             note(lo);
             note(hi);
             body.iter().for_each(|s| all_exprs(s, note));
         }
-        Statement::Return(value) => value.iter().for_each(note),
+        FunctionStatement::Return(value) => value.iter().for_each(note),
     }
 }

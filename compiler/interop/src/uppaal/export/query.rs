@@ -1,6 +1,6 @@
 //! Queries: formulas over the processes of the network.
 
-use hrdsl_ir::ta::{Ask, Formula, Measure, Query};
+use hrdsl_ir::ta::{Query, QueryFormula, QueryKind, QueryMeasure};
 
 use super::{
     Exporter,
@@ -47,44 +47,44 @@ impl Exporter<'_> {
         all
     }
 
-    fn ask(&self, ask: &Ask, context: &Context) -> Said<String> {
-        let formula = |f: &Formula| self.formula(f, context);
+    fn ask(&self, ask: &QueryKind, context: &Context) -> Said<String> {
+        let formula = |f: &QueryFormula| self.formula(f, context);
         Ok(match ask {
-            Ask::Possibly(f) => format!("E<> {}", formula(f)?.text),
-            Ask::Invariantly(f) => format!("A[] {}", formula(f)?.text),
-            Ask::PotentiallyAlways(f) => format!("E[] {}", formula(f)?.text),
-            Ask::Eventually(f) => format!("A<> {}", formula(f)?.text),
-            Ask::LeadsTo(f, g) => format!("{} --> {}", formula(f)?.text, formula(g)?.text),
-            Ask::Sup { of, when } => self.bound("sup", of, when, context)?,
-            Ask::Inf { of, when } => self.bound("inf", of, when, context)?,
+            QueryKind::Possibly(f) => format!("E<> {}", formula(f)?.text),
+            QueryKind::Invariantly(f) => format!("A[] {}", formula(f)?.text),
+            QueryKind::PotentiallyAlways(f) => format!("E[] {}", formula(f)?.text),
+            QueryKind::Eventually(f) => format!("A<> {}", formula(f)?.text),
+            QueryKind::LeadsTo(f, g) => format!("{} --> {}", formula(f)?.text, formula(g)?.text),
+            QueryKind::Sup { of, when } => self.bound("sup", of, when, context)?,
+            QueryKind::Inf { of, when } => self.bound("inf", of, when, context)?,
         })
     }
 
-    fn bound(&self, word: &str, of: &[Measure], when: &Formula, context: &Context) -> Said<String> {
+    fn bound(&self, word: &str, of: &[QueryMeasure], when: &QueryFormula, context: &Context) -> Said<String> {
         let when = match when {
-            Formula::And(all) if all.is_empty() => String::new(),
-            Formula::Data(hrdsl_ir::Expr::Const(hrdsl_ir::Value::Bool(true))) => String::new(),
-            Formula::At { .. }
-            | Formula::Data(_)
-            | Formula::Clock(_)
-            | Formula::Deadlock
-            | Formula::Not(_)
-            | Formula::And(_)
-            | Formula::Or(_) => format!("{{{}}}", self.formula(when, context)?.text),
+            QueryFormula::And(all) if all.is_empty() => String::new(),
+            QueryFormula::Data(hrdsl_ir::Expr::Const(hrdsl_ir::Value::Bool(true))) => String::new(),
+            QueryFormula::At { .. }
+            | QueryFormula::Data(_)
+            | QueryFormula::Clock(_)
+            | QueryFormula::Deadlock
+            | QueryFormula::Not(_)
+            | QueryFormula::And(_)
+            | QueryFormula::Or(_) => format!("{{{}}}", self.formula(when, context)?.text),
         };
-        let measure = |m: &Measure| match m {
-            Measure::Clock(id) => context
+        let measure = |m: &QueryMeasure| match m {
+            QueryMeasure::Clock(id) => context
                 .clocks
                 .get(usize::from(id.0))
                 .cloned()
                 .ok_or("a clock that is not known here".to_owned()),
-            Measure::Data(e) => context.expr(e, None).map(|t| t.text),
+            QueryMeasure::Data(e) => context.expr(e, None).map(|t| t.text),
         };
         Ok(format!("{word}{when}: {}", of.iter().map(measure).collect::<Said<Vec<_>>>()?.join(", ")))
     }
 
-    fn formula(&self, formula: &Formula, context: &Context) -> Said<Text> {
-        let joined = |all: &[Formula], sign: &str, level: Level, none: &str| {
+    fn formula(&self, formula: &QueryFormula, context: &Context) -> Said<Text> {
+        let joined = |all: &[QueryFormula], sign: &str, level: Level, none: &str| {
             let parts = all.iter().map(|f| self.formula(f, context).map(|t| t.at(level)));
             let parts = parts.collect::<Said<Vec<_>>>()?;
             Ok(match parts.as_slice() {
@@ -94,20 +94,20 @@ impl Exporter<'_> {
             })
         };
         match formula {
-            Formula::At { automaton, location } => {
+            QueryFormula::At { automaton, location } => {
                 let at = usize::from(*automaton);
                 let name = self.locations.get(at).and_then(|l| l.get(usize::from(location.0)));
                 let name = name.ok_or("a location that is not known here")?;
                 Ok(Text::new(format!("{}.{name}", self.processes[at]), Level::Atom))
             }
-            Formula::Data(e) => context.expr(e, None),
-            Formula::Clock(c) => Ok(Text::new(context.constraint(c)?, Level::Order)),
-            Formula::Deadlock => Ok(Text::new("deadlock", Level::Atom)),
-            Formula::Not(f) => {
+            QueryFormula::Data(e) => context.expr(e, None),
+            QueryFormula::Clock(c) => Ok(Text::new(context.constraint(c)?, Level::Order)),
+            QueryFormula::Deadlock => Ok(Text::new("deadlock", Level::Atom)),
+            QueryFormula::Not(f) => {
                 Ok(Text::new(format!("!{}", self.formula(f, context)?.at(Level::Unary)), Level::Unary))
             }
-            Formula::And(all) => joined(all, " && ", Level::And, "true"),
-            Formula::Or(all) => joined(all, " || ", Level::Or, "false"),
+            QueryFormula::And(all) => joined(all, " && ", Level::And, "true"),
+            QueryFormula::Or(all) => joined(all, " || ", Level::Or, "false"),
         }
     }
 }

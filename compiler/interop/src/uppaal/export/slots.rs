@@ -1,6 +1,6 @@
 //! Variables: what they are called in UPPAAL, arrays put together again from their elements, and what `Expr::Var` stands for.
 
-use hrdsl_ir::{Enumeration, ta::Var};
+use hrdsl_ir::{Enumeration, ta::AutomatonVar};
 use indexmap::IndexSet;
 
 /// Names that are in use.
@@ -156,7 +156,7 @@ pub struct Slots {
 
 impl Slots {
     /// Adds variables and gives their declarations.
-    pub fn declare(&mut self, vars: &[Var], names: &mut Names) -> Vec<String> {
+    pub fn declare(&mut self, vars: &[AutomatonVar], names: &mut Names) -> Vec<String> {
         let mut lines = Vec::new();
         let mut at = 0;
         while at < vars.len() {
@@ -199,19 +199,19 @@ impl Slots {
     }
 }
 
-pub fn slot(var: &Var) -> Slot {
+pub fn slot(var: &AutomatonVar) -> Slot {
     Slot { text: var.name.clone(), as_number: false, enumeration: var.enumeration }
 }
 
-pub fn ty(var: &Var) -> String {
+pub fn ty(var: &AutomatonVar) -> String {
     if var.is_bool { "bool".to_owned() } else { format!("int[{},{}]", var.lo, var.hi) }
 }
 
-fn value(var: &Var, n: i64) -> String {
+fn value(var: &AutomatonVar, n: i64) -> String {
     if var.is_bool { (n != 0).to_string() } else { n.to_string() }
 }
 
-fn initial(vars: &[Var], dims: &[usize]) -> String {
+fn initial(vars: &[AutomatonVar], dims: &[usize]) -> String {
     let Some((_, rest)) = dims.split_first() else {
         return vars.first().map_or_else(|| "0".to_owned(), |v| value(v, v.init));
     };
@@ -221,16 +221,17 @@ fn initial(vars: &[Var], dims: &[usize]) -> String {
 }
 
 /// The array that begins with the first variable: its name and its sizes, if its elements follow in order.
-fn array(vars: &[Var]) -> Option<(String, Vec<usize>)> {
+fn array(vars: &[AutomatonVar]) -> Option<(String, Vec<usize>)> {
     let (base, zeros) = indices(&vars.first()?.name)?;
     if zeros.iter().any(|i| *i != 0) {
         return None;
     }
-    let belongs = |v: &&Var| indices(&v.name).is_some_and(|(b, at)| b == base && at.len() == zeros.len());
-    let elements: Vec<&Var> = vars.iter().take_while(belongs).collect();
+    let belongs =
+        |v: &&AutomatonVar| indices(&v.name).is_some_and(|(b, at)| b == base && at.len() == zeros.len());
+    let elements: Vec<&AutomatonVar> = vars.iter().take_while(belongs).collect();
     let last = indices(&elements.last()?.name)?.1;
     let dims: Vec<usize> = last.iter().map(|i| i + 1).collect();
-    let same = |v: &&Var| {
+    let same = |v: &&AutomatonVar| {
         let first = &vars[0];
         (v.lo, v.hi, v.is_bool, v.enumeration) == (first.lo, first.hi, first.is_bool, first.enumeration)
     };

@@ -30,7 +30,7 @@ mod translation;
 mod write;
 mod xml;
 
-use hrdsl_source::{FileId, Files, Position, Span};
+use hrdsl_source::{FileId, SourceFiles, Span, TextPosition};
 
 use self::{fault::Fault, translation::Cx};
 use crate::exchange::{
@@ -58,7 +58,7 @@ pub fn import(
     if !large.is_empty() {
         return Err(large);
     }
-    let mut files = Files::default();
+    let mut files = SourceFiles::default();
     let file = files.add(&model.name, &model.text);
     let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
     if let Some(source) = questions {
@@ -82,14 +82,14 @@ pub fn import(
     Ok(Imported { text, notes })
 }
 
-fn note(files: &Files, (span, severity, message): (Span, Severity, String)) -> Note {
-    let (file, Position { line, column }) = place(files, span);
+fn note(files: &SourceFiles, (span, severity, message): (Span, Severity, String)) -> Note {
+    let (file, TextPosition { line, column }) = place(files, span);
     Note { file, line, column, severity, message, help: None }
 }
 
-fn errors(files: &Files, faults: Vec<Fault>) -> Vec<SyntaxError> {
+fn errors(files: &SourceFiles, faults: Vec<Fault>) -> Vec<SyntaxError> {
     let error = |fault: Fault| {
-        let (file, Position { line, column }) = place(files, fault.span);
+        let (file, TextPosition { line, column }) = place(files, fault.span);
         SyntaxError { file, line, column, message: fault.message }
     };
     let mut errors: Vec<SyntaxError> = faults.into_iter().map(error).collect();
@@ -98,7 +98,7 @@ fn errors(files: &Files, faults: Vec<Fault>) -> Vec<SyntaxError> {
     errors
 }
 
-fn place(files: &Files, span: Span) -> (String, Position) {
+fn place(files: &SourceFiles, span: Span) -> (String, TextPosition) {
     (files.get(span.file).map(|f| f.name.clone()).unwrap_or_default(), files.position(span))
 }
 

@@ -7,21 +7,22 @@ use hrdsl_syntax::ast::{
     self, AgentMemberKind as Member, Call, ExprKind as Syntax, ItemKind, Sort, StepKind, TriggerKind,
 };
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::{
     checker::Checker,
     state::{
         issues::too_many,
-        names::{Declared, GoalEntry},
-        record::Fields,
-        scope::Env,
-        table::{MAX_NAMES, Map, Table},
-        template::Template,
+        names::{DeclaredPlayer, GoalEntry},
+        record::DeclaredFields,
+        scope::ExprEnv,
+        table::{MAX_NAMES, NameTable, OrderedMap},
+        template::DeclaredTemplate,
     },
     unread,
 };
 use crate::{
-    AgentId, Belief, BeliefId, Context, Fact, Goal, GoalId, Kind, Param, Subject, Value,
+    AgentId, BeliefDecl, BeliefId, GoalDecl, GoalId, InferredType, InitialFact, MessageSubject, Parameter,
+    TypedContext, Value,
     noun::Noun,
     report::{
         agents::{no_plan, not_adopted, only_declared},
@@ -30,21 +31,21 @@ use crate::{
 };
 
 /// The names of one agent.
-pub(in crate::check) struct Scope {
+pub(in crate::check) struct AgentScope {
     pub id: AgentId,
     /// Explicit labels of plans.
-    pub labels: Table,
+    pub labels: NameTable,
     /// How many plans each trigger's name has had so far.
-    pub plans_of: Map<String, usize>,
+    pub plans_of: OrderedMap<String, usize>,
 }
 
-impl Scope {
+impl AgentScope {
     fn new(index: usize) -> Self {
         Self::of(AgentId(u16::try_from(index).unwrap_or(u16::MAX)))
     }
 
     pub fn of(id: AgentId) -> Self {
-        Self { id, labels: Table::default(), plans_of: Map::default() }
+        Self { id, labels: NameTable::default(), plans_of: OrderedMap::default() }
     }
 }
 
@@ -101,13 +102,13 @@ impl<'a> Checker<'a> {
         };
         each(self, &|c, index, agent| c.declare_members(index, agent));
         self.templates_of(Sort::Agent, |c, template| {
-            if c.source.looks_at(Phase::Agents, template.name.span) {
+            if c.source.looks_at(CheckPhase::Agents, template.name.span) {
                 c.template_agent(template, true);
             }
         });
-        each(self, &|c, index, agent| c.agent_rules(&Scope::new(index), agent));
+        each(self, &|c, index, agent| c.agent_rules(&AgentScope::new(index), agent));
         each(self, &|c, index, agent| {
-            let looked_at = |at| c.source.looks_at(Phase::Agents, at);
+            let looked_at = |at| c.source.looks_at(CheckPhase::Agents, at);
             let instance = decls[index].instance.is_some_and(|i| looked_at(i.span));
             if instance || looked_at(agent.name.span) {
                 c.agent(index, agent);
@@ -117,14 +118,14 @@ impl<'a> Checker<'a> {
     }
 
     /// Looks at a template by itself: at its declarations, or at all.
-    fn template_agent(&mut self, template: Template<'a>, whole: bool) {
+    fn template_agent(&mut self, template: DeclaredTemplate<'a>, whole: bool) {
         let ItemKind::Agent(syntax) = template.kind else { return };
         let (index, contents) = (self.s.agents.len(), self.s.contents.len());
-        let plain = Declared { syntax, given: None, instance: None };
+        let plain = DeclaredPlayer { syntax, given: None, instance: None };
         self.push_agent(&plain, template.name, template.name.span);
         self.declare_members(index, syntax);
         if whole {
-            self.agent_rules(&Scope::new(index), syntax);
+            self.agent_rules(&AgentScope::new(index), syntax);
             self.agent(index, syntax);
         }
         self.s.agents.truncate(index);
@@ -156,7 +157,7 @@ impl<'a> Checker<'a> {
             .map(|(name, entry)| {
                 let params = entry.fields.as_ref().map(|f| self.flat(f));
                 let arity = params.as_ref().map_or(entry.arity, Vec::len);
-                Goal { name: name.clone(), arity: u16::try_from(arity).unwrap_or(u16::MAX), params }
+                GoalDecl { name: name.clone(), arity: u16::try_from(arity).unwrap_or(u16::MAX), params }
             })
             .collect();
     }
@@ -170,7 +171,7 @@ impl<'a> Checker<'a> {
     ) {
         let fields = self.fields(params);
         let mut marks = Vec::new();
-        let mut table = Table::default();
+        let mut table = NameTable::default();
         for mark in annotations {
             let ty = self.ty(&mark.ty);
             if mark.name.text == "source" {
@@ -180,7 +181,7 @@ impl<'a> Checker<'a> {
             }
             self.issues.declare(&mut table, Noun::Annotation, &mark.name);
             if let Some(ty) = ty {
-                marks.push(Param { name: mark.name.text.clone(), ty });
+                marks.push(Parameter { name: mark.name.text.clone(), ty });
             }
         }
         let percept = on.and_then(|event| self.percept(index, event, &fields));
@@ -188,22 +189,22 @@ impl<'a> Checker<'a> {
             let params = self.flat(&fields);
             self.agents.belief_fields[index].push(fields);
             let (name, annotations) = (name.text.clone(), marks);
-            let belief = Belief { name, params, annotations, percept, negates: None, origin: span };
+            let belief = BeliefDecl { name, params, annotations, percept, negates: None, origin: span };
             self.s.agents[index].beliefs.push(belief);
         }
     }
 
     /// `on sensed`: the event whose arguments the belief holds.
-    fn percept(&mut self, index: usize, name: &ast::Name, fields: &Fields) -> Option<crate::EventId> {
+    fn percept(&mut self, index: usize, name: &ast::Name, fields: &DeclaredFields) -> Option<crate::EventId> {
         let event = self.event(Noun::EventOrStimulus, name, None)?;
         self.perceives(self.s.agents[index].actor, event, name.span, false);
-        let types = |params: &[Param]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
+        let types = |params: &[Parameter]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
         let (ours, theirs) = (self.flat(fields), &self.s.events[usize::from(event.0)].params);
-        let known = fields.iter().all(|(_, l)| *l != crate::types::Layout::Unknown);
+        let known = fields.iter().all(|(_, l)| *l != crate::types::TypeLayout::Unknown);
         if known && types(&ours) != types(theirs) {
             let params: Vec<String> = self.fields_of(event).iter().map(|(n, _)| n.clone()).collect();
             let message = format!("the belief has other parameters than the event `{}`", name.text);
-            let issue = Diagnostic::error(hrdsl_source::Code::TYPE_MISMATCH, name.span, message);
+            let issue = Diagnostic::error(hrdsl_source::DiagnosticCode::TYPE_MISMATCH, name.span, message);
             let declared = self.events.table.span_of(&name.text);
             let issue = match params.as_slice() {
                 [] => issue.help("declare it without parameters"),
@@ -221,7 +222,7 @@ impl<'a> Checker<'a> {
 
     /// `goal deliver(leg: 1..4)`
     fn declare_goals(&mut self, index: usize, agent: &ast::Agent) {
-        let mut table = Table::default();
+        let mut table = NameTable::default();
         for member in &agent.members {
             let Member::GoalType { name, params } = &member.kind else { continue };
             let fields = self.fields(params);
@@ -250,7 +251,7 @@ impl<'a> Checker<'a> {
     }
 
     fn agent(&mut self, index: usize, agent: &ast::Agent) {
-        let mut scope = Scope::new(index);
+        let mut scope = AgentScope::new(index);
         self.source.unread_members = unread::in_agent(agent);
         for member in &agent.members {
             match &member.kind {
@@ -272,7 +273,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
-    fn unadopted(&mut self, scope: &Scope, agent: &ast::Agent) {
+    fn unadopted(&mut self, scope: &AgentScope, agent: &ast::Agent) {
         let mut adopted: BTreeSet<&str> = self.agents.asked_goals.clone();
         let mut here: indexmap::IndexSet<&str> = indexmap::IndexSet::new();
         let mut broken = false;
@@ -314,7 +315,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `= had(0)`: the fact must be of the belief that is being declared.
-    fn initial_belief(&mut self, scope: &Scope, declared: &ast::Name, fact: &ast::Literal) {
+    fn initial_belief(&mut self, scope: &AgentScope, declared: &ast::Name, fact: &ast::Literal) {
         let Some(belief) = self.belief_or_negation(scope, fact) else { return };
         let name = &fact.call.name;
         if name.text != declared.text {
@@ -330,26 +331,26 @@ impl<'a> Checker<'a> {
         let mut annotations = Vec::new();
         for e in &fact.annotations {
             let Some((annotation, value, ty)) = self.annotation(e, Some(&marks)) else { continue };
-            let value = self.expr_for(value, ty, &mut Env::constants());
-            if value.constant().is_none() && value.ty != Kind::Unknown {
+            let value = self.expr_for(value, ty, &mut ExprEnv::constants());
+            if value.constant().is_none() && value.ty != InferredType::Unknown {
                 self.report(types::not_constant(value.span));
             }
             annotations.extend(value.constant().map(|v| (annotation, v)));
         }
         if let Some(args) = args {
             let facts = &mut self.s.agents[usize::from(scope.id.0)].initial_beliefs;
-            facts.push(Fact { belief, args, annotations });
+            facts.push(InitialFact { belief, args, annotations });
         }
     }
 
-    fn initial_goal(&mut self, scope: &Scope, call: &Call) {
+    fn initial_goal(&mut self, scope: &AgentScope, call: &Call) {
         let Some(goal) = self.goal(scope, call) else { return };
         let args = match self.goal_fields(scope.id, goal) {
             Some(fields) => self.ground(Noun::Goal, call, &fields).unwrap_or_default(),
             None => {
                 let mut args = Vec::new();
                 for arg in call.args.as_deref().unwrap_or_default() {
-                    args.extend(self.constant(arg, Kind::Unknown, &mut Env::constants()));
+                    args.extend(self.constant(arg, InferredType::Unknown, &mut ExprEnv::constants()));
                 }
                 args
             }
@@ -358,23 +359,23 @@ impl<'a> Checker<'a> {
     }
 
     /// Constant arguments.
-    fn ground(&mut self, noun: Noun, call: &Call, fields: &Fields) -> Option<Vec<Value>> {
-        let args = self.args(noun, call, fields, &mut Env::constants());
+    fn ground(&mut self, noun: Noun, call: &Call, fields: &DeclaredFields) -> Option<Vec<Value>> {
+        let args = self.args(noun, call, fields, &mut ExprEnv::constants());
         for arg in &args {
-            if arg.constant().is_none() && arg.ty != Kind::Unknown {
+            if arg.constant().is_none() && arg.ty != InferredType::Unknown {
                 self.report(types::not_constant(arg.span));
             }
         }
-        let values: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
+        let values: Option<Vec<Value>> = args.iter().map(crate::TypedExpr::constant).collect();
         let whole = call.args.as_ref().map_or(0, Vec::len) == fields.len();
         values.filter(|_| whole)
     }
 
-    pub(in crate::check) fn belief_fields(&self, agent: AgentId, belief: BeliefId) -> Fields {
+    pub(in crate::check) fn belief_fields(&self, agent: AgentId, belief: BeliefId) -> DeclaredFields {
         self.agents.belief_fields[usize::from(agent.0)][usize::from(belief.0)].clone()
     }
 
-    pub(in crate::check) fn goal_fields(&self, agent: AgentId, goal: GoalId) -> Option<Fields> {
+    pub(in crate::check) fn goal_fields(&self, agent: AgentId, goal: GoalId) -> Option<DeclaredFields> {
         let (_, entry) = self.agents.goals[usize::from(agent.0)].get_index(usize::from(goal.0))?;
         entry.fields.clone()
     }
@@ -382,7 +383,7 @@ impl<'a> Checker<'a> {
     /// The belief that a literal is of: a declared one, or its strong negation.
     pub(in crate::check) fn belief_or_negation(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         literal: &ast::Literal,
     ) -> Option<BeliefId> {
         let belief = self.belief(scope, &literal.call.name)?;
@@ -397,7 +398,7 @@ impl<'a> Checker<'a> {
         if let Some(id) = self.agents.beliefs[index].get(&name) {
             return Some(BeliefId(id));
         }
-        let negation = Belief { name, percept: None, negates: Some(belief), ..plain.clone() };
+        let negation = BeliefDecl { name, percept: None, negates: Some(belief), ..plain.clone() };
         let (issues, table) = (&mut self.issues, &mut self.agents.beliefs[index]);
         let id = issues.declare_as(table, Noun::Belief, &negation.name, negation.origin)?;
         let fields = self.belief_fields(agent, belief);
@@ -406,7 +407,7 @@ impl<'a> Checker<'a> {
         Some(BeliefId(id))
     }
 
-    pub(in crate::check) fn belief(&mut self, scope: &Scope, name: &ast::Name) -> Option<BeliefId> {
+    pub(in crate::check) fn belief(&mut self, scope: &AgentScope, name: &ast::Name) -> Option<BeliefId> {
         let table = &self.agents.beliefs[usize::from(scope.id.0)];
         if let Some(id) = table.get(&name.text) {
             let place = table.span(id);
@@ -420,7 +421,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name is within the agent.
-    pub(in crate::check) fn kind_in_agent(&self, scope: &Scope, text: &str) -> Option<Noun> {
+    pub(in crate::check) fn kind_in_agent(&self, scope: &AgentScope, text: &str) -> Option<Noun> {
         self.kind_of_agent(scope.id, text)
     }
 
@@ -434,7 +435,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A goal with its number of arguments; there must be a plan for it.
-    pub(in crate::check) fn goal(&mut self, scope: &Scope, call: &Call) -> Option<GoalId> {
+    pub(in crate::check) fn goal(&mut self, scope: &AgentScope, call: &Call) -> Option<GoalId> {
         let name = &call.name;
         let goals = &self.agents.goals[usize::from(scope.id.0)];
         let Some((index, _, entry)) = goals.get_full(&name.text) else {
@@ -470,11 +471,11 @@ impl<'a> Checker<'a> {
     }
 
     /// Several contexts as one.
-    pub(in crate::check) fn all_of(mut contexts: Vec<Context>) -> Context {
+    pub(in crate::check) fn all_of(mut contexts: Vec<TypedContext>) -> TypedContext {
         match contexts.len() {
-            0 => Context::True,
+            0 => TypedContext::True,
             1 => contexts.remove(0),
-            _ => Context::And(contexts),
+            _ => TypedContext::And(contexts),
         }
     }
 
@@ -491,23 +492,23 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn subject(&mut self, agent: AgentId, name: &str, is_goal: bool, arity: usize) -> Option<Subject> {
+    fn subject(&mut self, agent: AgentId, name: &str, is_goal: bool, arity: usize) -> Option<MessageSubject> {
         let index = usize::from(agent.0);
         if is_goal {
             let id = self.agents.goals[index].get_index_of(name)?;
             let fits = usize::from(self.s.agents[index].goals.get(id)?.arity) == arity;
-            return u16::try_from(id).ok().filter(|_| fits).map(|id| Subject::Goal(GoalId(id)));
+            return u16::try_from(id).ok().filter(|_| fits).map(|id| MessageSubject::Goal(GoalId(id)));
         }
         let plain = BeliefId(self.agents.beliefs[index].get(name.trim_start_matches('~'))?);
         let belief = if name.starts_with('~') { self.negation(agent, plain)? } else { plain };
         let fits = self.s.agents[index].beliefs[usize::from(belief.0)].params.len() == arity;
-        fits.then_some(Subject::Belief(belief))
+        fits.then_some(MessageSubject::Belief(belief))
     }
 }
 
 /// The goals with a plan `+!g`, by the first plan for each.
-fn achieved(agent: &ast::Agent) -> Map<String, GoalEntry> {
-    let mut goals = Map::default();
+fn achieved(agent: &ast::Agent) -> OrderedMap<String, GoalEntry> {
+    let mut goals = OrderedMap::default();
     for member in &agent.members {
         if let Member::Plan(plan) = &member.kind
             && plan.trigger.kind == TriggerKind::Achieve

@@ -5,28 +5,28 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax};
 
 use crate::check::{
     agents::{
-        agent::Scope,
-        terms::{Due, literal_of},
+        agent::AgentScope,
+        terms::{TermMode, literal_of},
     },
     checker::Checker,
-    state::scope::{Env, is_variable_name},
+    state::scope::{ExprEnv, is_variable_name},
     value::{expr::FUNCTIONS, range},
 };
 use crate::{
-    Arg, BinaryOp, Context, Dim, Kind, UnaryOp,
+    BinaryOp, Dimension, InferredType, TypedContext, TypedTerm, UnaryOp,
     noun::Noun,
     report::{agents, names},
 };
 
 /// What is known of the variables at a place.
-pub(in crate::check) type Known = Vec<(bool, Kind, Option<(i64, i64)>)>;
+pub(in crate::check) type KnownVars = Vec<(bool, InferredType, Option<(i64, i64)>)>;
 
-pub(in crate::check) fn known(env: &Env) -> Known {
+pub(in crate::check) fn known(env: &ExprEnv) -> KnownVars {
     env.locals.iter().map(|l| (l.bound, l.ty, l.range)).collect()
 }
 
 /// Undoes the bindings made since; variables first seen since then stay known, without a value.
-pub(in crate::check) fn restore(env: &mut Env, before: &Known) {
+pub(in crate::check) fn restore(env: &mut ExprEnv, before: &KnownVars) {
     for (i, local) in env.locals.iter_mut().enumerate() {
         match before.get(i) {
             Some((true, ty, range)) => {
@@ -40,13 +40,18 @@ pub(in crate::check) fn restore(env: &mut Env, before: &Known) {
 }
 
 impl Checker<'_> {
-    pub(in crate::check) fn context(&mut self, scope: &Scope, e: &ast::Expr, env: &mut Env) -> Context {
+    pub(in crate::check) fn context(
+        &mut self,
+        scope: &AgentScope,
+        e: &ast::Expr,
+        env: &mut ExprEnv,
+    ) -> TypedContext {
         match &e.kind {
             Syntax::Binary { op: BinaryOp::And, left, right } => {
                 let mut parts = Vec::new();
                 for side in [left, right] {
                     match self.context(scope, side, env) {
-                        Context::And(more) => parts.extend(more),
+                        TypedContext::And(more) => parts.extend(more),
                         one => parts.push(one),
                     }
                 }
@@ -58,34 +63,34 @@ impl Checker<'_> {
                 let before = known(env);
                 let inner = self.context(scope, operand, env);
                 restore(env, &before);
-                Context::Not(Box::new(inner))
+                TypedContext::Not(Box::new(inner))
             }
             Syntax::Unify { left, right } => self.unify(left, right, env),
             Syntax::Internal(call) => self.asked(scope, call, env),
             Syntax::Call { callee, .. } if FUNCTIONS.iter().any(|(f, _)| callee.names[0].text == *f) => {
-                Context::Test(self.expr_of(e, Kind::Bool, env))
+                TypedContext::Test(self.expr_of(e, InferredType::Bool, env))
             }
             Syntax::Call { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } => match literal_of(e) {
                 Some(literal) => self.belief_in(scope, &literal, env),
-                None => Context::Test(self.expr_of(e, Kind::Bool, env)),
+                None => TypedContext::Test(self.expr_of(e, InferredType::Bool, env)),
             },
             Syntax::Path(path) if self.is_literal(path, env) => match literal_of(e) {
                 Some(literal) => self.belief_in(scope, &literal, env),
-                None => Context::True,
+                None => TypedContext::True,
             },
             Syntax::Index { of, .. } if matches!(&of.kind, Syntax::Path(p) if self.is_literal(p, env)) => {
                 match literal_of(e) {
                     Some(literal) => self.belief_in(scope, &literal, env),
-                    None => Context::True,
+                    None => TypedContext::True,
                 }
             }
-            _ if self.belief_in_test(scope, e) => Context::True,
-            _ => Context::Test(self.expr_of(e, Kind::Bool, env)),
+            _ if self.belief_in_test(scope, e) => TypedContext::True,
+            _ => TypedContext::Test(self.expr_of(e, InferredType::Bool, env)),
         }
     }
 
     /// A single name that is neither a variable nor a constant is meant as a belief.
-    fn is_literal(&self, path: &ast::Path, env: &Env) -> bool {
+    fn is_literal(&self, path: &ast::Path, env: &ExprEnv) -> bool {
         let [name] = path.names.as_slice() else { return false };
         let text = name.text.as_str();
         env.find(text).is_none()
@@ -94,42 +99,53 @@ impl Checker<'_> {
             && !is_variable_name(text)
     }
 
-    fn belief_in(&mut self, scope: &Scope, literal: &ast::Literal, env: &mut Env) -> Context {
-        self.literal(scope, literal, env, (true, true)).map_or(Context::True, Context::Belief)
+    fn belief_in(&mut self, scope: &AgentScope, literal: &ast::Literal, env: &mut ExprEnv) -> TypedContext {
+        self.literal(scope, literal, env, (true, true)).map_or(TypedContext::True, TypedContext::Belief)
     }
 
     /// `X = e`, `[H | T] = e`: the side with open variables is matched with the other.
-    pub(in crate::check) fn unify(&mut self, left: &ast::Expr, right: &ast::Expr, env: &mut Env) -> Context {
+    pub(in crate::check) fn unify(
+        &mut self,
+        left: &ast::Expr,
+        right: &ast::Expr,
+        env: &mut ExprEnv,
+    ) -> TypedContext {
         let swapped = self.is_pattern(right, env) && !self.is_pattern(left, env);
         let (term, value) = if swapped { (right, left) } else { (left, right) };
         let due = match &term.kind {
             Syntax::Path(path) if path.names.len() == 1 => {
                 let local = env.find(&path.names[0].text).filter(|l| l.bound);
-                local.map_or(Kind::Unknown, |l| l.ty)
+                local.map_or(InferredType::Unknown, |l| l.ty)
             }
-            _ => Kind::Unknown,
+            _ => InferredType::Unknown,
         };
         // A whole number and a float are compared as numbers.
-        let value = self.single(value, if due.is_bare() { Kind::Unknown } else { due }, env);
-        let term = self.matched_arg(term, Due::Kind(value.ty), env, true);
-        if let Arg::Var(i) = term
+        let value = self.single(value, if due.is_bare() { InferredType::Unknown } else { due }, env);
+        let term = self.matched_arg(term, TermMode::Kind(value.ty), env, true);
+        if let TypedTerm::Var(i) = term
             && let Some((lo, hi)) = range::of(&value, env)
             && let Some(local) = env.locals.get_mut(usize::from(i))
         {
             let known = local.range.unwrap_or((lo, hi));
             local.range = Some((lo.max(known.0), hi.min(known.1))).filter(|(lo, hi)| lo <= hi);
         }
-        Context::Unify(term, value)
+        TypedContext::Unify(term, value)
     }
 
     /// After an alternative a variable has a value if both sides give it one.
-    fn either(&mut self, scope: &Scope, left: &ast::Expr, right: &ast::Expr, env: &mut Env) -> Context {
+    fn either(
+        &mut self,
+        scope: &AgentScope,
+        left: &ast::Expr,
+        right: &ast::Expr,
+        env: &mut ExprEnv,
+    ) -> TypedContext {
         let before = known(env);
         let mut parts = Vec::new();
         let mut sides = Vec::new();
         for side in [left, right] {
             match self.context(scope, side, env) {
-                Context::Or(more) => parts.extend(more),
+                TypedContext::Or(more) => parts.extend(more),
                 one => parts.push(one),
             }
             sides.push(known(env));
@@ -138,11 +154,17 @@ impl Checker<'_> {
         if let [a, b] = sides.as_slice() {
             self.join(a, b, left.span.to(right.span), env);
         }
-        Context::Or(parts)
+        TypedContext::Or(parts)
     }
 
     /// What is known where two ways come together.
-    pub(in crate::check) fn join(&mut self, a: &Known, b: &Known, span: hrdsl_source::Span, env: &mut Env) {
+    pub(in crate::check) fn join(
+        &mut self,
+        a: &KnownVars,
+        b: &KnownVars,
+        span: hrdsl_source::Span,
+        env: &mut ExprEnv,
+    ) {
         let mut clashes = Vec::new();
         for (i, local) in env.locals.iter_mut().enumerate() {
             let (Some((true, one, r)), Some((true, other, s))) = (a.get(i), b.get(i)) else {
@@ -153,10 +175,10 @@ impl Checker<'_> {
             local.range = r.zip(*s).map(|(r, s)| (r.0.min(s.0), r.1.max(s.1)));
             local.ty = match one.with(*other) {
                 Some(kind) => kind,
-                None if one.is_bare() && other.is_bare() => Kind::Float(Dim::NUMBER),
+                None if one.is_bare() && other.is_bare() => InferredType::Float(Dimension::NUMBER),
                 None => {
                     clashes.push((local.name.clone(), *one, *other));
-                    Kind::Unknown
+                    InferredType::Unknown
                 }
             };
         }
@@ -166,7 +188,7 @@ impl Checker<'_> {
     }
 
     /// A belief inside of a comparison is a frequent slip.
-    fn belief_in_test(&mut self, scope: &Scope, e: &ast::Expr) -> bool {
+    fn belief_in_test(&mut self, scope: &AgentScope, e: &ast::Expr) -> bool {
         let Syntax::Binary { left, right, .. } = &e.kind else { return false };
         for side in [left, right] {
             if let Syntax::Call { callee, .. } = &side.kind

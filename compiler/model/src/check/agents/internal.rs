@@ -4,16 +4,17 @@ use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use crate::check::{
     agents::{
-        agent::Scope,
+        agent::AgentScope,
         context::{known, restore},
-        internal_table::{INTERNAL_ACTIONS, InternalAction, Op},
-        terms::{Due, literal_of},
+        internal_table::{INTERNAL_ACTIONS, InternalAction, InternalOp},
+        terms::{TermMode, literal_of},
     },
     checker::Checker,
-    state::scope::Env,
+    state::scope::ExprEnv,
 };
 use crate::{
-    Arg, Context, Dim, Expr, GoalId, Internal, Kind, ListFunction, StepKind, UnaryOp,
+    Dimension, GoalId, InferredType, ListFunction, TypedContext, TypedExpr, TypedInternalAct, TypedStepKind,
+    TypedTerm, UnaryOp,
     noun::Noun,
     report::{agents, names, types},
 };
@@ -39,7 +40,12 @@ impl Checker<'_> {
     }
 
     /// An internal action in a formula.
-    pub(in crate::check) fn asked(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Context {
+    pub(in crate::check) fn asked(
+        &mut self,
+        scope: &AgentScope,
+        call: &Call,
+        env: &mut ExprEnv,
+    ) -> TypedContext {
         let action = self.action(call);
         if let Some(action) = action.filter(|a| !a.asks()) {
             self.report(agents::is_a_step(action.name, action.usage, call.span));
@@ -49,93 +55,108 @@ impl Checker<'_> {
             // Nothing is said about what it may have been meant to bind.
             let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
             args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
-            return Context::True;
+            return TypedContext::True;
         };
         match self.question(scope, action, args, env) {
-            Some(internal) => Context::Internal(Box::new(internal), call.span),
-            None => Context::True,
+            Some(internal) => TypedContext::Internal(Box::new(internal), call.span),
+            None => TypedContext::True,
         }
     }
 
     fn question(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         action: &InternalAction,
         args: &[ast::Expr],
-        env: &mut Env,
-    ) -> Option<Internal> {
-        let agent = Kind::Enum(self.players.agent_names);
+        env: &mut ExprEnv,
+    ) -> Option<TypedInternalAct> {
+        let agent = InferredType::Enum(self.players.agent_names);
         Some(match (action.op, args) {
-            (op @ (Op::FindAll | Op::SetOf), [template, formula, out]) => {
+            (op @ (InternalOp::FindAll | InternalOp::SetOf), [template, formula, out]) => {
                 let before = known(env);
                 let formula = self.context(scope, formula, env);
                 let template = self.expr(template, env);
                 restore(env, &before);
-                let out = self.out(out, Kind::list(template.ty), env);
-                Internal::FindAll { template, formula, set: op == Op::SetOf, out }
+                let out = self.out(out, InferredType::list(template.ty), env);
+                TypedInternalAct::FindAll { template, formula, set: op == InternalOp::SetOf, out }
             }
-            (Op::Count, [formula, out]) => {
+            (InternalOp::Count, [formula, out]) => {
                 let before = known(env);
                 let formula = self.context(scope, formula, env);
                 restore(env, &before);
-                Internal::Count { formula, out: self.out(out, Kind::Int, env) }
+                TypedInternalAct::Count { formula, out: self.out(out, InferredType::Int, env) }
             }
-            (Op::Member, [element, list]) => {
-                let list = self.expr_of(list, Kind::list(Kind::Unknown), env);
-                let element = self.out(element, list.ty.element().unwrap_or(Kind::Unknown), env);
-                Internal::Member { element, list }
+            (InternalOp::Member, [element, list]) => {
+                let list = self.expr_of(list, InferredType::list(InferredType::Unknown), env);
+                let element = self.out(element, list.ty.element().unwrap_or(InferredType::Unknown), env);
+                TypedInternalAct::Member { element, list }
             }
-            (Op::Apply(function), [ins @ .., out]) => {
+            (InternalOp::Apply(function), [ins @ .., out]) => {
                 let (args, result) = self.function(function, ins, env)?;
-                Internal::Apply { function, args, out: self.out(out, result, env) }
+                TypedInternalAct::Apply { function, args, out: self.out(out, result, env) }
             }
-            (Op::Holds(function), ins) => {
+            (InternalOp::Holds(function), ins) => {
                 let (args, _) = self.function(function, ins, env)?;
-                Internal::Holds { function, args }
+                TypedInternalAct::Holds { function, args }
             }
-            (op @ (Op::Intend | Op::Desire | Op::Suspended), [goal]) => {
+            (op @ (InternalOp::Intend | InternalOp::Desire | InternalOp::Suspended), [goal]) => {
                 let (goal, args) = self.goal_term(scope, goal, env, true)?;
                 match op {
-                    Op::Intend => Internal::Intend { goal, args },
-                    Op::Desire => Internal::Desire { goal, args },
-                    _ => Internal::Suspended { goal, args },
+                    InternalOp::Intend => TypedInternalAct::Intend { goal, args },
+                    InternalOp::Desire => TypedInternalAct::Desire { goal, args },
+                    _ => TypedInternalAct::Suspended { goal, args },
                 }
             }
-            (Op::Random, [out]) => {
-                Internal::Random { from: None, out: self.out(out, Kind::Float(Dim::NUMBER), env) }
+            (InternalOp::Random, [out]) => TypedInternalAct::Random {
+                from: None,
+                out: self.out(out, InferredType::Float(Dimension::NUMBER), env),
+            },
+            (InternalOp::Random, [list, out]) => {
+                let list = self.expr_of(list, InferredType::list(InferredType::Unknown), env);
+                let out = self.out(out, list.ty.element().unwrap_or(InferredType::Unknown), env);
+                TypedInternalAct::Random { from: Some(list), out }
             }
-            (Op::Random, [list, out]) => {
-                let list = self.expr_of(list, Kind::list(Kind::Unknown), env);
-                let out = self.out(out, list.ty.element().unwrap_or(Kind::Unknown), env);
-                Internal::Random { from: Some(list), out }
-            }
-            (Op::Shuffle, [list, out]) => {
-                let list = self.expr_of(list, Kind::list(Kind::Unknown), env);
+            (InternalOp::Shuffle, [list, out]) => {
+                let list = self.expr_of(list, InferredType::list(InferredType::Unknown), env);
                 let out = self.out(out, list.ty, env);
-                Internal::Shuffle { list, out }
+                TypedInternalAct::Shuffle { list, out }
             }
-            (Op::Time, [out]) => Internal::Time { out: self.out(out, Kind::Float(Dim::TIME), env) },
-            (Op::MyName, [out]) => Internal::MyName { out: self.out(out, agent, env) },
-            (Op::AllNames, [out]) => Internal::AllNames { out: self.out(out, Kind::list(agent), env) },
+            (InternalOp::Time, [out]) => {
+                TypedInternalAct::Time { out: self.out(out, InferredType::Float(Dimension::TIME), env) }
+            }
+            (InternalOp::MyName, [out]) => TypedInternalAct::MyName { out: self.out(out, agent, env) },
+            (InternalOp::AllNames, [out]) => {
+                TypedInternalAct::AllNames { out: self.out(out, InferredType::list(agent), env) }
+            }
             (_, _) => return None,
         })
     }
 
     /// A result: a term that is matched with it.
-    pub(in crate::check) fn out(&mut self, arg: &ast::Expr, kind: Kind, env: &mut Env) -> Arg {
-        self.matched_arg(arg, Due::Kind(kind), env, true)
+    pub(in crate::check) fn out(
+        &mut self,
+        arg: &ast::Expr,
+        kind: InferredType,
+        env: &mut ExprEnv,
+    ) -> TypedTerm {
+        self.matched_arg(arg, TermMode::Kind(kind), env, true)
     }
 
     /// The arguments of a function of lists and strings, and what it yields.
-    fn function(&mut self, f: ListFunction, args: &[ast::Expr], env: &mut Env) -> Option<(Vec<Expr>, Kind)> {
+    fn function(
+        &mut self,
+        f: ListFunction,
+        args: &[ast::Expr],
+        env: &mut ExprEnv,
+    ) -> Option<(Vec<TypedExpr>, InferredType)> {
         use ListFunction as F;
-        let list = Kind::list(Kind::Unknown);
+        let list = InferredType::list(InferredType::Unknown);
         Some(match (f, args) {
             (F::Length | F::Reverse | F::Empty, [arg]) => {
-                let arg = self.list_or_text(arg, Kind::Unknown, env);
+                let arg = self.list_or_text(arg, InferredType::Unknown, env);
                 let result = match f {
-                    F::Length => Kind::Int,
-                    F::Empty => Kind::Bool,
+                    F::Length => InferredType::Int,
+                    F::Empty => InferredType::Bool,
                     _ => arg.ty,
                 };
                 (vec![arg], result)
@@ -147,18 +168,18 @@ impl Checker<'_> {
             }
             (F::Min | F::Max, [arg]) => {
                 let arg = self.expr_of(arg, list, env);
-                let element = arg.ty.element().unwrap_or(Kind::Unknown);
+                let element = arg.ty.element().unwrap_or(InferredType::Unknown);
                 (vec![arg], element)
             }
             (F::Nth, [index, arg]) => {
-                let index = self.expr_of(index, Kind::Int, env);
+                let index = self.expr_of(index, InferredType::Int, env);
                 let arg = self.expr_of(arg, list, env);
-                let element = arg.ty.element().unwrap_or(Kind::Unknown);
+                let element = arg.ty.element().unwrap_or(InferredType::Unknown);
                 (vec![index, arg], element)
             }
             (F::Delete, [x, arg]) => {
                 let arg = self.expr_of(arg, list, env);
-                let x = self.single(x, arg.ty.element().unwrap_or(Kind::Unknown), env);
+                let x = self.single(x, arg.ty.element().unwrap_or(InferredType::Unknown), env);
                 let ty = arg.ty;
                 (vec![x, arg], ty)
             }
@@ -169,26 +190,26 @@ impl Checker<'_> {
                 (vec![a, b], ty)
             }
             (F::Prefix | F::Suffix | F::Sublist, [a, b]) => {
-                let a = self.list_or_text(a, Kind::Unknown, env);
+                let a = self.list_or_text(a, InferredType::Unknown, env);
                 let b = self.list_or_text(b, a.ty, env);
-                (vec![a, b], Kind::Bool)
+                (vec![a, b], InferredType::Bool)
             }
-            (F::ToText, [arg]) => (vec![self.expr(arg, env)], Kind::Text),
+            (F::ToText, [arg]) => (vec![self.expr(arg, env)], InferredType::Text),
             (F::Concat, args) => self.concat(args, env),
             (_, _) => return None,
         })
     }
 
     /// Lists alone make a list; with a string among them all are put into a string.
-    fn concat(&mut self, args: &[ast::Expr], env: &mut Env) -> (Vec<Expr>, Kind) {
-        let args: Vec<Expr> = args.iter().map(|a| self.expr(a, env)).collect();
-        if args.iter().any(|a| a.ty == Kind::Text) {
-            return (args, Kind::Text);
+    fn concat(&mut self, args: &[ast::Expr], env: &mut ExprEnv) -> (Vec<TypedExpr>, InferredType) {
+        let args: Vec<TypedExpr> = args.iter().map(|a| self.expr(a, env)).collect();
+        if args.iter().any(|a| a.ty == InferredType::Text) {
+            return (args, InferredType::Text);
         }
-        let mut ty = if args.iter().all(|a| a.ty == Kind::Unknown) {
-            Kind::Unknown
+        let mut ty = if args.iter().all(|a| a.ty == InferredType::Unknown) {
+            InferredType::Unknown
         } else {
-            Kind::list(Kind::Unknown)
+            InferredType::list(InferredType::Unknown)
         };
         let mut fitted = Vec::new();
         for arg in args {
@@ -199,13 +220,13 @@ impl Checker<'_> {
         (fitted, ty)
     }
 
-    fn list_or_text(&mut self, e: &ast::Expr, like: Kind, env: &mut Env) -> Expr {
+    fn list_or_text(&mut self, e: &ast::Expr, like: InferredType, env: &mut ExprEnv) -> TypedExpr {
         let e = self.single(e, like, env);
         match e.ty {
-            Kind::Text | Kind::List(_) | Kind::Unknown => e,
-            Kind::Bool | Kind::Int | Kind::Float(_) | Kind::Enum(_) => {
+            InferredType::Text | InferredType::List(_) | InferredType::Unknown => e,
+            InferredType::Bool | InferredType::Int | InferredType::Float(_) | InferredType::Enum(_) => {
                 self.report(types::other_shape("a list or a string", &e.ty.to_string(), e.span));
-                Expr::error(e.span)
+                TypedExpr::error(e.span)
             }
         }
     }
@@ -213,11 +234,11 @@ impl Checker<'_> {
     /// A goal without `!`, with arguments that are matched. Without parentheses any will do.
     fn goal_term(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         e: &ast::Expr,
-        env: &mut Env,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Option<(GoalId, Vec<Arg>)> {
+    ) -> Option<(GoalId, Vec<TypedTerm>)> {
         let call = self.goal_call(e)?;
         let goals = &self.agents.goals[usize::from(scope.id.0)];
         if call.args.is_none()
@@ -225,7 +246,7 @@ impl Checker<'_> {
         {
             let arity = self.s.agents[usize::from(scope.id.0)].goals[index].arity;
             let goal = GoalId(u16::try_from(index).unwrap_or(u16::MAX));
-            return Some((goal, vec![Arg::Any; usize::from(arity)]));
+            return Some((goal, vec![TypedTerm::Any; usize::from(arity)]));
         }
         let goal = self.goal(scope, &call)?;
         let fields = self.goal_fields(scope.id, goal);
@@ -260,13 +281,13 @@ impl Checker<'_> {
 
     pub(in crate::check) fn internal_step(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         call: &Call,
-        env: &mut Env,
-    ) -> Option<StepKind> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         let known_to_ask = INTERNAL_ACTIONS.iter().any(|a| a.name == call.name.text && a.asks());
         if known_to_ask {
-            return Some(StepKind::Test(self.asked(scope, call, env)));
+            return Some(TypedStepKind::Test(self.asked(scope, call, env)));
         }
         let args = call.args.as_deref().unwrap_or_default();
         let Some(action) = self.action(call) else {
@@ -275,28 +296,28 @@ impl Checker<'_> {
             return None;
         };
         match (action.op, args) {
-            (Op::Send, [to, how, what]) => self.send_message(scope, Some(to), how, what, env),
-            (Op::Broadcast, [how, what]) => self.send_message(scope, None, how, what, env),
-            (Op::Ask, [to, what, within @ ..]) => self.ask(scope, to, what, within.first(), env),
-            (Op::AskAll, [to, template, what, out, within @ ..]) => {
+            (InternalOp::Send, [to, how, what]) => self.send_message(scope, Some(to), how, what, env),
+            (InternalOp::Broadcast, [how, what]) => self.send_message(scope, None, how, what, env),
+            (InternalOp::Ask, [to, what, within @ ..]) => self.ask(scope, to, what, within.first(), env),
+            (InternalOp::AskAll, [to, template, what, out, within @ ..]) => {
                 self.ask_all(scope, (to, template, what, out), within.first(), env)
             }
-            (Op::Print, args) => {
-                Some(StepKind::Print { args: args.iter().map(|a| self.expr(a, env)).collect() })
+            (InternalOp::Print, args) => {
+                Some(TypedStepKind::Print { args: args.iter().map(|a| self.expr(a, env)).collect() })
             }
-            (Op::Control(what), [goal]) => {
+            (InternalOp::Control(what), [goal]) => {
                 let goal = self.goal_term(scope, goal, env, false)?;
-                Some(StepKind::Control { what, goal: Some(goal) })
+                Some(TypedStepKind::Control { what, goal: Some(goal) })
             }
-            (Op::Control(what), []) => Some(StepKind::Control { what, goal: None }),
-            (Op::Abolish, [belief]) => self.abolish(scope, belief, env),
-            (Op::Fail, []) => Some(StepKind::Fail),
+            (InternalOp::Control(what), []) => Some(TypedStepKind::Control { what, goal: None }),
+            (InternalOp::Abolish, [belief]) => self.abolish(scope, belief, env),
+            (InternalOp::Fail, []) => Some(TypedStepKind::Fail),
             (_, _) => None,
         }
     }
 
     /// `.abolish(b(_))`; without parentheses all facts of the belief.
-    fn abolish(&mut self, scope: &Scope, e: &ast::Expr, env: &mut Env) -> Option<StepKind> {
+    fn abolish(&mut self, scope: &AgentScope, e: &ast::Expr, env: &mut ExprEnv) -> Option<TypedStepKind> {
         let Some(mut literal) = literal_of(e) else {
             if e.kind != Syntax::Error {
                 self.report(types::needs_name(Noun::Belief, e.span));
@@ -309,6 +330,6 @@ impl Checker<'_> {
             let any = |_: &_| ast::Expr { kind: Syntax::Any, span: e.span };
             literal.call.args = Some(fields.iter().map(any).collect());
         }
-        Some(StepKind::Abolish(self.literal(scope, &literal, env, (false, false))?))
+        Some(TypedStepKind::Abolish(self.literal(scope, &literal, env, (false, false))?))
     }
 }

@@ -1,10 +1,10 @@
 //! The internal actions: one table of what they are called, take and do.
 
-use crate::{Control, ListFunction};
+use crate::{ControlAct, ListFunction};
 
 /// What an argument of an internal action is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
+pub enum ArgumentSlot {
     /// A value: its variables have one before.
     In,
     /// A term that is matched with the result, and gives a value to the variables that have none.
@@ -37,10 +37,10 @@ pub struct InternalAction {
     /// What it does, in a sentence.
     pub help: &'static str,
     /// What its arguments are, if all are there. The first of some may come several times.
-    pub slots: &'static [Slot],
+    pub slots: &'static [ArgumentSlot],
     /// The fewest and the most arguments.
     pub arity: (usize, usize),
-    pub(in crate::check) op: Op,
+    pub(in crate::check) op: InternalOp,
 }
 
 impl InternalAction {
@@ -48,35 +48,35 @@ impl InternalAction {
     #[must_use]
     pub fn asks(&self) -> bool {
         match self.op {
-            Op::FindAll
-            | Op::SetOf
-            | Op::Count
-            | Op::Member
-            | Op::Apply(_)
-            | Op::Holds(_)
-            | Op::Intend
-            | Op::Desire
-            | Op::Suspended
-            | Op::Random
-            | Op::Shuffle
-            | Op::Time
-            | Op::MyName
-            | Op::AllNames => true,
-            Op::Send
-            | Op::Broadcast
-            | Op::Ask
-            | Op::AskAll
-            | Op::Print
-            | Op::Control(_)
-            | Op::Abolish
-            | Op::Fail => false,
+            InternalOp::FindAll
+            | InternalOp::SetOf
+            | InternalOp::Count
+            | InternalOp::Member
+            | InternalOp::Apply(_)
+            | InternalOp::Holds(_)
+            | InternalOp::Intend
+            | InternalOp::Desire
+            | InternalOp::Suspended
+            | InternalOp::Random
+            | InternalOp::Shuffle
+            | InternalOp::Time
+            | InternalOp::MyName
+            | InternalOp::AllNames => true,
+            InternalOp::Send
+            | InternalOp::Broadcast
+            | InternalOp::Ask
+            | InternalOp::AskAll
+            | InternalOp::Print
+            | InternalOp::Control(_)
+            | InternalOp::Abolish
+            | InternalOp::Fail => false,
         }
     }
 }
 
 /// What it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::check) enum Op {
+pub(in crate::check) enum InternalOp {
     FindAll,
     SetOf,
     Count,
@@ -96,7 +96,7 @@ pub(in crate::check) enum Op {
     Ask,
     AskAll,
     Print,
-    Control(Control),
+    Control(ControlAct),
     Abolish,
     Fail,
 }
@@ -106,16 +106,16 @@ const MANY: usize = 256;
 
 const fn row(
     (name, usage, help): (&'static str, &'static str, &'static str),
-    slots: &'static [Slot],
+    slots: &'static [ArgumentSlot],
     arity: (usize, usize),
-    op: Op,
+    op: InternalOp,
 ) -> InternalAction {
     InternalAction { name, usage, help, slots, arity, op }
 }
 
+use ArgumentSlot::{Agent, Belief, Content, Formula, Goal, In, Out, Performative, Template, Time};
+use InternalOp::{Apply, Holds};
 use ListFunction as F;
-use Op::{Apply, Holds};
-use Slot::{Agent, Belief, Content, Formula, Goal, In, Out, Performative, Template, Time};
 
 /// All internal actions, those that ask first.
 pub const INTERNAL_ACTIONS: &[InternalAction] = &[
@@ -123,20 +123,20 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         ("findall", ".findall(T, F, L)", "the list of T's values for all answers of F"),
         &[Template, Formula, Out],
         (3, 3),
-        Op::FindAll,
+        InternalOp::FindAll,
     ),
     row(
         ("setof", ".setof(T, F, L)", "the sorted list of T's different values for all answers of F"),
         &[Template, Formula, Out],
         (3, 3),
-        Op::SetOf,
+        InternalOp::SetOf,
     ),
-    row(("count", ".count(F, N)", "the number of answers of F"), &[Formula, Out], (2, 2), Op::Count),
+    row(("count", ".count(F, N)", "the number of answers of F"), &[Formula, Out], (2, 2), InternalOp::Count),
     row(
         ("member", ".member(X, L)", "an answer for each element of the list that X matches"),
         &[Out, In],
         (2, 2),
-        Op::Member,
+        InternalOp::Member,
     ),
     row(("length", ".length(L, N)", "how long a list or string is"), &[In, Out], (2, 2), Apply(F::Length)),
     row(
@@ -198,14 +198,24 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         (2, 2),
         Holds(F::Sublist),
     ),
-    row(("intend", ".intend(g(…))", "whether an intention has the goal"), &[Goal], (1, 1), Op::Intend),
+    row(
+        ("intend", ".intend(g(…))", "whether an intention has the goal"),
+        &[Goal],
+        (1, 1),
+        InternalOp::Intend,
+    ),
     row(
         ("desire", ".desire(g(…))", "whether an intention, or an event not yet handled, has the goal"),
         &[Goal],
         (1, 1),
-        Op::Desire,
+        InternalOp::Desire,
     ),
-    row(("suspended", ".suspended(g(…))", "whether the goal is suspended"), &[Goal], (1, 1), Op::Suspended),
+    row(
+        ("suspended", ".suspended(g(…))", "whether the goal is suspended"),
+        &[Goal],
+        (1, 1),
+        InternalOp::Suspended,
+    ),
     row(
         (
             "random",
@@ -214,28 +224,28 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         ),
         &[In, Out],
         (1, 2),
-        Op::Random,
+        InternalOp::Random,
     ),
     row(
         ("shuffle", ".shuffle(L, M)", "the list in an order drawn from the run's seed"),
         &[In, Out],
         (2, 2),
-        Op::Shuffle,
+        InternalOp::Shuffle,
     ),
-    row(("time", ".time(T)", "the time since the start of the run"), &[Out], (1, 1), Op::Time),
-    row(("my_name", ".my_name(A)", "the agent itself"), &[Out], (1, 1), Op::MyName),
-    row(("all_names", ".all_names(L)", "the agents of this run"), &[Out], (1, 1), Op::AllNames),
+    row(("time", ".time(T)", "the time since the start of the run"), &[Out], (1, 1), InternalOp::Time),
+    row(("my_name", ".my_name(A)", "the agent itself"), &[Out], (1, 1), InternalOp::MyName),
+    row(("all_names", ".all_names(L)", "the agents of this run"), &[Out], (1, 1), InternalOp::AllNames),
     row(
         ("send", ".send(A, tell, b(…))", "sends a message to an agent"),
         &[Agent, Performative, Content],
         (3, 3),
-        Op::Send,
+        InternalOp::Send,
     ),
     row(
         ("broadcast", ".broadcast(tell, b(…))", "sends a message to all other agents"),
         &[Performative, Content],
         (2, 2),
-        Op::Broadcast,
+        InternalOp::Broadcast,
     ),
     row(
         (
@@ -245,7 +255,7 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         ),
         &[Agent, Content, Time],
         (2, 3),
-        Op::Ask,
+        InternalOp::Ask,
     ),
     row(
         (
@@ -255,56 +265,56 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         ),
         &[Agent, Template, Content, Out, Time],
         (4, 5),
-        Op::AskAll,
+        InternalOp::AskAll,
     ),
-    row(("print", ".print(…)", "writes values into the log"), &[In], (0, MANY), Op::Print),
+    row(("print", ".print(…)", "writes values into the log"), &[In], (0, MANY), InternalOp::Print),
     row(
         ("drop_intention", ".drop_intention(g(…))", "ends the intentions that have the goal"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::DropIntention),
+        InternalOp::Control(ControlAct::DropIntention),
     ),
     row(
         ("drop_desire", ".drop_desire(g(…))", "ends the intentions and the events that have the goal"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::DropDesire),
+        InternalOp::Control(ControlAct::DropDesire),
     ),
     row(
         ("drop_event", ".drop_event(g(…))", "ends the events that have the goal"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::DropEvent),
+        InternalOp::Control(ControlAct::DropEvent),
     ),
     row(
         ("drop_all_intentions", ".drop_all_intentions", "ends all intentions"),
         &[],
         (0, 0),
-        Op::Control(Control::DropIntention),
+        InternalOp::Control(ControlAct::DropIntention),
     ),
     row(
         ("drop_all_desires", ".drop_all_desires", "ends all intentions and events"),
         &[],
         (0, 0),
-        Op::Control(Control::DropDesire),
+        InternalOp::Control(ControlAct::DropDesire),
     ),
     row(
         ("drop_all_events", ".drop_all_events", "ends all events"),
         &[],
         (0, 0),
-        Op::Control(Control::DropEvent),
+        InternalOp::Control(ControlAct::DropEvent),
     ),
     row(
         ("succeed_goal", ".succeed_goal(g(…))", "ends the goal as if it were achieved"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::SucceedGoal),
+        InternalOp::Control(ControlAct::SucceedGoal),
     ),
     row(
         ("fail_goal", ".fail_goal(g(…))", "ends the goal as if its plan had failed"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::FailGoal),
+        InternalOp::Control(ControlAct::FailGoal),
     ),
     row(
         (
@@ -314,19 +324,19 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         ),
         &[Goal],
         (0, 1),
-        Op::Control(Control::Suspend),
+        InternalOp::Control(ControlAct::Suspend),
     ),
     row(
         ("resume", ".resume(g(…))", "lets the suspended intentions with the goal go on"),
         &[Goal],
         (1, 1),
-        Op::Control(Control::Resume),
+        InternalOp::Control(ControlAct::Resume),
     ),
     row(
         ("abolish", ".abolish(b(…))", "removes every belief that matches, whatever its sources"),
         &[Belief],
         (1, 1),
-        Op::Abolish,
+        InternalOp::Abolish,
     ),
-    row(("fail", ".fail", "fails"), &[], (0, 0), Op::Fail),
+    row(("fail", ".fail", "fails"), &[], (0, 0), InternalOp::Fail),
 ];

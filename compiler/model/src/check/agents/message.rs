@@ -7,17 +7,17 @@ use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use crate::check::{
     agents::{
-        agent::Scope,
+        agent::AgentScope,
         context::{known, restore},
         terms::literal_of,
     },
     checker::Checker,
-    state::{issues::too_many, names::Declared, record::Fields, scope::Env},
+    state::{issues::too_many, names::DeclaredPlayer, record::DeclaredFields, scope::ExprEnv},
     unread,
 };
 use crate::{
-    AgentId, Arg, BeliefId, Content, ContentId, Expr, ExprKind, GoalId, Kind, Param, Performative, PlayerRef,
-    Speech, StepKind, Value,
+    AgentId, AgentSpeech, BeliefId, ContentId, GoalId, InferredType, MessageContent, Parameter, Performative,
+    PlayerRef, TypedExpr, TypedExprKind, TypedStepKind, TypedTerm, Value,
     noun::Noun,
     report::{
         agents::{self, bad_message},
@@ -36,7 +36,7 @@ const PERFORMATIVES: [(&str, Performative); 6] = [
 ];
 
 /// Whom a message is for.
-enum Receiver {
+enum MessageReceiver {
     /// This agent.
     One(AgentId),
     /// Whoever it is at run time.
@@ -46,9 +46,9 @@ enum Receiver {
 }
 
 /// What a message is about, as its receivers declare it.
-struct About {
+struct MessageTopic {
     id: ContentId,
-    fields: Option<Fields>,
+    fields: Option<DeclaredFields>,
     arity: usize,
     call: Call,
     /// The belief of the one receiver, if it is one.
@@ -59,21 +59,21 @@ impl Checker<'_> {
     /// `.send(A, tell, b(…))`, `.broadcast(tell, b(…))`
     pub(in crate::check) fn send_message(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         to: Option<&ast::Expr>,
         how: &ast::Expr,
         what: &ast::Expr,
-        env: &mut Env,
-    ) -> Option<StepKind> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         let to = to.map(|e| self.receiver(scope, e, env));
         let performative = self.performative(how)?;
-        let receiver = to.as_ref().map_or(&Receiver::Some, |(_, receiver)| receiver);
+        let receiver = to.as_ref().map_or(&MessageReceiver::Some, |(_, receiver)| receiver);
         let goal = matches!(performative, Performative::Achieve | Performative::Unachieve);
         let about = self.about(scope, receiver, what, goal, to.is_none())?;
         self.used(scope, &about, Some(performative));
         let args = match performative {
             Performative::Tell | Performative::Achieve => {
-                self.told(&about, goal, env).into_iter().map(Arg::Expr).collect()
+                self.told(&about, goal, env).into_iter().map(TypedTerm::Expr).collect()
             }
             Performative::Untell | Performative::Unachieve => self.asked_for(&about, goal, env, false),
             Performative::AskOne | Performative::AskAll => {
@@ -84,18 +84,18 @@ impl Checker<'_> {
                 args
             }
         };
-        Some(StepKind::Send { to: to.map(|(e, _)| e), performative, content: about.id, args })
+        Some(TypedStepKind::Send { to: to.map(|(e, _)| e), performative, content: about.id, args })
     }
 
     /// `.ask(A, b(X), 5 s)`
     pub(in crate::check) fn ask(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         to: &ast::Expr,
         what: &ast::Expr,
         within: Option<&ast::Expr>,
-        env: &mut Env,
-    ) -> Option<StepKind> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         let (to, receiver) = self.receiver(scope, to, env);
         let within = within.map(|e| self.duration(e, "the time to wait", env));
         let Some(about) = self.about(scope, &receiver, what, false, false) else {
@@ -105,21 +105,21 @@ impl Checker<'_> {
         };
         self.used(scope, &about, None);
         let args = self.asked_for(&about, false, env, true);
-        Some(StepKind::Ask { to, content: about.id, args, within })
+        Some(TypedStepKind::Ask { to, content: about.id, args, within })
     }
 
     /// `.ask_all(A, X, b(X), L, 5 s)`
     pub(in crate::check) fn ask_all(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         (to, template, what, out): (&ast::Expr, &ast::Expr, &ast::Expr, &ast::Expr),
         within: Option<&ast::Expr>,
-        env: &mut Env,
-    ) -> Option<StepKind> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         let (to, receiver) = self.receiver(scope, to, env);
         let within = within.map(|e| self.duration(e, "the time to wait", env));
         let Some(about) = self.about(scope, &receiver, what, false, false) else {
-            self.out(out, Kind::list(Kind::Unknown), env);
+            self.out(out, InferredType::list(InferredType::Unknown), env);
             return None;
         };
         self.used(scope, &about, None);
@@ -127,8 +127,8 @@ impl Checker<'_> {
         let args = self.asked_for(&about, false, env, true);
         let template = self.expr(template, env);
         restore(env, &before);
-        let out = self.out(out, Kind::list(template.ty), env);
-        Some(StepKind::AskAll { to, template, content: about.id, args, out, within })
+        let out = self.out(out, InferredType::list(template.ty), env);
+        Some(TypedStepKind::AskAll { to, template, content: about.id, args, out, within })
     }
 
     fn performative(&mut self, e: &ast::Expr) -> Option<Performative> {
@@ -151,7 +151,12 @@ impl Checker<'_> {
     }
 
     /// The agent that a message is for.
-    fn receiver(&mut self, scope: &Scope, e: &ast::Expr, env: &mut Env) -> (Expr, Receiver) {
+    fn receiver(
+        &mut self,
+        scope: &AgentScope,
+        e: &ast::Expr,
+        env: &mut ExprEnv,
+    ) -> (TypedExpr, MessageReceiver) {
         if let Syntax::Path(path) = &e.kind
             && let [name] = path.names.as_slice()
             && self.players.agent_names.symbol(&name.text).is_none()
@@ -162,23 +167,23 @@ impl Checker<'_> {
             let all: Vec<&str> = self.players.agent_names.values().iter().map(|s| s.name()).collect();
             let all = all.into_iter().filter(|n| !matches!(*n, "self" | "percept"));
             self.report(names::wrong_kind(Noun::Agent, is, &name.text, name.span, all));
-            return (Expr::error(e.span), Receiver::Unknown);
+            return (TypedExpr::error(e.span), MessageReceiver::Unknown);
         }
-        let to = self.expr_of(e, Kind::Enum(self.players.agent_names), env);
+        let to = self.expr_of(e, InferredType::Enum(self.players.agent_names), env);
         let receiver = match (&to.kind, to.constant()) {
-            (ExprKind::Error, _) => Receiver::Unknown,
+            (TypedExprKind::Error, _) => MessageReceiver::Unknown,
             (_, Some(Value::Symbol(symbol))) => match symbol.name() {
-                "self" => Receiver::One(scope.id),
+                "self" => MessageReceiver::One(scope.id),
                 name => match self.players.table.get(name).map(|id| self.players.ids[usize::from(id)]) {
-                    Some(PlayerRef::Agent(agent)) => Receiver::One(agent),
+                    Some(PlayerRef::Agent(agent)) => MessageReceiver::One(agent),
                     Some(PlayerRef::Automaton(_)) | None => {
                         let message = format!("`{name}` is no agent that takes messages");
                         self.report(bad_message(e.span, message, "name an agent"));
-                        Receiver::Unknown
+                        MessageReceiver::Unknown
                     }
                 },
             },
-            (_, Some(_) | None) => Receiver::Some,
+            (_, Some(_) | None) => MessageReceiver::Some,
         };
         (to, receiver)
     }
@@ -186,12 +191,12 @@ impl Checker<'_> {
     /// What the receivers have of this name.
     fn about(
         &mut self,
-        scope: &Scope,
-        receiver: &Receiver,
+        scope: &AgentScope,
+        receiver: &MessageReceiver,
         e: &ast::Expr,
         goal: bool,
         to_others: bool,
-    ) -> Option<About> {
+    ) -> Option<MessageTopic> {
         let literal = if goal {
             let call = self.goal_call(e)?;
             ast::Literal { negated: false, span: call.span, call, annotations: Vec::new() }
@@ -210,9 +215,9 @@ impl Checker<'_> {
             self.report(agents::not_annotated("what is sent", first.span));
         }
         let receivers: Vec<AgentId> = match receiver {
-            Receiver::Unknown => return None,
-            Receiver::One(agent) => vec![*agent],
-            Receiver::Some => {
+            MessageReceiver::Unknown => return None,
+            MessageReceiver::One(agent) => vec![*agent],
+            MessageReceiver::Some => {
                 let all = (0u16..).map(AgentId).take(self.s.agents.len());
                 all.filter(|a| !to_others || *a != scope.id).collect()
             }
@@ -230,7 +235,7 @@ impl Checker<'_> {
         let arity = params.as_ref().map_or(literal.call.args.as_ref().map_or(0, Vec::len), Vec::len);
         let id = self.content(&literal, goal, arity)?;
         let belief = belief.filter(|_| having.len() == 1).map(|b| (first, b));
-        Some(About { id, fields, arity, call: literal.call, belief })
+        Some(MessageTopic { id, fields, arity, call: literal.call, belief })
     }
 
     /// How an agent declares a belief or goal; goals may be without types.
@@ -241,7 +246,7 @@ impl Checker<'_> {
         name: &ast::Name,
         negated: bool,
         goal: bool,
-    ) -> Option<(Option<Vec<Param>>, Option<Fields>, Option<BeliefId>)> {
+    ) -> Option<(Option<Vec<Parameter>>, Option<DeclaredFields>, Option<BeliefId>)> {
         let index = usize::from(agent.0);
         if goal {
             let at = self.agents.goals[index].get_index_of(&name.text)?;
@@ -260,10 +265,11 @@ impl Checker<'_> {
         noun: Noun,
         having: &[AgentId],
         literal: &ast::Literal,
-        params: Option<&Vec<Param>>,
+        params: Option<&Vec<Parameter>>,
         goal: bool,
     ) {
-        let types = |params: Option<&Vec<Param>>| params.map(|p| p.iter().map(|p| p.ty).collect::<Vec<_>>());
+        let types =
+            |params: Option<&Vec<Parameter>>| params.map(|p| p.iter().map(|p| p.ty).collect::<Vec<_>>());
         let name = &literal.call.name;
         for other in having.iter().skip(1) {
             let Some((theirs, ..)) = self.declared_in(*other, name, literal.negated, goal) else { continue };
@@ -290,7 +296,13 @@ impl Checker<'_> {
         }
     }
 
-    fn nobody_has(&mut self, noun: Noun, name: &ast::Name, receiver: &Receiver, receivers: &[AgentId]) {
+    fn nobody_has(
+        &mut self,
+        noun: Noun,
+        name: &ast::Name,
+        receiver: &MessageReceiver,
+        receivers: &[AgentId],
+    ) {
         let mut names: Vec<String> = Vec::new();
         for agent in receivers {
             let index = usize::from(agent.0);
@@ -303,7 +315,7 @@ impl Checker<'_> {
         }
         names.dedup();
         let is = receivers.iter().find_map(|a| self.kind_of_agent(*a, &name.text));
-        let unread = |d: &Declared<'_, ast::Agent>| unread::in_agent(d.syntax);
+        let unread = |d: &DeclaredPlayer<'_, ast::Agent>| unread::in_agent(d.syntax);
         if receivers.iter().any(|a| self.players.agents.get(usize::from(a.0)).is_some_and(unread)) {
             return;
         }
@@ -314,12 +326,12 @@ impl Checker<'_> {
             return self.report(names::wrong_kind(noun, is, &name.text, name.span, near));
         }
         let who = match receiver {
-            Receiver::One(agent) => format!("`{}`", self.s.agents[usize::from(agent.0)].name),
-            Receiver::Some | Receiver::Unknown => "no other agent".to_owned(),
+            MessageReceiver::One(agent) => format!("`{}`", self.s.agents[usize::from(agent.0)].name),
+            MessageReceiver::Some | MessageReceiver::Unknown => "no other agent".to_owned(),
         };
         let message = match receiver {
-            Receiver::One(_) => format!("{who} has no {noun} `{}`", name.text),
-            Receiver::Some | Receiver::Unknown => format!("{who} has a {noun} `{}`", name.text),
+            MessageReceiver::One(_) => format!("{who} has no {noun} `{}`", name.text),
+            MessageReceiver::Some | MessageReceiver::Unknown => format!("{who} has a {noun} `{}`", name.text),
         };
         let issue = bad_message(name.span, message, String::new());
         let issue = names::with_nearest(issue, noun, &name.text, near);
@@ -334,10 +346,12 @@ impl Checker<'_> {
         let sign = if literal.negated { "~" } else { "" };
         let name = format!("{sign}{}", literal.call.name.text);
         let mut known = self.s.contents.iter().zip(&self.s.speech);
-        let same = |(c, s): (&Content, &Speech)| (&c.name, s.is_goal, s.arity) == (&name, is_goal, arity);
+        let same = |(c, s): (&MessageContent, &AgentSpeech)| {
+            (&c.name, s.is_goal, s.arity) == (&name, is_goal, arity)
+        };
         let at = known.position(same).unwrap_or_else(|| {
-            self.s.contents.push(Content { name: name.clone(), of: Vec::new() });
-            self.s.speech.push(Speech { is_goal, arity, uses: BTreeSet::new() });
+            self.s.contents.push(MessageContent { name: name.clone(), of: Vec::new() });
+            self.s.speech.push(AgentSpeech { is_goal, arity, uses: BTreeSet::new() });
             self.s.contents.len() - 1
         });
         let id = u16::try_from(at).ok().filter(|id| *id < u16::MAX);
@@ -348,14 +362,14 @@ impl Checker<'_> {
         id.map(ContentId)
     }
 
-    fn used(&mut self, scope: &Scope, about: &About, how: Option<Performative>) {
+    fn used(&mut self, scope: &AgentScope, about: &MessageTopic, how: Option<Performative>) {
         if let Some(speech) = self.s.speech.get_mut(usize::from(about.id.0)) {
             speech.uses.insert((how, scope.id));
         }
     }
 
     /// The arguments of what is told or to be achieved.
-    fn told(&mut self, about: &About, goal: bool, env: &mut Env) -> Vec<Expr> {
+    fn told(&mut self, about: &MessageTopic, goal: bool, env: &mut ExprEnv) -> Vec<TypedExpr> {
         let noun = if goal { Noun::Goal } else { Noun::Belief };
         match &about.fields {
             Some(fields) => self.args(noun, &about.call, fields, env),
@@ -368,7 +382,13 @@ impl Checker<'_> {
     }
 
     /// The terms of what is asked for or taken back.
-    fn asked_for(&mut self, about: &About, goal: bool, env: &mut Env, binds: bool) -> Vec<Arg> {
+    fn asked_for(
+        &mut self,
+        about: &MessageTopic,
+        goal: bool,
+        env: &mut ExprEnv,
+        binds: bool,
+    ) -> Vec<TypedTerm> {
         let noun = if goal { Noun::Goal } else { Noun::Belief };
         if about.fields.is_none() {
             self.counted(about);
@@ -382,7 +402,7 @@ impl Checker<'_> {
     }
 
     /// A goal without declared types has a number of arguments all the same.
-    fn counted(&mut self, about: &About) {
+    fn counted(&mut self, about: &MessageTopic) {
         let name = &about.call.name.text;
         let having = self.agents.goals.iter().filter_map(|goals| goals.get(name)).map(|g| g.arity);
         let all: Vec<usize> = having.collect();
@@ -394,11 +414,11 @@ impl Checker<'_> {
     }
 
     /// What is asked is told back, so the agent that asks needs the belief as well.
-    fn has_for_answers(&mut self, scope: &Scope, about: &About, span: Span) {
+    fn has_for_answers(&mut self, scope: &AgentScope, about: &MessageTopic, span: Span) {
         let name = &about.call.name.text;
         let index = usize::from(scope.id.0);
         let ours = self.agents.beliefs[index].get(name);
-        let types = |params: &[Param]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
+        let types = |params: &[Parameter]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
         let theirs = about.fields.as_ref().map(|f| self.flat(f)).unwrap_or_default();
         let fits = ours
             .is_some_and(|id| types(&self.s.agents[index].beliefs[usize::from(id)].params) == types(&theirs));

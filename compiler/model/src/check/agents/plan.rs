@@ -4,27 +4,33 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, TriggerKind};
 
 use crate::check::{
-    agents::agent::Scope,
+    agents::agent::AgentScope,
     checker::{Checker, NOBODY},
-    state::{issues::too_many, scope::Env, table::MAX_NAMES},
+    state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
 use crate::{
-    ActorId, Annotation, Arg, BeliefId, Context, EventId, Plan, Role, Trigger, TriggerOn,
+    ActorId, BeliefAnnotation, BeliefId, EventId, Role, TriggerOn, TypedContext, TypedPlan, TypedTerm,
+    TypedTrigger,
     noun::Noun,
     report::{agents, names, roles},
 };
 
 /// A trigger: what it is on, its arguments and annotations.
-type Matched = (TriggerOn, Vec<Arg>, Vec<(Annotation, Arg)>);
+type MatchedTrigger = (TriggerOn, Vec<TypedTerm>, Vec<(BeliefAnnotation, TypedTerm)>);
 
 impl Checker<'_> {
-    pub(in crate::check) fn plan(&mut self, scope: &mut Scope, plan: &ast::Plan, span: Span) -> Option<Plan> {
+    pub(in crate::check) fn plan(
+        &mut self,
+        scope: &mut AgentScope,
+        plan: &ast::Plan,
+        span: Span,
+    ) -> Option<TypedPlan> {
         let (label, atomic) = self.label(scope, plan);
-        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
+        let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
         let trigger = self.trigger(scope, &plan.trigger, &mut env);
         let context = match &plan.context {
             Some(e) => self.context(scope, e, &mut env),
-            None => Context::True,
+            None => TypedContext::True,
         };
         let body = self.plan_body(scope, &plan.body, &mut env);
         if env.locals.len() > MAX_NAMES {
@@ -34,11 +40,11 @@ impl Checker<'_> {
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
         let (on, args, annotations) = trigger?;
         let (origin, name) = (plan.trigger.span, plan.trigger.literal.call.name.span);
-        let trigger = Trigger { on, args, annotations, origin, name };
-        Some(Plan { label, atomic, trigger, context, body, vars, origin: span })
+        let trigger = TypedTrigger { on, args, annotations, origin, name };
+        Some(TypedPlan { label, atomic, trigger, context, body, vars, origin: span })
     }
 
-    fn label(&mut self, scope: &mut Scope, plan: &ast::Plan) -> (String, bool) {
+    fn label(&mut self, scope: &mut AgentScope, plan: &ast::Plan) -> (String, bool) {
         let trigger = plan.trigger.literal.call.name.text.clone();
         let count = scope.plans_of.entry(trigger.clone()).or_insert(0);
         *count += 1;
@@ -56,7 +62,12 @@ impl Checker<'_> {
         (label.name.text.clone(), atomic)
     }
 
-    fn trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
+    fn trigger(
+        &mut self,
+        scope: &AgentScope,
+        trigger: &ast::Trigger,
+        env: &mut ExprEnv,
+    ) -> Option<MatchedTrigger> {
         let literal = &trigger.literal;
         let make: fn(BeliefId) -> TriggerOn = match trigger.kind {
             TriggerKind::Added => TriggerOn::BeliefAdded,
@@ -70,7 +81,12 @@ impl Checker<'_> {
         Some((make(literal.belief), literal.args, literal.annotations))
     }
 
-    fn goal_trigger(&mut self, scope: &Scope, trigger: &ast::Trigger, env: &mut Env) -> Option<Matched> {
+    fn goal_trigger(
+        &mut self,
+        scope: &AgentScope,
+        trigger: &ast::Trigger,
+        env: &mut ExprEnv,
+    ) -> Option<MatchedTrigger> {
         let literal = &trigger.literal;
         self.not_negated(literal, "a goal");
         let goal = self.goal(scope, &literal.call);
@@ -83,7 +99,12 @@ impl Checker<'_> {
         Some((on, args, annotations))
     }
 
-    fn event_trigger(&mut self, scope: &Scope, literal: &ast::Literal, env: &mut Env) -> Option<Matched> {
+    fn event_trigger(
+        &mut self,
+        scope: &AgentScope,
+        literal: &ast::Literal,
+        env: &mut ExprEnv,
+    ) -> Option<MatchedTrigger> {
         let call = &literal.call;
         self.not_negated(literal, "an event");
         if let Some(first) = literal.annotations.first() {
@@ -94,7 +115,7 @@ impl Checker<'_> {
         let fields = event.map(|e| self.fields_of(e));
         let args = match (&call.args, event) {
             // Without parentheses any arguments will do.
-            (None, Some(event)) => vec![Arg::Any; self.arity_of(event)],
+            (None, Some(event)) => vec![TypedTerm::Any; self.arity_of(event)],
             (Some(_), _) | (None, None) => self.matched(Noun::Event, call, fields.as_ref(), env, true),
         };
         let event = event?;

@@ -6,38 +6,38 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AgentMemberKind as Member};
 
 use crate::check::{
-    agents::agent::Scope,
+    agents::agent::AgentScope,
     checker::Checker,
-    state::{names::Mode, scope::Env},
+    state::{names::ArgumentMode, scope::ExprEnv},
 };
 use crate::{
-    Arg, BeliefId, Context, ExprKind, Kind, Leaf, Rule,
+    BeliefId, InferredType, TypedBeliefRule, TypedContext, TypedExprKind, TypedTerm, VariableRef,
     noun::Noun,
     report::{agents, types},
 };
 
 /// A rule that is worked on.
-struct Clause<'a> {
+struct RuleClause<'a> {
     head: &'a ast::Literal,
     body: Option<&'a ast::Expr>,
     span: Span,
 }
 
 /// What one look at a rule has found.
-struct Found {
-    rule: Rule,
-    modes: Vec<Mode>,
+struct RuleFindings {
+    rule: TypedBeliefRule,
+    modes: Vec<ArgumentMode>,
 }
 
 impl Checker<'_> {
     /// The rules of an agent. First their modes are worked out: what a rule needs may depend on what those need that it
     /// asks; then what is wrong is said.
-    pub(in crate::check) fn agent_rules(&mut self, scope: &Scope, agent: &ast::Agent) {
-        let clauses: Vec<Clause<'_>> = agent
+    pub(in crate::check) fn agent_rules(&mut self, scope: &AgentScope, agent: &ast::Agent) {
+        let clauses: Vec<RuleClause<'_>> = agent
             .members
             .iter()
             .filter_map(|m| match &m.kind {
-                Member::Rule { head, body } => Some(Clause { head, body: body.as_ref(), span: m.span }),
+                Member::Rule { head, body } => Some(RuleClause { head, body: body.as_ref(), span: m.span }),
                 Member::Belief { .. }
                 | Member::GoalType { .. }
                 | Member::Goal(_)
@@ -56,7 +56,7 @@ impl Checker<'_> {
         }
     }
 
-    fn infer_modes(&mut self, scope: &Scope, clauses: &[Clause<'_>]) {
+    fn infer_modes(&mut self, scope: &AgentScope, clauses: &[RuleClause<'_>]) {
         let mut open: VecDeque<usize> = (0..clauses.len()).collect();
         let mut waiting: BTreeSet<usize> = open.iter().copied().collect();
         // By belief: the rules that ask it.
@@ -68,12 +68,12 @@ impl Checker<'_> {
             self.issues.list.truncate(before);
             let Some(found) = found else { continue };
             found.rule.body.each(&mut |part| {
-                if let Context::Belief(literal) = part {
+                if let TypedContext::Belief(literal) = part {
                     askers.entry(literal.belief).or_default().insert(at);
                 }
             });
             let belief = found.rule.belief;
-            let free = vec![Mode::Free; found.modes.len()];
+            let free = vec![ArgumentMode::Free; found.modes.len()];
             let known = self.agents.modes.entry((scope.id.0, belief.0)).or_insert(free);
             let mut changed = false;
             for (known, new) in known.iter_mut().zip(&found.modes) {
@@ -91,8 +91,8 @@ impl Checker<'_> {
     }
 
     /// Looks at a rule with what is known of the modes.
-    fn rule(&mut self, scope: &Scope, clause: &Clause<'_>) -> Option<Found> {
-        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
+    fn rule(&mut self, scope: &AgentScope, clause: &RuleClause<'_>) -> Option<RuleFindings> {
+        let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
         let head = clause.head;
         if let Some(first) = head.annotations.first() {
             self.report(agents::not_annotated("the head of a rule", first.span));
@@ -100,41 +100,44 @@ impl Checker<'_> {
         let belief = self.belief_or_negation(scope, head);
         let fields = belief.map(|b| self.belief_fields(scope.id, b));
         let args = self.matched(Noun::Belief, &head.call, fields.as_ref(), &mut env, true);
-        let mut modes = vec![Mode::Free; args.len()];
+        let mut modes = vec![ArgumentMode::Free; args.len()];
         if let Some(known) = belief.and_then(|b| self.agents.modes.get(&(scope.id.0, b.0))) {
             modes.iter_mut().zip(known).for_each(|(mode, known)| *mode = *known);
         }
         let heads = open_heads(&args, &mut modes, &mut env);
         self.agents.unbound.clear();
-        let body = clause.body.map_or(Context::True, |e| self.context(scope, e, &mut env));
+        let body = clause.body.map_or(TypedContext::True, |e| self.context(scope, e, &mut env));
         self.fits_head(&args, belief, &heads, scope, &mut env, head.span);
         for (var, at) in &heads {
             let Some(local) = env.locals.get(usize::from(*var)) else { continue };
             if !local.bound || self.agents.unbound.contains(&local.name) {
-                modes[*at] = Mode::Input;
+                modes[*at] = ArgumentMode::Input;
             }
         }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
         let (origin, head) = (clause.span, head.span);
-        Some(Found { rule: Rule { belief: belief?, args, body, vars, head, origin }, modes })
+        Some(RuleFindings {
+            rule: TypedBeliefRule { belief: belief?, args, body, vars, head, origin },
+            modes,
+        })
     }
 
     /// What the body gives the head's variables must be of the belief's types.
     fn fits_head(
         &mut self,
-        args: &[Arg],
+        args: &[TypedTerm],
         belief: Option<BeliefId>,
         heads: &BTreeMap<u16, usize>,
-        scope: &Scope,
-        env: &mut Env,
+        scope: &AgentScope,
+        env: &mut ExprEnv,
         span: Span,
     ) {
         let Some(belief) = belief else { return };
         let params = self.s.agents[usize::from(scope.id.0)].beliefs[usize::from(belief.0)].params.clone();
         for (arg, param) in args.iter().zip(&params) {
-            let Arg::Var(var) = arg else { continue };
+            let TypedTerm::Var(var) = arg else { continue };
             let Some(local) = env.locals.get(usize::from(*var)).filter(|l| l.bound) else { continue };
-            let (got, want): (Kind, Kind) = (local.ty, Kind::of(param.ty));
+            let (got, want): (InferredType, InferredType) = (local.ty, InferredType::of(param.ty));
             let numbers = got.is_bare() && want.is_bare();
             if heads.contains_key(var) && !numbers && got.with(want).is_none() {
                 self.report(types::other_before(&local.name, &want.to_string(), &got.to_string(), span));
@@ -145,29 +148,29 @@ impl Checker<'_> {
 
 /// The variables of a head that have no value before the body, each with the first argument that it is in. They are open
 /// in `env` then.
-fn open_heads(args: &[Arg], modes: &mut [Mode], env: &mut Env) -> BTreeMap<u16, usize> {
+fn open_heads(args: &[TypedTerm], modes: &mut [ArgumentMode], env: &mut ExprEnv) -> BTreeMap<u16, usize> {
     let mut first: BTreeMap<u16, usize> = BTreeMap::new();
     let mut given: BTreeSet<u16> = BTreeSet::new();
     for (at, arg) in args.iter().enumerate() {
         if is_any(arg) {
-            modes[at] = modes[at].max(Mode::Named);
+            modes[at] = modes[at].max(ArgumentMode::Named);
         }
         arg.each_var(&mut |var| {
             first.entry(var).or_insert(at);
-            if modes[at] == Mode::Input {
+            if modes[at] == ArgumentMode::Input {
                 given.insert(var);
             }
         });
     }
     for arg in args {
         // A computed argument needs its variables first.
-        if let Arg::Expr(e) = arg {
+        if let TypedTerm::Expr(e) = arg {
             e.each(&mut |part| {
-                if let ExprKind::Leaf(Leaf::Local(var)) = part.kind
+                if let TypedExprKind::Leaf(VariableRef::Local(var)) = part.kind
                     && !given.contains(&var)
                     && let Some(at) = first.get(&var)
                 {
-                    modes[*at] = Mode::Input;
+                    modes[*at] = ArgumentMode::Input;
                     given.insert(var);
                 }
             });
@@ -182,10 +185,10 @@ fn open_heads(args: &[Arg], modes: &mut [Mode], env: &mut Env) -> BTreeMap<u16, 
     first
 }
 
-fn is_any(arg: &Arg) -> bool {
+fn is_any(arg: &TypedTerm) -> bool {
     match arg {
-        Arg::Any => true,
-        Arg::Var(_) | Arg::Expr(_) => false,
-        Arg::List(items, rest) => items.iter().chain(rest.as_deref()).any(is_any),
+        TypedTerm::Any => true,
+        TypedTerm::Var(_) | TypedTerm::Expr(_) => false,
+        TypedTerm::List(items, rest) => items.iter().chain(rest.as_deref()).any(is_any),
     }
 }

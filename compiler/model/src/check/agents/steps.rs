@@ -4,44 +4,51 @@ use hrdsl_syntax::ast::{self, Call, StepKind as Syntax};
 
 use crate::check::{
     agents::{
-        agent::Scope,
+        agent::AgentScope,
         context::{known, restore},
     },
     checker::Checker,
-    state::scope::Env,
+    state::scope::ExprEnv,
     value::expr::MAX_TIME,
 };
-use crate::{Context, Dim, Expr, GoalId, Kind, Step, StepKind, Value, noun::Noun, report::types};
+use crate::{
+    Dimension, GoalId, InferredType, TypedContext, TypedExpr, TypedStep, TypedStepKind, Value, noun::Noun,
+    report::types,
+};
 
 impl Checker<'_> {
     pub(in crate::check) fn plan_body(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         steps: &[ast::Step],
-        env: &mut Env,
-    ) -> Vec<Step> {
-        let step = |s: &ast::Step| Some(Step { kind: self.step(scope, s, env)?, origin: s.span });
+        env: &mut ExprEnv,
+    ) -> Vec<TypedStep> {
+        let step = |s: &ast::Step| Some(TypedStep { kind: self.step(scope, s, env)?, origin: s.span });
         steps.iter().filter_map(step).collect()
     }
 
-    fn step(&mut self, scope: &Scope, step: &ast::Step, env: &mut Env) -> Option<StepKind> {
+    fn step(&mut self, scope: &AgentScope, step: &ast::Step, env: &mut ExprEnv) -> Option<TypedStepKind> {
         Some(match &step.kind {
             Syntax::Do(call) => self.act_of(scope, call, env)?,
             Syntax::Achieve { call, within } => {
                 let (goal, args) = self.adopt(scope, call, env);
                 let within = within.as_ref().map(|e| self.duration(e, "the time for the goal", env));
-                StepKind::Achieve { goal: goal?, args, within }
+                TypedStepKind::Achieve { goal: goal?, args, within }
             }
             Syntax::Spawn(call) => {
                 let (goal, args) = self.adopt(scope, call, env);
-                StepKind::Spawn { goal: goal?, args }
+                TypedStepKind::Spawn { goal: goal?, args }
             }
-            Syntax::Query(literal) => StepKind::Query(self.literal(scope, literal, env, (true, true))?),
-            Syntax::Test(formula) => StepKind::Test(self.context(scope, formula, env)),
-            Syntax::Unify { left, right } => StepKind::Test(self.unify(left, right, env)),
-            Syntax::Add(literal) => StepKind::Add(self.assertion(scope, literal, env)?),
-            Syntax::Remove(literal) => StepKind::Remove(self.literal(scope, literal, env, (false, false))?),
-            Syntax::Replace(literal) => StepKind::Replace(self.assertion(scope, literal, env)?),
+            Syntax::Query(literal) => {
+                TypedStepKind::Query(self.literal(scope, literal, env, (true, true))?)
+            }
+            Syntax::Test(formula) => TypedStepKind::Test(self.context(scope, formula, env)),
+            Syntax::Unify { left, right } => TypedStepKind::Test(self.unify(left, right, env)),
+            Syntax::Add(literal) => TypedStepKind::Add(self.assertion(scope, literal, env)?),
+            Syntax::Remove(literal) => {
+                TypedStepKind::Remove(self.literal(scope, literal, env, (false, false))?)
+            }
+            Syntax::Replace(literal) => TypedStepKind::Replace(self.assertion(scope, literal, env)?),
             Syntax::Await { events, within } => {
                 let actor = self.s.agents[usize::from(scope.id.0)].actor;
                 let mut patterns = Vec::new();
@@ -50,20 +57,22 @@ impl Checker<'_> {
                     patterns.push(pattern);
                 }
                 let within = within.as_ref().map(|e| self.duration(e, "the time to wait", env));
-                StepKind::Await { events: patterns, within }
+                TypedStepKind::Await { events: patterns, within }
             }
-            Syntax::Wait(time) => StepKind::Wait { seconds: self.expr_of(time, Kind::Float(Dim::TIME), env) },
+            Syntax::Wait(time) => {
+                TypedStepKind::Wait { seconds: self.expr_of(time, InferredType::Float(Dimension::TIME), env) }
+            }
             Syntax::Internal(call) => self.internal_step(scope, call, env)?,
             Syntax::If { condition, then, otherwise } => {
                 self.if_step(scope, condition, (then, otherwise), step.span, env)
             }
             Syntax::While { condition, body } => {
                 let (condition, body) = self.loop_step(scope, condition, body, env);
-                StepKind::While { condition, body }
+                TypedStepKind::While { condition, body }
             }
             Syntax::For { condition, body } => {
                 let (condition, body) = self.loop_step(scope, condition, body, env);
-                StepKind::For { condition, body }
+                TypedStepKind::For { condition, body }
             }
             Syntax::Fork { all, branches } => {
                 // What a branch binds is its own.
@@ -73,7 +82,7 @@ impl Checker<'_> {
                     done.push(self.plan_body(scope, branch, env));
                     restore(env, &before);
                 }
-                StepKind::Fork { branches: done, all: *all }
+                TypedStepKind::Fork { branches: done, all: *all }
             }
             Syntax::Error => return None,
         })
@@ -82,12 +91,12 @@ impl Checker<'_> {
     /// After it a variable has a value if both ways give it one.
     fn if_step(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         condition: &ast::Expr,
         (then, otherwise): (&[ast::Step], &[ast::Step]),
         span: hrdsl_source::Span,
-        env: &mut Env,
-    ) -> StepKind {
+        env: &mut ExprEnv,
+    ) -> TypedStepKind {
         let before = known(env);
         let condition_span = condition.span;
         let condition = self.context(scope, condition, env);
@@ -98,17 +107,17 @@ impl Checker<'_> {
         let after_otherwise = known(env);
         let span = if condition_span.file == span.file { condition_span } else { span };
         self.join(&after_then, &after_otherwise, span, env);
-        StepKind::If { condition, then, otherwise }
+        TypedStepKind::If { condition, then, otherwise }
     }
 
     /// What a loop binds is open again each time, and after it.
     fn loop_step(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         condition: &ast::Expr,
         body: &[ast::Step],
-        env: &mut Env,
-    ) -> (Context, Vec<Step>) {
+        env: &mut ExprEnv,
+    ) -> (TypedContext, Vec<TypedStep>) {
         let before = known(env);
         let condition = self.context(scope, condition, env);
         let body = self.plan_body(scope, body, env);
@@ -117,8 +126,8 @@ impl Checker<'_> {
     }
 
     /// A time; one that is known must be positive.
-    pub(in crate::check) fn duration(&mut self, e: &ast::Expr, what: &str, env: &mut Env) -> Expr {
-        let time = self.expr_of(e, Kind::Float(Dim::TIME), env);
+    pub(in crate::check) fn duration(&mut self, e: &ast::Expr, what: &str, env: &mut ExprEnv) -> TypedExpr {
+        let time = self.expr_of(e, InferredType::Float(Dimension::TIME), env);
         if let Some(t) = time.constant().and_then(Value::as_f64) {
             if t <= 0.0 {
                 self.report(types::must_be(what, "more than 0 s", e.span));
@@ -130,16 +139,21 @@ impl Checker<'_> {
     }
 
     /// A stimulus or event of the agent's own actor.
-    fn act_of(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Option<StepKind> {
+    fn act_of(&mut self, scope: &AgentScope, call: &Call, env: &mut ExprEnv) -> Option<TypedStepKind> {
         let local = self.kind_in_agent(scope, &call.name.text);
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
         self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
         let fields = self.fields_of(event);
         let args = self.args(self.noun_of(event), call, &fields, env);
-        Some(StepKind::Do { event, args })
+        Some(TypedStepKind::Do { event, args })
     }
 
-    fn adopt(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> (Option<GoalId>, Vec<Expr>) {
+    fn adopt(
+        &mut self,
+        scope: &AgentScope,
+        call: &Call,
+        env: &mut ExprEnv,
+    ) -> (Option<GoalId>, Vec<TypedExpr>) {
         let goal = self.goal(scope, call);
         let args = match goal.and_then(|g| self.goal_fields(scope.id, g)) {
             Some(fields) => self.args(Noun::Goal, call, &fields, env),

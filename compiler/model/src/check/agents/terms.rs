@@ -4,49 +4,52 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use crate::check::{
-    agents::agent::Scope,
+    agents::agent::AgentScope,
     checker::Checker,
     state::{
-        item::Part,
-        names::Mode,
-        record::Fields,
-        scope::{Env, is_variable_name},
+        item::ArgumentPart,
+        names::ArgumentMode,
+        record::DeclaredFields,
+        scope::{ExprEnv, is_variable_name},
     },
 };
 use crate::{
-    Annotation, Arg, Assertion, BeliefId, Expr, ExprKind, Kind, Leaf, Literal, Param, Type,
+    BeliefAnnotation, BeliefId, InferredType, Parameter, Type, TypedAssertion, TypedExpr, TypedExprKind,
+    TypedLiteral, TypedTerm, VariableRef,
     noun::Noun,
     report::{agents, types},
 };
 
 /// What is known of a value that a term is matched with.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::check) enum Due {
+pub(in crate::check) enum TermMode {
     Type(Type),
-    Kind(Kind),
+    Kind(InferredType),
 }
 
-impl Due {
-    pub fn kind(self) -> Kind {
+impl TermMode {
+    pub fn kind(self) -> InferredType {
         match self {
-            Due::Type(ty) => Kind::of(ty),
-            Due::Kind(kind) => kind,
+            TermMode::Type(ty) => InferredType::of(ty),
+            TermMode::Kind(kind) => kind,
         }
     }
 
     fn range(self) -> Option<(i64, i64)> {
         match self {
-            Due::Type(ty) => ty.range(),
-            Due::Kind(_) => None,
+            TermMode::Type(ty) => ty.range(),
+            TermMode::Kind(_) => None,
         }
     }
 
     /// Of the elements, if it can be a list.
-    fn element(self) -> Option<Due> {
+    fn element(self) -> Option<TermMode> {
         match self {
-            Due::Type(Type::List(of)) => Some(Due::Type(of.element())),
-            Due::Type(Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text) => None,
-            Due::Kind(kind) => kind.element().map(Due::Kind),
+            TermMode::Type(Type::List(of)) => Some(TermMode::Type(of.element())),
+            TermMode::Type(Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Enum(_) | Type::Text) => {
+                None
+            }
+            TermMode::Kind(kind) => kind.element().map(TermMode::Kind),
         }
     }
 }
@@ -92,10 +95,10 @@ impl Checker<'_> {
         &mut self,
         noun: Noun,
         call: &Call,
-        fields: Option<&Fields>,
-        env: &mut Env,
+        fields: Option<&DeclaredFields>,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Vec<Arg> {
+    ) -> Vec<TypedTerm> {
         let args = call.args.as_deref().unwrap_or_default();
         let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
         if fields.is_none() && noun != Noun::Goal {
@@ -103,9 +106,9 @@ impl Checker<'_> {
             if binds {
                 args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
             }
-            return args.iter().map(|_| Arg::Any).collect();
+            return args.iter().map(|_| TypedTerm::Any).collect();
         }
-        let unknown = Due::Kind(Kind::Unknown);
+        let unknown = TermMode::Kind(InferredType::Unknown);
         let Some(fields) = fields else {
             return args.iter().map(|arg| self.matched_arg(arg, unknown, env, binds)).collect();
         };
@@ -113,7 +116,7 @@ impl Checker<'_> {
             self.wrong_arity(noun, call, fields);
         }
         let parts = self.spread_args(args, fields, env, &variable);
-        let mut matched: Vec<Arg> =
+        let mut matched: Vec<TypedTerm> =
             parts.into_iter().map(|part| self.matched_part(part, env, binds)).collect();
         for arg in args.iter().skip(fields.len()) {
             matched.push(self.matched_arg(arg, unknown, env, binds));
@@ -121,12 +124,12 @@ impl Checker<'_> {
         matched
     }
 
-    fn matched_part(&mut self, part: Part<'_>, env: &mut Env, binds: bool) -> Arg {
+    fn matched_part(&mut self, part: ArgumentPart<'_>, env: &mut ExprEnv, binds: bool) -> TypedTerm {
         match part {
-            Part::Any => Arg::Any,
-            Part::Syntax(arg, ty) => self.matched_arg(arg, Due::Type(ty), env, binds),
-            Part::Done(e, _) => Arg::Expr(e),
-            Part::Variable(name, ty) => self.matched_variable(&name, Due::Type(ty), env, binds),
+            ArgumentPart::Any => TypedTerm::Any,
+            ArgumentPart::Syntax(arg, ty) => self.matched_arg(arg, TermMode::Type(ty), env, binds),
+            ArgumentPart::Done(e, _) => TypedTerm::Expr(e),
+            ArgumentPart::Variable(name, ty) => self.matched_variable(&name, TermMode::Type(ty), env, binds),
         }
     }
 
@@ -134,12 +137,12 @@ impl Checker<'_> {
     pub(in crate::check) fn matched_arg(
         &mut self,
         arg: &ast::Expr,
-        due: Due,
-        env: &mut Env,
+        due: TermMode,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Arg {
+    ) -> TypedTerm {
         match &arg.kind {
-            Syntax::Any => return Arg::Any,
+            Syntax::Any => return TypedTerm::Any,
             Syntax::Path(path) => {
                 if let [name] = path.names.as_slice()
                     && self.is_variable(&name.text)
@@ -153,9 +156,9 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        Arg::Expr(match due {
-            Due::Type(ty) => self.expr_for(arg, ty, env),
-            Due::Kind(kind) => self.expr_of(arg, kind, env),
+        TypedTerm::Expr(match due {
+            TermMode::Type(ty) => self.expr_for(arg, ty, env),
+            TermMode::Kind(kind) => self.expr_of(arg, kind, env),
         })
     }
 
@@ -164,29 +167,31 @@ impl Checker<'_> {
         &mut self,
         items: &[ast::Expr],
         rest: Option<&ast::Expr>,
-        due: Due,
+        due: TermMode,
         span: Span,
-        env: &mut Env,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Arg {
+    ) -> TypedTerm {
         let element = due.element();
         if element.is_none() {
-            self.report(types::mismatch(due.kind(), Kind::list(Kind::Unknown), None, span));
+            self.report(types::mismatch(due.kind(), InferredType::list(InferredType::Unknown), None, span));
         }
-        let unknown = Due::Kind(Kind::Unknown);
+        let unknown = TermMode::Kind(InferredType::Unknown);
         let element = element.unwrap_or(unknown);
-        let items: Vec<Arg> = items.iter().map(|i| self.matched_arg(i, element, env, binds)).collect();
+        let items: Vec<TypedTerm> = items.iter().map(|i| self.matched_arg(i, element, env, binds)).collect();
         let whole = match due {
-            Due::Kind(Kind::Unknown) => Due::Kind(Kind::list(Kind::Unknown)),
+            TermMode::Kind(InferredType::Unknown) => {
+                TermMode::Kind(InferredType::list(InferredType::Unknown))
+            }
             due if due.element().is_some() => due,
-            Due::Type(_) | Due::Kind(_) => unknown,
+            TermMode::Type(_) | TermMode::Kind(_) => unknown,
         };
         let rest = rest.map(|r| Box::new(self.matched_arg(r, whole, env, binds)));
-        Arg::List(items, rest)
+        TypedTerm::List(items, rest)
     }
 
     /// Whether something in a list is matched, and not only computed.
-    pub(in crate::check) fn is_pattern(&self, e: &ast::Expr, env: &Env) -> bool {
+    pub(in crate::check) fn is_pattern(&self, e: &ast::Expr, env: &ExprEnv) -> bool {
         match &e.kind {
             Syntax::Any => true,
             Syntax::Path(path) => match path.names.as_slice() {
@@ -210,10 +215,10 @@ impl Checker<'_> {
     pub(in crate::check) fn matched_variable(
         &mut self,
         name: &ast::Name,
-        due: Due,
-        env: &mut Env,
+        due: TermMode,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Arg {
+    ) -> TypedTerm {
         let kind = due.kind();
         match env.find_mut(&name.text) {
             Some(local) if !local.bound && binds => {
@@ -223,11 +228,11 @@ impl Checker<'_> {
             }
             Some(_) => {}
             None if binds => match due {
-                Due::Type(ty) => {
+                TermMode::Type(ty) => {
                     env.push_typed(&name.text, name.span, Noun::Variable, ty);
                     self.define_here(name, kind);
                 }
-                Due::Kind(_) => {
+                TermMode::Kind(_) => {
                     env.push_local(&name.text, name.span, Noun::Variable, kind);
                     self.define_here(name, kind);
                 }
@@ -235,13 +240,13 @@ impl Checker<'_> {
             None => {}
         }
         let e = self.variable(name, env);
-        let ExprKind::Leaf(Leaf::Local(i)) = e.kind else { return Arg::Any };
+        let TypedExprKind::Leaf(VariableRef::Local(i)) = e.kind else { return TypedTerm::Any };
         // A whole number matches the float that equals it.
         let numbers = e.ty.is_bare() && kind.is_bare();
-        if !numbers && self.fit(e, kind, env).kind == ExprKind::Error {
-            return Arg::Any;
+        if !numbers && self.fit(e, kind, env).kind == TypedExprKind::Error {
+            return TypedTerm::Any;
         }
-        Arg::Var(i)
+        TypedTerm::Var(i)
     }
 
     // ── literals ──
@@ -249,11 +254,11 @@ impl Checker<'_> {
     /// A belief that is matched. `asks`: rules may answer.
     pub(in crate::check) fn literal(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         literal: &ast::Literal,
-        env: &mut Env,
+        env: &mut ExprEnv,
         (binds, asks): (bool, bool),
-    ) -> Option<Literal> {
+    ) -> Option<TypedLiteral> {
         let belief = self.belief_or_negation(scope, literal);
         let fields = belief.map(|b| self.belief_fields(scope.id, b));
         let before: Vec<bool> = env.locals.iter().map(|l| l.bound).collect();
@@ -263,16 +268,16 @@ impl Checker<'_> {
         }
         let declared = belief.map(|b| self.annotations_of(scope, b));
         let annotations = self.matched_annotations(&literal.annotations, declared.as_deref(), env, binds);
-        Some(Literal { belief: belief?, args, annotations, origin: literal.span })
+        Some(TypedLiteral { belief: belief?, args, annotations, origin: literal.span })
     }
 
     /// A belief that is made: its arguments have values.
     pub(in crate::check) fn assertion(
         &mut self,
-        scope: &Scope,
+        scope: &AgentScope,
         literal: &ast::Literal,
-        env: &mut Env,
-    ) -> Option<Assertion> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedAssertion> {
         let belief = self.belief_or_negation(scope, literal)?;
         let fields = self.belief_fields(scope.id, belief);
         let args = self.args(Noun::Belief, &literal.call, &fields, env);
@@ -282,10 +287,10 @@ impl Checker<'_> {
             let Some((annotation, value, ty)) = self.annotation(e, Some(&declared)) else { continue };
             annotations.push((annotation, self.expr_for(value, ty, env)));
         }
-        Some(Assertion { belief, args, annotations })
+        Some(TypedAssertion { belief, args, annotations })
     }
 
-    pub(in crate::check) fn annotations_of(&self, scope: &Scope, belief: BeliefId) -> Vec<Param> {
+    pub(in crate::check) fn annotations_of(&self, scope: &AgentScope, belief: BeliefId) -> Vec<Parameter> {
         self.s.agents[usize::from(scope.id.0)].beliefs[usize::from(belief.0)].annotations.clone()
     }
 
@@ -293,14 +298,14 @@ impl Checker<'_> {
     pub(in crate::check) fn matched_annotations(
         &mut self,
         annotations: &[ast::Expr],
-        declared: Option<&[Param]>,
-        env: &mut Env,
+        declared: Option<&[Parameter]>,
+        env: &mut ExprEnv,
         binds: bool,
-    ) -> Vec<(Annotation, Arg)> {
+    ) -> Vec<(BeliefAnnotation, TypedTerm)> {
         let mut matched = Vec::new();
         for e in annotations {
             if let Some((annotation, value, ty)) = self.annotation(e, declared) {
-                matched.push((annotation, self.matched_arg(value, Due::Type(ty), env, binds)));
+                matched.push((annotation, self.matched_arg(value, TermMode::Type(ty), env, binds)));
             } else if let Syntax::Call { args, .. } = &e.kind
                 && binds
             {
@@ -315,8 +320,8 @@ impl Checker<'_> {
     pub(in crate::check) fn annotation<'e>(
         &mut self,
         e: &'e ast::Expr,
-        declared: Option<&[Param]>,
-    ) -> Option<(Annotation, &'e ast::Expr, Type)> {
+        declared: Option<&[Parameter]>,
+    ) -> Option<(BeliefAnnotation, &'e ast::Expr, Type)> {
         let declared = declared?;
         let (name, args): (&ast::Name, &[ast::Expr]) = match &e.kind {
             Syntax::Call { callee, args } if callee.names.len() == 1 => (&callee.names[0], args),
@@ -329,8 +334,8 @@ impl Checker<'_> {
         };
         let at = declared.iter().position(|p| p.name == name.text);
         let (annotation, ty) = match at {
-            Some(at) => (Annotation::Declared(u16::try_from(at).unwrap_or(u16::MAX)), declared[at].ty),
-            None if name.text == "source" => (Annotation::Source, Type::Enum(self.players.agent_names)),
+            Some(at) => (BeliefAnnotation::Declared(u16::try_from(at).unwrap_or(u16::MAX)), declared[at].ty),
+            None if name.text == "source" => (BeliefAnnotation::Source, Type::Enum(self.players.agent_names)),
             None => {
                 let mut names: Vec<String> = vec!["source".to_owned()];
                 names.extend(declared.iter().map(|p| p.name.clone()));
@@ -350,10 +355,10 @@ impl Checker<'_> {
     pub(in crate::check) fn needs_inputs(
         &mut self,
         (agent, belief): (u16, BeliefId),
-        args: &[Arg],
+        args: &[TypedTerm],
         before: &[bool],
         call: &Call,
-        env: &Env,
+        env: &ExprEnv,
     ) {
         let Some(modes) = self.agents.modes.get(&(agent, belief.0)).cloned() else { return };
         let written = call.args.as_deref().unwrap_or_default();
@@ -366,9 +371,9 @@ impl Checker<'_> {
                 }
             });
             let needs = match mode {
-                Mode::Free => false,
-                Mode::Named => !open.is_empty(),
-                Mode::Input => !open.is_empty() || has_any(arg),
+                ArgumentMode::Free => false,
+                ArgumentMode::Named => !open.is_empty(),
+                ArgumentMode::Input => !open.is_empty() || has_any(arg),
             };
             if needs {
                 let names = open.iter().filter_map(|v| env.locals.get(usize::from(*v)));
@@ -379,15 +384,20 @@ impl Checker<'_> {
     }
 
     /// An expression of the kind that a variable or literal is compared with.
-    pub(in crate::check) fn single(&mut self, e: &ast::Expr, kind: Kind, env: &mut Env) -> Expr {
-        if kind == Kind::Unknown { self.expr(e, env) } else { self.expr_of(e, kind, env) }
+    pub(in crate::check) fn single(
+        &mut self,
+        e: &ast::Expr,
+        kind: InferredType,
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
+        if kind == InferredType::Unknown { self.expr(e, env) } else { self.expr_of(e, kind, env) }
     }
 }
 
-fn has_any(arg: &Arg) -> bool {
+fn has_any(arg: &TypedTerm) -> bool {
     match arg {
-        Arg::Any => true,
-        Arg::Var(_) | Arg::Expr(_) => false,
-        Arg::List(items, rest) => items.iter().chain(rest.as_deref()).any(has_any),
+        TypedTerm::Any => true,
+        TypedTerm::Var(_) | TypedTerm::Expr(_) => false,
+        TypedTerm::List(items, rest) => items.iter().chain(rest.as_deref()).any(has_any),
     }
 }

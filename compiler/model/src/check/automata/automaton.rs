@@ -5,45 +5,45 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sort};
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::{
     automata::edge,
     checker::Checker,
     state::{
         issues::too_many,
-        names::Declared,
-        scope::{Elements, Env},
-        table::{MAX_NAMES, Table},
+        names::DeclaredPlayer,
+        scope::{ExprEnv, IndexedArrays},
+        table::{MAX_NAMES, NameTable},
     },
     unread,
 };
 use crate::{
-    ActorId, AutomatonId, Leaf, Location, LocationId, Network, PlayerRef, StimulusStep, Sync, noun::Noun,
-    report::automata, types::Layout,
+    ActorId, AutomatonId, LocationId, Network, PlayerRef, TypedLocation, TypedStimulusStep, TypedSync,
+    VariableRef, noun::Noun, report::automata, types::TypeLayout,
 };
 
 /// The names of one automaton.
-pub(in crate::check) struct Scope {
+pub(in crate::check) struct EdgeScope {
     /// Into the scenario's automata.
     pub index: usize,
     pub actor: Option<ActorId>,
     /// Its own.
-    pub clocks: Table,
+    pub clocks: NameTable,
     /// The single values of the variables.
-    pub vars: Table,
-    pub locations: Table,
+    pub vars: NameTable,
+    pub locations: NameTable,
     /// What its edges see besides what they bind.
-    pub env: Env,
+    pub env: ExprEnv,
 }
 
 /// The most events that the stimuli on the edges of one automaton emit.
 const MAX_MADE: usize = 10_000;
 
-fn emissions(steps: &[StimulusStep]) -> usize {
-    let of = |step: &StimulusStep| match step {
-        StimulusStep::Emit { .. } => 1,
-        StimulusStep::If { then, otherwise, .. } => emissions(then) + emissions(otherwise),
-        StimulusStep::Hold { .. } | StimulusStep::Act(_) => 0,
+fn emissions(steps: &[TypedStimulusStep]) -> usize {
+    let of = |step: &TypedStimulusStep| match step {
+        TypedStimulusStep::Emit { .. } => 1,
+        TypedStimulusStep::If { then, otherwise, .. } => emissions(then) + emissions(otherwise),
+        TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => 0,
     };
     steps.iter().map(of).sum()
 }
@@ -55,7 +55,7 @@ impl Checker<'_> {
             let ItemKind::Automaton(syntax) = template.kind else { return };
             let index = c.s.automata.len();
             let functions = c.s.functions.len();
-            let plain = Declared { syntax, given: None, instance: None };
+            let plain = DeclaredPlayer { syntax, given: None, instance: None };
             c.push_automaton(&plain, template.name, template.name.span);
             c.automaton(index, syntax, true);
             c.s.automata.truncate(index);
@@ -63,7 +63,7 @@ impl Checker<'_> {
         });
         for (index, automaton) in self.players.automata.clone().into_iter().enumerate() {
             let place = automaton.instance.map(|i| (&i.name, i.span));
-            let looked_at = |c: &Self, at| c.source.looks_at(Phase::Automata, at);
+            let looked_at = |c: &Self, at| c.source.looks_at(CheckPhase::Automata, at);
             let whole = looked_at(self, automaton.syntax.name.span)
                 || automaton.instance.is_some_and(|i| looked_at(self, i.span));
             self.as_instance(automaton.given, place, |c| c.automaton(index, automaton.syntax, whole));
@@ -78,17 +78,17 @@ impl Checker<'_> {
     /// Clocks, variables, functions and locations; edges too, if it is looked at as a `whole`.
     fn automaton(&mut self, index: usize, automaton: &ast::Automaton, whole: bool) {
         let actor = self.s.automata[index].actor;
-        let mut scope = Scope {
+        let mut scope = EdgeScope {
             index,
             actor,
-            clocks: Table::default(),
-            vars: Table::default(),
-            locations: Table::default(),
-            env: Env {
+            clocks: NameTable::default(),
+            vars: NameTable::default(),
+            locations: NameTable::default(),
+            env: ExprEnv {
                 noun: Some(Noun::Variable),
                 shared: self.shared.scope.clone(),
-                elements: Elements::Variables,
-                ..Env::default()
+                elements: IndexedArrays::Variables,
+                ..ExprEnv::default()
             },
         };
         self.source.unread_members = unread::in_automaton(automaton);
@@ -128,25 +128,25 @@ impl Checker<'_> {
     }
 
     /// What the stimuli on edges emit becomes locations and variables, of which there can be too many.
-    fn made(&self, automaton: &crate::Automaton, span: Span) -> Option<hrdsl_source::Diagnostic> {
+    fn made(&self, automaton: &crate::TypedAutomaton, span: Span) -> Option<hrdsl_source::Diagnostic> {
         let (mut locations, mut vars) =
             (automaton.locations.len(), automaton.vars.len() + self.s.shared.len());
         let mut bound = 0;
         for edge in &automaton.edges {
             bound = bound.max(edge.selects.len());
             let event = match &edge.sync {
-                Sync::Internal | Sync::Join { .. } => continue,
-                Sync::Offer { channel, .. } | Sync::Accept { channel, .. } => {
+                TypedSync::Internal | TypedSync::Join { .. } => continue,
+                TypedSync::Offer { channel, .. } | TypedSync::Accept { channel, .. } => {
                     let params = self.s.channels[usize::from(channel.0)].params.len();
                     bound = bound.max(edge.selects.len() + params);
                     continue;
                 }
-                Sync::Send { event, .. } | Sync::Receive { event, .. } => event,
+                TypedSync::Send { event, .. } | TypedSync::Receive { event, .. } => event,
             };
             let event = &self.s.events[usize::from(event.0)];
             bound = bound.max(edge.selects.len() + event.params.len());
             let emitted = event.stimulus.as_ref().map_or(0, |s| emissions(&s.steps));
-            if emitted > 0 && matches!(edge.sync, Sync::Send { .. }) {
+            if emitted > 0 && matches!(edge.sync, TypedSync::Send { .. }) {
                 locations = locations.saturating_add(emitted);
                 vars += event.params.len();
             }
@@ -164,7 +164,7 @@ impl Checker<'_> {
             .then(|| too_many(format!("`{name}` sees more than {} variables", MAX_NAMES), span))
     }
 
-    fn clock(&mut self, index: usize, clock: &Name, scope: &mut Scope) {
+    fn clock(&mut self, index: usize, clock: &Name, scope: &mut EdgeScope) {
         self.check_free(&scope.env, Noun::Clock, clock);
         if scope.vars.get(&clock.text).is_none() && scope.clocks.insert(&clock.text, clock.span).is_ok() {
             Rc::make_mut(&mut scope.env.own).add_clock(&clock.text, clock.span);
@@ -172,7 +172,7 @@ impl Checker<'_> {
         }
     }
 
-    fn own_var(&mut self, index: usize, var: &ast::Var, scope: &mut Scope) {
+    fn own_var(&mut self, index: usize, var: &ast::Var, scope: &mut EdgeScope) {
         self.check_free(&scope.env, Noun::Clock, &var.name);
         let (layout, vars) = self.var(var);
         if scope.clocks.get(&var.name.text).is_some() {
@@ -181,16 +181,16 @@ impl Checker<'_> {
         let place = var.name.span;
         for var in vars {
             if let Ok(i) = scope.vars.insert(&var.name, place) {
-                Rc::make_mut(&mut scope.env.own).add_variable(Leaf::Own(i), &var, place);
+                Rc::make_mut(&mut scope.env.own).add_variable(VariableRef::Own(i), &var, place);
                 self.s.automata[index].vars.push(var);
             }
         }
-        if !matches!(layout, Layout::Scalar(_)) {
+        if !matches!(layout, TypeLayout::Scalar(_)) {
             Rc::make_mut(&mut scope.env.own).layouts.insert(var.name.text.clone(), layout);
         }
     }
 
-    fn locations(&mut self, index: usize, automaton: &ast::Automaton, scope: &mut Scope) {
+    fn locations(&mut self, index: usize, automaton: &ast::Automaton, scope: &mut EdgeScope) {
         let mut initial: Option<(LocationId, Span)> = None;
         let mut broken = false;
         for member in &automaton.members {
@@ -207,7 +207,7 @@ impl Checker<'_> {
                     Some((_, first)) => self.report(automata::second_initial(&name.text, name.span, first)),
                 }
             }
-            self.s.automata[index].locations.push(Location {
+            self.s.automata[index].locations.push(TypedLocation {
                 name: name.text.clone(),
                 kind: *kind,
                 invariant: bounds,
@@ -224,7 +224,7 @@ impl Checker<'_> {
 
     fn network(&mut self, name: &Name, automata: &[Name], span: Span) {
         let mut ids: Vec<AutomatonId> = Vec::new();
-        let mut seen = Table::default();
+        let mut seen = NameTable::default();
         for automaton in automata {
             let player = self.players.table.get(&automaton.text).map(|id| self.players.ids[usize::from(id)]);
             if let Some(PlayerRef::Automaton(id)) = player {

@@ -4,20 +4,21 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ItemKind, Name};
 
 use crate::check::{
-    automata::automaton::Scope,
+    automata::automaton::EdgeScope,
     checker::Checker,
-    state::{record::Fields, scope::Env, table::Table},
+    state::{record::DeclaredFields, scope::ExprEnv, table::NameTable},
     vocabulary::layout::type_span,
 };
 use crate::{
-    Channel, ChannelId, ChannelKind, ChannelPlaces, EventId, Expr, Party, PlayerRef, Sync,
+    Channel, ChannelId, ChannelKind, ChannelParticipant, ChannelPlaces, EventId, PlayerRef, TypedExpr,
+    TypedSync,
     noun::Noun,
     report::{automata, names::duplicate},
     types::finite_var,
 };
 
 /// What an edge takes or gives.
-pub(in crate::check) enum Medium {
+pub(in crate::check) enum EdgeMedium {
     Event(EventId),
     Channel(ChannelId),
 }
@@ -65,7 +66,7 @@ impl Checker<'_> {
     }
 
     /// Parameters of finite types.
-    fn channel_params(&mut self, params: &[ast::Param]) -> Fields {
+    fn channel_params(&mut self, params: &[ast::Param]) -> DeclaredFields {
         let fields = self.fields(params);
         for (param, (_, layout)) in params.iter().zip(fields.iter()) {
             if self.plain(layout, &param.name.text, type_span(&param.ty)) {
@@ -76,8 +77,13 @@ impl Checker<'_> {
     }
 
     /// The automata of a joint channel; `places` gets where they are named.
-    fn parties(&mut self, channel: &Name, parties: &[ast::Party], places: &mut Vec<Span>) -> Vec<Party> {
-        let (mut resolved, mut seen) = (Vec::new(), Table::default());
+    fn parties(
+        &mut self,
+        channel: &Name,
+        parties: &[ast::Party],
+        places: &mut Vec<Span>,
+    ) -> Vec<ChannelParticipant> {
+        let (mut resolved, mut seen) = (Vec::new(), NameTable::default());
         for party in parties {
             let name = &party.automaton;
             let player = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
@@ -89,7 +95,7 @@ impl Checker<'_> {
             };
             self.refer(name, self.players.table.span_of(&name.text));
             if self.issues.declare(&mut seen, Noun::Automaton, name).is_some() {
-                resolved.push(Party { automaton, optional: party.optional });
+                resolved.push(ChannelParticipant { automaton, optional: party.optional });
                 places.push(name.span);
             }
         }
@@ -99,14 +105,14 @@ impl Checker<'_> {
     /// What `on` or `do` of an edge names.
     pub(in crate::check) fn medium(
         &mut self,
-        scope: &Scope,
+        scope: &EdgeScope,
         name: &Name,
         local: Option<Noun>,
-    ) -> Option<Medium> {
+    ) -> Option<EdgeMedium> {
         let given = self.given(&name.text).is_some();
         if let Some(id) = self.channels.table.get(&name.text).filter(|_| !given) {
             self.refer(name, self.channels.table.span(id));
-            return Some(Medium::Channel(ChannelId(id)));
+            return Some(EdgeMedium::Channel(ChannelId(id)));
         }
         let known = given || self.events.table.get(&name.text).is_some();
         if !known && (scope.actor.is_none() || self.channels.table.names().next().is_some()) {
@@ -126,22 +132,22 @@ impl Checker<'_> {
             self.report(automata::no_actor(automaton, noun, &name.text, name.span));
             return None;
         }
-        Some(Medium::Event(event))
+        Some(EdgeMedium::Event(event))
     }
 
     /// `on c(…)`
     pub(in crate::check) fn accept(
         &mut self,
-        scope: &Scope,
+        scope: &EdgeScope,
         channel: ChannelId,
         call: &Call,
-        env: &mut Env,
-        equal: &mut Vec<Expr>,
-    ) -> Option<Sync> {
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
+    ) -> Option<TypedSync> {
         let fields = self.fields_of_channel(channel);
         if !self.is_joint(channel) {
             let args = self.received_args(Noun::Channel, call, &fields, env, equal)?;
-            return Some(Sync::Accept { channel, args });
+            return Some(TypedSync::Accept { channel, args });
         }
         if call.args.as_ref().is_some_and(|args| !args.is_empty()) {
             self.wrong_arity(Noun::Channel, call, &fields);
@@ -158,11 +164,16 @@ impl Checker<'_> {
             let automaton = &self.s.automata[scope.index].name;
             self.report(automata::not_a_party(automaton, &of.name, call.name.span, place));
         }
-        Some(Sync::Join { channel })
+        Some(TypedSync::Join { channel })
     }
 
     /// `do c(…)`
-    pub(in crate::check) fn offer(&mut self, channel: ChannelId, call: &Call, env: &mut Env) -> Option<Sync> {
+    pub(in crate::check) fn offer(
+        &mut self,
+        channel: ChannelId,
+        call: &Call,
+        env: &mut ExprEnv,
+    ) -> Option<TypedSync> {
         if self.is_joint(channel) {
             self.report(automata::joint_offered(&call.name.text, call.span));
             return None;
@@ -170,15 +181,15 @@ impl Checker<'_> {
         let fields = self.fields_of_channel(channel);
         let args = self.args(Noun::Channel, call, &fields, env);
         let params = self.s.channels[usize::from(channel.0)].params.len();
-        (args.len() == params).then_some(Sync::Offer { channel, args })
+        (args.len() == params).then_some(TypedSync::Offer { channel, args })
     }
 
     /// The edges of an urgent channel have no clock guards, but those that accept a broadcast.
-    pub(in crate::check) fn check_urgent(&mut self, sync: &Sync, clock_guard: Option<Span>) {
+    pub(in crate::check) fn check_urgent(&mut self, sync: &TypedSync, clock_guard: Option<Span>) {
         let Some((channel, span)) = sync.channel().zip(clock_guard) else { return };
         let place = self.s.places.channels[usize::from(channel.0)].name;
         let channel = &self.s.channels[usize::from(channel.0)];
-        let hears = matches!(sync, Sync::Accept { .. }) && channel.kind == ChannelKind::Broadcast;
+        let hears = matches!(sync, TypedSync::Accept { .. }) && channel.kind == ChannelKind::Broadcast;
         if channel.urgent && !hears {
             self.report(automata::urgent_guard(&channel.name, span, place));
         }
@@ -188,7 +199,7 @@ impl Checker<'_> {
         matches!(self.s.channels[usize::from(channel.0)].kind, ChannelKind::Joint(_))
     }
 
-    fn fields_of_channel(&self, channel: ChannelId) -> Fields {
+    fn fields_of_channel(&self, channel: ChannelId) -> DeclaredFields {
         self.channels.fields[usize::from(channel.0)].clone()
     }
 }

@@ -6,28 +6,29 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name, TypeExpr};
 
 use crate::check::{
-    automata::automaton::Scope,
+    automata::automaton::EdgeScope,
     checker::Checker,
-    state::{record::MAX_PARTS, scope::Env},
+    state::{record::MAX_PARTS, scope::ExprEnv},
     value::{
-        linear::{Linear, linear},
+        linear::{LinearTime, linear},
         lookup::names_in,
     },
 };
 use crate::{
-    BinaryOp, ClockConstraint, ClockId, ClockOp, Dim, Kind, Time, UnaryOp, Update, Value, VarPlace,
+    BinaryOp, ClockId, ClockOp, Dimension, InferredType, TypedClockConstraint, TypedTime, TypedUpdate,
+    UnaryOp, Value, VarPlace,
     noun::Noun,
     report::{automata, types},
 };
 
 /// A sum of clocks, each with its sign, and of a time.
 #[derive(Default)]
-struct Sum {
+struct ClockSum {
     clocks: Vec<(ClockId, i8)>,
-    time: Linear,
+    time: LinearTime,
 }
 
-impl Sum {
+impl ClockSum {
     fn add(&mut self, clock: ClockId, sign: i8) {
         match self.clocks.iter_mut().find(|(c, _)| *c == clock) {
             Some((_, known)) => *known = known.saturating_add(sign),
@@ -100,7 +101,7 @@ impl Checker<'_> {
     }
 
     /// The clock of this name: `x`, `t[1]`.
-    fn clock_named(&self, name: &str, scope: &Scope) -> Option<ClockId> {
+    fn clock_named(&self, name: &str, scope: &EdgeScope) -> Option<ClockId> {
         let own = || {
             let shared = u16::try_from(self.s.clocks.len()).unwrap_or(u16::MAX);
             scope.clocks.get(name).map(|i| shared.saturating_add(i))
@@ -109,7 +110,7 @@ impl Checker<'_> {
     }
 
     /// The clock that an expression is. `None`: it is none; `Some(None)`: it has a diagnostic.
-    fn clock_of(&mut self, e: &ast::Expr, scope: &Scope, env: &mut Env) -> Option<Option<ClockId>> {
+    fn clock_of(&mut self, e: &ast::Expr, scope: &EdgeScope, env: &mut ExprEnv) -> Option<Option<ClockId>> {
         let (mut of, mut indices) = (e, Vec::new());
         while let Syntax::Index { of: inner, index } = &of.kind {
             indices.push(&**index);
@@ -126,8 +127,8 @@ impl Checker<'_> {
         &mut self,
         name: &Name,
         indices: &[&ast::Expr],
-        scope: &Scope,
-        env: &mut Env,
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
     ) -> Option<ClockId> {
         self.refer(name, env.place_of(&name.text));
         let sizes = env.shared.clock_arrays.get(&name.text).cloned().unwrap_or_default();
@@ -137,9 +138,9 @@ impl Checker<'_> {
         }
         let mut full = name.text.clone();
         for (index, size) in indices.iter().zip(sizes) {
-            let Value::Int(i) = self.constant(index, Kind::Int, env)? else { return None };
+            let Value::Int(i) = self.constant(index, InferredType::Int, env)? else { return None };
             if i < 0 || i >= i64::from(size) {
-                let at = crate::Expr::value(Value::Int(i), Kind::Int, index.span);
+                let at = crate::TypedExpr::value(Value::Int(i), InferredType::Int, index.span);
                 self.report(types::bad_index(&at, i64::from(size) - 1));
                 return None;
             }
@@ -149,7 +150,14 @@ impl Checker<'_> {
     }
 
     /// Adds an expression to a sum of clocks and times. `None`: it has a diagnostic.
-    fn add_to(&mut self, sum: &mut Sum, e: &ast::Expr, sign: i8, scope: &Scope, env: &mut Env) -> Option<()> {
+    fn add_to(
+        &mut self,
+        sum: &mut ClockSum,
+        e: &ast::Expr,
+        sign: i8,
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
+    ) -> Option<()> {
         if let Some(clock) = self.clock_of(e, scope, env) {
             sum.add(clock?, sign);
             return Some(());
@@ -167,7 +175,7 @@ impl Checker<'_> {
                 _ => {}
             }
         }
-        let e = self.expr_of(e, Kind::Float(Dim::TIME), env);
+        let e = self.expr_of(e, InferredType::Float(Dimension::TIME), env);
         match linear(&e) {
             Ok(time) => sum.time.add(time, f64::from(sign)),
             Err(Some(span)) => {
@@ -180,7 +188,7 @@ impl Checker<'_> {
     }
 
     /// A time in nanoseconds.
-    pub(in crate::check) fn time_of(&mut self, time: Linear, sign: f64, span: Span) -> Option<Time> {
+    pub(in crate::check) fn time_of(&mut self, time: LinearTime, sign: f64, span: Span) -> Option<TypedTime> {
         match time.time(sign) {
             Ok(time) => Some(time),
             Err(why) => {
@@ -197,9 +205,9 @@ impl Checker<'_> {
     pub(in crate::check) fn clock_bound(
         &mut self,
         e: &ast::Expr,
-        scope: &Scope,
-        env: &mut Env,
-    ) -> Option<Option<ClockConstraint>> {
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
+    ) -> Option<Option<TypedClockConstraint>> {
         let Syntax::Binary { op, left, right } = &e.kind else { return None };
         let op = comparison(*op)?;
         if !mentions_clock(left, env) && !mentions_clock(right, env) {
@@ -208,7 +216,7 @@ impl Checker<'_> {
         if op.is_none() {
             self.report(automata::clock_comparison("!=", e.span));
         }
-        let mut sum = Sum::default();
+        let mut sum = ClockSum::default();
         let left = self.add_to(&mut sum, left, 1, scope, env);
         let right = self.add_to(&mut sum, right, -1, scope, env);
         let Some((op, _)) = op.zip(left.and(right)) else { return Some(None) };
@@ -225,7 +233,7 @@ impl Checker<'_> {
         };
         let (op, sign) = if flipped { (mirrored(op), 1.0) } else { (op, -1.0) };
         let bound = self.time_of(sum.time, sign, e.span);
-        Some(bound.map(|bound| ClockConstraint { clock, minus, op, bound }))
+        Some(bound.map(|bound| TypedClockConstraint { clock, minus, op, bound }))
     }
 
     // ── updates ──
@@ -236,9 +244,9 @@ impl Checker<'_> {
         (target, access): (&Name, &[Access]),
         op: Option<BinaryOp>,
         value: &ast::Expr,
-        scope: &Scope,
-        env: &mut Env,
-    ) -> Option<Update> {
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
+    ) -> Option<TypedUpdate> {
         let mut indices = Vec::new();
         for step in access {
             match step {
@@ -251,9 +259,9 @@ impl Checker<'_> {
         }
         let clock = self.clock_at(target, &indices, scope, env)?;
         if op.is_none() && value.kind == Syntax::Int(0) {
-            return Some(Update::Reset { clock, from: None, to: Time::default() });
+            return Some(TypedUpdate::Reset { clock, from: None, to: TypedTime::default() });
         }
-        let mut sum = Sum::default();
+        let mut sum = ClockSum::default();
         self.add_to(&mut sum, value, if op == Some(BinaryOp::Sub) { -1 } else { 1 }, scope, env)?;
         let from = match (op, sum.left().as_slice()) {
             (None, []) => None,
@@ -269,16 +277,16 @@ impl Checker<'_> {
             self.report(types::must_be("what a clock is set to", "at least 0 s", value.span));
             return None;
         }
-        Some(Update::Reset { clock, from, to })
+        Some(TypedUpdate::Reset { clock, from, to })
     }
 }
 
 /// Whether a name is a clock's, or that of an array of clocks.
-pub(in crate::check) fn is_clock(name: &Name, env: &Env) -> bool {
+pub(in crate::check) fn is_clock(name: &Name, env: &ExprEnv) -> bool {
     env.find(&name.text).is_some_and(|l| l.noun == Noun::Clock)
 }
 
-pub(in crate::check) fn mentions_clock(e: &ast::Expr, env: &Env) -> bool {
+pub(in crate::check) fn mentions_clock(e: &ast::Expr, env: &ExprEnv) -> bool {
     let mut names = Vec::new();
     names_in(e, &mut names);
     names.iter().any(|name| is_clock(name, env))

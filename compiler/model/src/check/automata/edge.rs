@@ -6,23 +6,28 @@ use hrdsl_syntax::ast::{
 };
 
 use crate::check::{
-    automata::{automaton::Scope, channel::Medium},
+    automata::{automaton::EdgeScope, channel::EdgeMedium},
     checker::Checker,
     state::{
-        item::Part,
-        scope::{Env, is_variable_name},
+        item::ArgumentPart,
+        scope::{ExprEnv, is_variable_name},
     },
 };
 use crate::{
-    ArgPattern, ClockConstraint, Edge, EventId, Expr, ExprKind, Kind, Leaf, LocationId, ReceiveArg,
-    StimulusStep, Sync, Type, Var,
+    ArgPattern, AutomatonVar, EventId, InferredType, LocationId, ReceiveArg, Type, TypedClockConstraint,
+    TypedEdge, TypedExpr, TypedExprKind, TypedStimulusStep, TypedSync, VariableRef,
     noun::Noun,
     report::{automata, types},
-    types::{Layout, finite_var},
+    types::{TypeLayout, finite_var},
 };
 
 impl Checker<'_> {
-    pub(in crate::check) fn edge(&mut self, scope: &Scope, edge: &ast::Edge, span: Span) -> Option<Edge> {
+    pub(in crate::check) fn edge(
+        &mut self,
+        scope: &EdgeScope,
+        edge: &ast::Edge,
+        span: Span,
+    ) -> Option<TypedEdge> {
         let (from, to) = (self.location(scope, &edge.from), self.location(scope, &edge.to));
         let mut env = scope.env.clone();
         let selects = self.selects(&edge.selects, &mut env);
@@ -31,7 +36,7 @@ impl Checker<'_> {
         let (clock_guard, mut data, timed) = self.conjunction(scope, edge.guard.as_ref(), &mut env);
         data.splice(0..0, equal);
         let mut updates = Vec::new();
-        let mut sent: Option<(Span, Option<Sync>)> = None;
+        let mut sent: Option<(Span, Option<TypedSync>)> = None;
         for action in &edge.actions {
             match &action.kind {
                 Action::Send(call) if self.calls_function(call, &mut env, &mut updates) => {}
@@ -54,20 +59,20 @@ impl Checker<'_> {
         let sync = match (receive, sent) {
             (Some(receive), _) => receive?,
             (None, Some((_, send))) => send?,
-            (None, None) => Sync::Internal,
+            (None, None) => TypedSync::Internal,
         };
         self.check_urgent(&sync, timed);
         let guard = data.into_iter().reduce(and);
-        Some(Edge { from: from?, to: to?, selects, clock_guard, guard, sync, updates, origin: span })
+        Some(TypedEdge { from: from?, to: to?, selects, clock_guard, guard, sync, updates, origin: span })
     }
 
     /// A conjunction taken apart: the bounds on clocks, the rest, and where the first bound is.
     pub(in crate::check) fn conjunction(
         &mut self,
-        scope: &Scope,
+        scope: &EdgeScope,
         condition: Option<&ast::Expr>,
-        env: &mut Env,
-    ) -> (Vec<ClockConstraint>, Vec<Expr>, Option<Span>) {
+        env: &mut ExprEnv,
+    ) -> (Vec<TypedClockConstraint>, Vec<TypedExpr>, Option<Span>) {
         let (mut bounds, mut data, mut timed) = (Vec::new(), Vec::new(), None);
         for part in condition.into_iter().flat_map(conjuncts) {
             match self.clock_bound(part, scope, env) {
@@ -75,13 +80,13 @@ impl Checker<'_> {
                     timed = timed.or(Some(part.span));
                     bounds.extend(bound);
                 }
-                None => data.push(self.expr_of(part, Kind::Bool, env)),
+                None => data.push(self.expr_of(part, InferredType::Bool, env)),
             }
         }
         (bounds, data, timed)
     }
 
-    fn location(&mut self, scope: &Scope, name: &Name) -> Option<LocationId> {
+    fn location(&mut self, scope: &EdgeScope, name: &Name) -> Option<LocationId> {
         if let Some(id) = scope.locations.get(&name.text) {
             self.refer(name, scope.locations.span(id));
             return Some(LocationId(id));
@@ -92,14 +97,16 @@ impl Checker<'_> {
         None
     }
 
-    fn selects(&mut self, selects: &[SyntaxParam], env: &mut Env) -> Vec<Var> {
+    fn selects(&mut self, selects: &[SyntaxParam], env: &mut ExprEnv) -> Vec<AutomatonVar> {
         let mut resolved = Vec::new();
         for select in selects {
             let ty = self.ty(&select.ty).filter(|ty| self.finite(*ty, "a select", select.name.span));
             self.check_free(env, Noun::Variable, &select.name);
             match ty {
                 Some(ty) => env.push_typed(&select.name.text, select.name.span, Noun::Variable, ty),
-                None => env.push_local(&select.name.text, select.name.span, Noun::Variable, Kind::Unknown),
+                None => {
+                    env.push_local(&select.name.text, select.name.span, Noun::Variable, InferredType::Unknown)
+                }
             };
             resolved.push(finite_var(&select.name.text, ty.unwrap_or(Type::Bool)));
         }
@@ -107,17 +114,23 @@ impl Checker<'_> {
     }
 
     /// `on e(…)`: a lower-case name that means nothing yet is bound; a variable's value is compared by the guard.
-    fn receive(&mut self, scope: &Scope, call: &Call, env: &mut Env, equal: &mut Vec<Expr>) -> Option<Sync> {
+    fn receive(
+        &mut self,
+        scope: &EdgeScope,
+        call: &Call,
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
+    ) -> Option<TypedSync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
         match self.medium(scope, &call.name, local) {
-            Some(Medium::Channel(channel)) => self.accept(scope, channel, call, env, equal),
-            Some(Medium::Event(event)) => {
+            Some(EdgeMedium::Channel(channel)) => self.accept(scope, channel, call, env, equal),
+            Some(EdgeMedium::Event(event)) => {
                 if let Some(actor) = scope.actor {
                     self.perceives(actor, event, call.name.span, true);
                 }
                 let fields = self.fields_of(event);
                 let args = self.received_args(self.noun_of(event), call, &fields, env, equal)?;
-                Some(Sync::Receive { event, args })
+                Some(TypedSync::Receive { event, args })
             }
             None => {
                 self.bind_unknown(call, env);
@@ -131,9 +144,9 @@ impl Checker<'_> {
         &mut self,
         noun: Noun,
         call: &Call,
-        fields: &[(String, Layout)],
-        env: &mut Env,
-        equal: &mut Vec<Expr>,
+        fields: &[(String, TypeLayout)],
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
     ) -> Option<Vec<ReceiveArg>> {
         let Some(args) = &call.args else {
             return Some(vec![ReceiveArg::Match(ArgPattern::Any); self.flat(fields).len()]);
@@ -143,8 +156,8 @@ impl Checker<'_> {
             return None;
         }
         // What is there before the edge binds anything.
-        let scalar = fields.iter().all(|(_, layout)| matches!(layout, Layout::Scalar(_)));
-        let seen = if scalar { Env::default() } else { env.clone() };
+        let scalar = fields.iter().all(|(_, layout)| matches!(layout, TypeLayout::Scalar(_)));
+        let seen = if scalar { ExprEnv::default() } else { env.clone() };
         let free = |c: &Checker<'_>, name: &Name| {
             seen.layout(&name.text).is_none()
                 && seen.find(&name.text).is_none()
@@ -156,31 +169,42 @@ impl Checker<'_> {
     }
 
     /// What an unknown event would bind is known, but not its types.
-    fn bind_unknown(&mut self, call: &Call, env: &mut Env) {
+    fn bind_unknown(&mut self, call: &Call, env: &mut ExprEnv) {
         let free = |c: &Checker<'_>, name: &Name| !c.has_value(&name.text) && !is_variable_name(&name.text);
         call.args.iter().flatten().for_each(|arg| self.bind_names(arg, env, &free));
     }
 
-    fn received_part(&mut self, part: Part<'_>, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+    fn received_part(
+        &mut self,
+        part: ArgumentPart<'_>,
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
+    ) -> ReceiveArg {
         match part {
-            Part::Any => ReceiveArg::Match(ArgPattern::Any),
-            Part::Syntax(arg, ty) => self.received(arg, ty, env, equal),
-            Part::Done(e, ty) => self.compared(e, ty, env, equal),
+            ArgumentPart::Any => ReceiveArg::Match(ArgPattern::Any),
+            ArgumentPart::Syntax(arg, ty) => self.received(arg, ty, env, equal),
+            ArgumentPart::Done(e, ty) => self.compared(e, ty, env, equal),
             // The same name a second time: the parts are compared.
-            Part::Variable(name, ty) if env.find(&name.text).is_some() => {
+            ArgumentPart::Variable(name, ty) if env.find(&name.text).is_some() => {
                 let value = self.variable(&name, env);
                 self.compared(value, ty, env, equal)
             }
-            Part::Variable(name, ty) => {
+            ArgumentPart::Variable(name, ty) => {
                 self.finite(ty, "what an automaton binds", name.span);
-                self.define_here(&name, Kind::of(ty));
+                self.define_here(&name, InferredType::of(ty));
                 env.push_typed(&name.text, name.span, Noun::Variable, ty);
                 ReceiveArg::Bind
             }
         }
     }
 
-    fn received(&mut self, arg: &ast::Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+    fn received(
+        &mut self,
+        arg: &ast::Expr,
+        ty: Type,
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
+    ) -> ReceiveArg {
         if arg.kind == Syntax::Any {
             return ReceiveArg::Match(ArgPattern::Any);
         }
@@ -192,7 +216,7 @@ impl Checker<'_> {
             && !is_variable_name(&name.text)
         {
             self.finite(ty, "what an automaton binds", name.span);
-            self.define_here(name, Kind::of(ty));
+            self.define_here(name, InferredType::of(ty));
             env.push_typed(&name.text, name.span, Noun::Variable, ty);
             return ReceiveArg::Bind;
         }
@@ -201,27 +225,37 @@ impl Checker<'_> {
     }
 
     /// What is received is compared with a value.
-    fn compared(&mut self, value: Expr, ty: Type, env: &mut Env, equal: &mut Vec<Expr>) -> ReceiveArg {
+    fn compared(
+        &mut self,
+        value: TypedExpr,
+        ty: Type,
+        env: &mut ExprEnv,
+        equal: &mut Vec<TypedExpr>,
+    ) -> ReceiveArg {
         let span = value.span;
         if let Some(value) = value.constant() {
             return ReceiveArg::Match(ArgPattern::Is(value));
         }
-        if value.ty == Kind::Unknown {
+        if value.ty == InferredType::Unknown {
             return ReceiveArg::Match(ArgPattern::Any);
         }
         self.finite(ty, "what an automaton compares", span);
-        let bound = env.push_local("", span, Noun::Variable, Kind::of(ty));
-        let leaf = Expr { kind: ExprKind::Leaf(Leaf::Local(bound)), ty: Kind::of(ty), span };
-        let kind = ExprKind::Binary(BinaryOp::Eq, Box::new(leaf), Box::new(value));
-        equal.push(Expr { kind, ty: Kind::Bool, span });
+        let bound = env.push_local("", span, Noun::Variable, InferredType::of(ty));
+        let leaf = TypedExpr {
+            kind: TypedExprKind::Leaf(VariableRef::Local(bound)),
+            ty: InferredType::of(ty),
+            span,
+        };
+        let kind = TypedExprKind::Binary(BinaryOp::Eq, Box::new(leaf), Box::new(value));
+        equal.push(TypedExpr { kind, ty: InferredType::Bool, span });
         ReceiveArg::Bind
     }
 
-    fn send(&mut self, scope: &Scope, call: &Call, env: &mut Env) -> Option<Sync> {
+    fn send(&mut self, scope: &EdgeScope, call: &Call, env: &mut ExprEnv) -> Option<TypedSync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
         let event = match self.medium(scope, &call.name, local)? {
-            Medium::Channel(channel) => return self.offer(channel, call, env),
-            Medium::Event(event) => event,
+            EdgeMedium::Channel(channel) => return self.offer(channel, call, env),
+            EdgeMedium::Event(event) => event,
         };
         if let Some(actor) = scope.actor {
             self.owns(actor, event, call);
@@ -233,14 +267,14 @@ impl Checker<'_> {
             return None;
         }
         for (arg, param) in args.iter().zip(&params) {
-            if !param.ty.is_finite() && arg.constant().is_none() && arg.ty != Kind::Unknown {
+            if !param.ty.is_finite() && arg.constant().is_none() && arg.ty != InferredType::Unknown {
                 self.report(types::not_constant(arg.span));
             }
         }
         if self.emits_by_sample(event) {
             self.report(automata::sampled_emit(&call.name.text, call.name.span));
         }
-        Some(Sync::Send { event, args })
+        Some(TypedSync::Send { event, args })
     }
 
     /// Whether some emitted event, or whether it is emitted, depends on a sample.
@@ -263,33 +297,37 @@ pub(in crate::check) fn conjuncts(e: &ast::Expr) -> Vec<&ast::Expr> {
     }
 }
 
-pub(in crate::check) fn and(a: Expr, b: Expr) -> Expr {
+pub(in crate::check) fn and(a: TypedExpr, b: TypedExpr) -> TypedExpr {
     let span = a.span.to(b.span);
-    Expr { kind: ExprKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)), ty: Kind::Bool, span }
+    TypedExpr {
+        kind: TypedExprKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
+        ty: InferredType::Bool,
+        span,
+    }
 }
 
-fn sampled(steps: &[StimulusStep], params: usize) -> bool {
-    let reads_sample = |e: &Expr| {
+fn sampled(steps: &[TypedStimulusStep], params: usize) -> bool {
+    let reads_sample = |e: &TypedExpr| {
         let mut found = false;
         e.each(&mut |e| {
-            found |= matches!(e.kind, ExprKind::Leaf(Leaf::Local(i)) if usize::from(i) >= params);
+            found |= matches!(e.kind, TypedExprKind::Leaf(VariableRef::Local(i)) if usize::from(i) >= params);
         });
         found
     };
     steps.iter().any(|step| match step {
-        StimulusStep::Emit { args, .. } => args.iter().any(reads_sample),
-        StimulusStep::If { condition, then, otherwise } => {
+        TypedStimulusStep::Emit { args, .. } => args.iter().any(reads_sample),
+        TypedStimulusStep::If { condition, then, otherwise } => {
             let inside = sampled(then, params) || sampled(otherwise, params);
             inside || reads_sample(condition) && (emits(then) || emits(otherwise))
         }
-        StimulusStep::Hold { .. } | StimulusStep::Act(_) => false,
+        TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => false,
     })
 }
 
-fn emits(steps: &[StimulusStep]) -> bool {
+fn emits(steps: &[TypedStimulusStep]) -> bool {
     steps.iter().any(|step| match step {
-        StimulusStep::Emit { .. } => true,
-        StimulusStep::If { then, otherwise, .. } => emits(then) || emits(otherwise),
-        StimulusStep::Hold { .. } | StimulusStep::Act(_) => false,
+        TypedStimulusStep::Emit { .. } => true,
+        TypedStimulusStep::If { then, otherwise, .. } => emits(then) || emits(otherwise),
+        TypedStimulusStep::Hold { .. } | TypedStimulusStep::Act(_) => false,
     })
 }

@@ -6,21 +6,21 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, Call, ItemKind, Name};
 
 use crate::check::{
-    automata::{statement, statement::Body},
+    automata::{statement, statement::FunctionBody},
     checker::Checker,
     state::{
         issues::too_many,
-        scope::{Callable, Elements, Env},
+        scope::{CallableFunction, ExprEnv, IndexedArrays},
         table::MAX_NAMES,
     },
     value::expr::FUNCTIONS,
 };
 use crate::{
-    AutomatonId, Effects, Expr, ExprKind, Function, FunctionId, FunctionPlaces, Kind, Leaf, Statement, Type,
-    Update, leaves,
+    AutomatonId, FunctionEffects, FunctionId, FunctionPlaces, InferredType, Type, TypedExpr, TypedExprKind,
+    TypedFunction, TypedStatement, TypedUpdate, VariableRef, leaves,
     noun::Noun,
     report::{functions, names, types},
-    types::{Layout, finite_var},
+    types::{TypeLayout, finite_var},
 };
 
 impl Checker<'_> {
@@ -30,7 +30,7 @@ impl Checker<'_> {
         let mut bodies = Vec::new();
         for (item, span) in self.each_item() {
             let ItemKind::Function(function) = item else { continue };
-            let env = Env { shared: self.shared.scope.clone(), ..Env::default() };
+            let env = ExprEnv { shared: self.shared.scope.clone(), ..ExprEnv::default() };
             let callable = self.declare_function(function, None, &env, span);
             // Nobody else holds the scope now: it grows without a copy.
             drop(env);
@@ -39,7 +39,7 @@ impl Checker<'_> {
                 Rc::make_mut(&mut self.shared.scope).functions.insert(function.name.text.clone(), callable);
             }
         }
-        let env = Env { shared: self.shared.scope.clone(), ..Env::default() };
+        let env = ExprEnv { shared: self.shared.scope.clone(), ..ExprEnv::default() };
         self.functions_of(start, bodies, &env);
     }
 
@@ -48,7 +48,7 @@ impl Checker<'_> {
         &mut self,
         index: usize,
         automaton: &ast::Automaton,
-        env: &mut Env,
+        env: &mut ExprEnv,
     ) {
         let start = self.s.functions.len();
         let owner = u16::try_from(index).ok().map(AutomatonId);
@@ -64,10 +64,14 @@ impl Checker<'_> {
     }
 
     /// The bodies of functions that know each other, and what follows from all of them.
-    fn functions_of(&mut self, start: usize, bodies: Vec<(FunctionId, &ast::Function)>, env: &Env) {
+    fn functions_of(&mut self, start: usize, bodies: Vec<(FunctionId, &ast::Function)>, env: &ExprEnv) {
         for (id, function) in bodies {
-            let env =
-                Env { noun: Some(Noun::Variable), elements: Elements::Locals, effects: true, ..env.clone() };
+            let env = ExprEnv {
+                noun: Some(Noun::Variable),
+                elements: IndexedArrays::Locals,
+                effects: true,
+                ..env.clone()
+            };
             self.shared.functions.open = Some(id);
             self.function_body(id, function, env);
             self.shared.functions.open = None;
@@ -82,9 +86,9 @@ impl Checker<'_> {
         &mut self,
         function: &ast::Function,
         owner: Option<AutomatonId>,
-        env: &Env,
+        env: &ExprEnv,
         span: Span,
-    ) -> Option<Callable> {
+    ) -> Option<CallableFunction> {
         let name = &function.name;
         self.shared.functions.declared.entry(name.span).or_insert_with(|| (name.clone(), span));
         let params = self.function_params(function);
@@ -100,10 +104,10 @@ impl Checker<'_> {
             self.report(too_many(format!("there are more than {id} functions"), name.span));
             return None;
         }
-        let typed = |(name, layout): &(String, Layout)| {
-            finite_var(name, if let Layout::Scalar(ty) = layout { *ty } else { Type::Bool })
+        let typed = |(name, layout): &(String, TypeLayout)| {
+            finite_var(name, if let TypeLayout::Scalar(ty) = layout { *ty } else { Type::Bool })
         };
-        self.s.functions.push(Function {
+        self.s.functions.push(TypedFunction {
             name: name.text.clone(),
             owner,
             params: params.iter().map(typed).collect(),
@@ -113,23 +117,23 @@ impl Checker<'_> {
             body: Vec::new(),
             origin: span,
         });
-        self.s.effects.push(Effects::default());
+        self.s.effects.push(FunctionEffects::default());
         self.s.places.functions.push(FunctionPlaces { name: name.span, locals: Vec::new() });
-        Some(Callable { id: FunctionId(id), params: params.into(), result, span: name.span })
+        Some(CallableFunction { id: FunctionId(id), params: params.into(), result, span: name.span })
     }
 
-    fn function_params(&mut self, function: &ast::Function) -> Vec<(String, Layout)> {
-        let mut params: Vec<(String, Layout)> = Vec::new();
+    fn function_params(&mut self, function: &ast::Function) -> Vec<(String, TypeLayout)> {
+        let mut params: Vec<(String, TypeLayout)> = Vec::new();
         for param in &function.params {
             let name = &param.name;
             let ty = self.ty(&param.ty).filter(|ty| self.finite(*ty, "a parameter of a function", name.span));
-            params.push((name.text.clone(), ty.map_or(Layout::Unknown, Layout::Scalar)));
+            params.push((name.text.clone(), ty.map_or(TypeLayout::Unknown, TypeLayout::Scalar)));
         }
         params
     }
 
     /// Nothing that is called or read like it has the name.
-    fn free_function(&mut self, name: &Name, env: &Env) -> bool {
+    fn free_function(&mut self, name: &Name, env: &ExprEnv) -> bool {
         let said = self.issues.list.len();
         let text = name.text.as_str();
         if FUNCTIONS.iter().any(|(built_in, _)| *built_in == text) {
@@ -168,20 +172,20 @@ impl Checker<'_> {
         self.issues.list.len() == said
     }
 
-    fn function_body(&mut self, id: FunctionId, function: &ast::Function, mut env: Env) {
+    fn function_body(&mut self, id: FunctionId, function: &ast::Function, mut env: ExprEnv) {
         let callable = env.function(&function.name.text).cloned();
         for (param, (_, layout)) in function.params.iter().zip(callable.iter().flat_map(|c| c.params.iter()))
         {
             match layout {
-                Layout::Scalar(_) => self.add_local(&mut env, &param.name, Noun::Parameter, layout),
-                Layout::Unknown | Layout::Record(_) | Layout::Array(..) => {
+                TypeLayout::Scalar(_) => self.add_local(&mut env, &param.name, Noun::Parameter, layout),
+                TypeLayout::Unknown | TypeLayout::Record(_) | TypeLayout::Array(..) => {
                     // Its place among the locals stays.
-                    let (name, kind) = (&param.name, Kind::Unknown);
+                    let (name, kind) = (&param.name, InferredType::Unknown);
                     env.push_local(&name.text, name.span, Noun::Parameter, kind);
                 }
             }
         }
-        let mut body = Body::new(&function.name.text, callable.and_then(|c| c.result));
+        let mut body = FunctionBody::new(&function.name.text, callable.and_then(|c| c.result));
         let broken = statement::unread(&function.body);
         let unread = self.source.unread_members;
         self.source.unread_members |= broken;
@@ -210,22 +214,24 @@ impl Checker<'_> {
         name: &Name,
         args: &[ast::Expr],
         span: Span,
-        env: &mut Env,
-    ) -> Option<Expr> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedExpr> {
         let callable = env.function(&name.text)?.clone();
         let values = self.function_args(&callable, name, args, span, env);
         let Some(result) = callable.result else {
             self.refer(name, Some(callable.span));
             self.report(functions::has_no_value(&name.text, span));
-            return Some(Expr::error(span));
+            return Some(TypedExpr::error(span));
         };
         self.refer(name, Some(callable.span));
         self.called(&callable, span, env);
         Some(match (result, values) {
-            (Some(ty), Some(args)) => {
-                Expr { kind: ExprKind::Apply(callable.id, args, ty), ty: Kind::of(ty), span }
-            }
-            (Some(_), None) | (None, _) => Expr::error(span),
+            (Some(ty), Some(args)) => TypedExpr {
+                kind: TypedExprKind::Apply(callable.id, args, ty),
+                ty: InferredType::of(ty),
+                span,
+            },
+            (Some(_), None) | (None, _) => TypedExpr::error(span),
         })
     }
 
@@ -233,8 +239,8 @@ impl Checker<'_> {
     pub(in crate::check) fn called_function(
         &mut self,
         call: &Call,
-        env: &mut Env,
-    ) -> Option<(FunctionId, Vec<Expr>)> {
+        env: &mut ExprEnv,
+    ) -> Option<(FunctionId, Vec<TypedExpr>)> {
         let callable = env.function(&call.name.text)?.clone();
         let args = call.args.as_deref().unwrap_or_default();
         let args = self.function_args(&callable, &call.name, args, call.span, env);
@@ -247,8 +253,8 @@ impl Checker<'_> {
     pub(in crate::check) fn calls_function(
         &mut self,
         call: &Call,
-        env: &mut Env,
-        updates: &mut Vec<Update>,
+        env: &mut ExprEnv,
+        updates: &mut Vec<TypedUpdate>,
     ) -> bool {
         let text = call.name.text.as_str();
         if env.function(text).is_none() {
@@ -270,18 +276,18 @@ impl Checker<'_> {
         env.effects = true;
         let called = self.called_function(call, env);
         env.effects = false;
-        updates.extend(called.map(|(id, args)| Update::Call { function: id, args }));
+        updates.extend(called.map(|(id, args)| TypedUpdate::Call { function: id, args }));
         true
     }
 
     fn function_args(
         &mut self,
-        callable: &Callable,
+        callable: &CallableFunction,
         name: &Name,
         args: &[ast::Expr],
         span: Span,
-        env: &mut Env,
-    ) -> Option<Vec<Expr>> {
+        env: &mut ExprEnv,
+    ) -> Option<Vec<TypedExpr>> {
         let params = Rc::clone(&callable.params);
         if args.len() != params.len() {
             let names: Vec<&str> = params.iter().map(|(n, _)| n.as_str()).collect();
@@ -291,7 +297,7 @@ impl Checker<'_> {
         }
         let mut values = Some(Vec::with_capacity(args.len()));
         for (arg, (_, layout)) in args.iter().zip(params.iter()) {
-            if let Layout::Scalar(ty) = layout {
+            if let TypeLayout::Scalar(ty) = layout {
                 let value = self.expr_for(arg, *ty, env);
                 values.iter_mut().for_each(|v| v.push(value.clone()));
             } else {
@@ -302,7 +308,7 @@ impl Checker<'_> {
         values
     }
 
-    fn called(&mut self, callable: &Callable, span: Span, env: &Env) {
+    fn called(&mut self, callable: &CallableFunction, span: Span, env: &ExprEnv) {
         if let Some(open) = self.shared.functions.open {
             self.shared.functions.calls.entry(open.0).or_default().push((callable.id, span));
         }
@@ -330,11 +336,11 @@ impl Checker<'_> {
             let (mut reads, mut assigns) = direct(&self.s.functions[id]);
             for (called, _) in self.calls_of(id) {
                 let of = &self.s.effects[usize::from(called.0)];
-                reads.extend(of.reads.iter().copied().map(Ordered));
-                assigns.extend(of.assigns.iter().copied().map(Ordered));
+                reads.extend(of.reads.iter().copied().map(OrderedLeaf));
+                assigns.extend(of.assigns.iter().copied().map(OrderedLeaf));
             }
             self.s.functions[id].pure = assigns.is_empty();
-            self.s.effects[id] = Effects {
+            self.s.effects[id] = FunctionEffects {
                 reads: reads.into_iter().map(|l| l.0).collect(),
                 assigns: assigns.into_iter().map(|l| l.0).collect(),
             };
@@ -400,11 +406,11 @@ impl Checker<'_> {
             };
             let Some(first) = effects.assigns.first() else { continue };
             let var = match (first, routine.owner) {
-                (Leaf::Own(i), Some(owner)) => {
+                (VariableRef::Own(i), Some(owner)) => {
                     self.s.automata.get(usize::from(owner.0)).and_then(|a| a.vars.get(usize::from(*i)))
                 }
-                (Leaf::Shared(i), _) => self.s.shared.get(usize::from(*i)),
-                (Leaf::Own(_) | Leaf::Local(_) | Leaf::Signal(_), _) => None,
+                (VariableRef::Shared(i), _) => self.s.shared.get(usize::from(*i)),
+                (VariableRef::Own(_) | VariableRef::Local(_) | VariableRef::Signal(_), _) => None,
             };
             let whole = var.map_or("?", |v| v.name.split(['.', '[']).next().unwrap_or(&v.name));
             let issue = functions::impure(&routine.name, whole, span);
@@ -415,49 +421,49 @@ impl Checker<'_> {
 
 /// A variable outside of functions, in an order.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Ordered(Leaf);
+struct OrderedLeaf(VariableRef);
 
-impl Ordered {
+impl OrderedLeaf {
     fn key(self) -> (u8, u16) {
         match self.0 {
-            Leaf::Shared(i) => (0, i),
-            Leaf::Own(i) => (1, i),
-            Leaf::Local(i) => (2, i),
-            Leaf::Signal(s) => (3, s.0),
+            VariableRef::Shared(i) => (0, i),
+            VariableRef::Own(i) => (1, i),
+            VariableRef::Local(i) => (2, i),
+            VariableRef::Signal(s) => (3, s.0),
         }
     }
 }
 
-impl PartialOrd for Ordered {
+impl PartialOrd for OrderedLeaf {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Ordered {
+impl Ord for OrderedLeaf {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.key().cmp(&other.key())
     }
 }
 
 /// The variables outside that a body itself reads and assigns.
-fn direct(routine: &Function) -> (BTreeSet<Ordered>, BTreeSet<Ordered>) {
+fn direct(routine: &TypedFunction) -> (BTreeSet<OrderedLeaf>, BTreeSet<OrderedLeaf>) {
     let (mut reads, mut assigns) = (BTreeSet::new(), BTreeSet::new());
-    let outside = |l: Leaf| matches!(l, Leaf::Own(_) | Leaf::Shared(_));
+    let outside = |l: VariableRef| matches!(l, VariableRef::Own(_) | VariableRef::Shared(_));
     let mut all = Vec::new();
     routine.body.iter().for_each(|s| s.each(&mut |s| all.push(s)));
     for statement in all {
-        let mut read = |e: &Expr| {
+        let mut read = |e: &TypedExpr| {
             e.each_leaf(&mut |l| {
                 if outside(l) {
-                    reads.insert(Ordered(l));
+                    reads.insert(OrderedLeaf(l));
                 }
             });
         };
         statement.expressions().into_iter().for_each(&mut read);
-        if let Statement::Assign { place, .. } = statement {
+        if let TypedStatement::Assign { place, .. } = statement {
             place.indices.iter().for_each(|i| read(&i.at));
-            assigns.extend(leaves(place).into_iter().filter(|l| outside(*l)).map(Ordered));
+            assigns.extend(leaves(place).into_iter().filter(|l| outside(*l)).map(OrderedLeaf));
         }
     }
     (reads, assigns)

@@ -5,37 +5,37 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, UnaryOp};
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::{
     checker::Checker,
     state::{
-        scope::{Env, Local, Scope},
-        table::Map,
+        scope::{ExprEnv, LocalName, NameScope},
+        table::OrderedMap,
     },
-    value::linear::{Linear, linear},
+    value::linear::{LinearTime, linear},
 };
 use crate::{
-    Ask, ClockConstraint, ClockId, ClockOp, Dim, ExprKind, Formula, Kind, Leaf, LocationId, Measure,
-    NetworkId, PlayerRef, Query,
+    ClockId, ClockOp, Dimension, InferredType, LocationId, NetworkId, PlayerRef, TypedClockConstraint,
+    TypedExprKind, TypedFormula, TypedMeasure, TypedQuery, TypedQueryKind, VariableRef,
     noun::Noun,
     report::{names, queries},
 };
 
 /// What the names of a network stand for.
-struct Net {
+struct QueryNetwork {
     name: String,
     /// In the network's order.
     automata: Vec<String>,
-    locations: Map<String, (u16, LocationId)>,
+    locations: OrderedMap<String, (u16, LocationId)>,
     /// Shared ones by their names, others as `Automaton.clock`.
-    clocks: Map<String, ClockId>,
+    clocks: OrderedMap<String, ClockId>,
     /// Variables: shared ones by their names, others as `Automaton.variable`.
-    env: Env,
+    env: ExprEnv,
 }
 
 /// One side of a comparison: clocks with their signs, and what remains.
 #[derive(Default)]
-struct Sum<'e> {
+struct QuerySum<'e> {
     plus: Vec<ClockId>,
     minus: Vec<ClockId>,
     /// Each with whether it is subtracted.
@@ -46,7 +46,7 @@ impl Checker<'_> {
     pub(in crate::check) fn queries(&mut self) {
         for (item, span) in self.each_item() {
             if let ItemKind::Query(query) = item {
-                let looked_at = self.source.looks_at(Phase::Queries, span);
+                let looked_at = self.source.looks_at(CheckPhase::Queries, span);
                 let resolved = if looked_at { self.query(query, span) } else { None };
                 let new = self.issues.declare(&mut self.networks.queries, Noun::Query, &query.name).is_some();
                 self.s.queries.extend(resolved.filter(|_| new));
@@ -55,7 +55,7 @@ impl Checker<'_> {
         self.say_impure();
     }
 
-    fn query(&mut self, query: &ast::Query, span: Span) -> Option<Query> {
+    fn query(&mut self, query: &ast::Query, span: Span) -> Option<TypedQuery> {
         let network = self.networks.table.get(&query.network.text).map(NetworkId);
         self.refer(&query.network, self.networks.table.span_of(&query.network.text));
         let Some(network) = network else {
@@ -65,7 +65,7 @@ impl Checker<'_> {
         };
         let mut net = self.net(network);
         let ask = self.query_ask(&query.ask, &mut net);
-        Some(Query {
+        Some(TypedQuery {
             name: query.name.text.clone(),
             title: query.title.as_ref().map_or_else(String::new, |t| t.text.clone()),
             text: query.span,
@@ -75,43 +75,47 @@ impl Checker<'_> {
         })
     }
 
-    fn query_ask(&mut self, ask: &ast::Ask, net: &mut Net) -> Ask {
-        let always = || Formula::And(Vec::new());
+    fn query_ask(&mut self, ask: &ast::Ask, net: &mut QueryNetwork) -> TypedQueryKind {
+        let always = || TypedFormula::And(Vec::new());
         match ask {
-            ast::Ask::Possibly(f) => Ask::Possibly(self.formula(f, net)),
-            ast::Ask::Invariantly(f) => Ask::Invariantly(self.formula(f, net)),
-            ast::Ask::PotentiallyAlways(f) => Ask::PotentiallyAlways(self.formula(f, net)),
-            ast::Ask::Eventually(f) => Ask::Eventually(self.formula(f, net)),
+            ast::Ask::Possibly(f) => TypedQueryKind::Possibly(self.formula(f, net)),
+            ast::Ask::Invariantly(f) => TypedQueryKind::Invariantly(self.formula(f, net)),
+            ast::Ask::PotentiallyAlways(f) => TypedQueryKind::PotentiallyAlways(self.formula(f, net)),
+            ast::Ask::Eventually(f) => TypedQueryKind::Eventually(self.formula(f, net)),
             ast::Ask::LeadsTo(f, g) => {
                 let f = self.formula(f, net);
-                Ask::LeadsTo(f, self.formula(g, net))
+                TypedQueryKind::LeadsTo(f, self.formula(g, net))
             }
             ast::Ask::Sup { when, of } => {
                 let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
-                Ask::Sup { of: self.measures(of, net), when }
+                TypedQueryKind::Sup { of: self.measures(of, net), when }
             }
             ast::Ask::Inf { when, of } => {
                 let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
-                Ask::Inf { of: self.measures(of, net), when }
+                TypedQueryKind::Inf { of: self.measures(of, net), when }
             }
         }
     }
 
     // ── names ──
 
-    fn net(&self, id: NetworkId) -> Net {
+    fn net(&self, id: NetworkId) -> QueryNetwork {
         let network = &self.s.networks[usize::from(id.0)];
-        let mut net = Net {
+        let mut net = QueryNetwork {
             name: network.name.clone(),
             automata: Vec::new(),
-            locations: Map::default(),
-            clocks: Map::default(),
-            env: Env { noun: Some(Noun::Variable), shared: self.shared.scope.clone(), ..Env::default() },
+            locations: OrderedMap::default(),
+            clocks: OrderedMap::default(),
+            env: ExprEnv {
+                noun: Some(Noun::Variable),
+                shared: self.shared.scope.clone(),
+                ..ExprEnv::default()
+            },
         };
         for clock in self.shared.scope.clocks.keys() {
             add_clock(&mut net.clocks, clock.clone());
         }
-        let mut own = Scope::default();
+        let mut own = NameScope::default();
         for (place, automaton) in (0u16..).zip(&network.automata) {
             let at = usize::from(automaton.0);
             let of = &self.s.automata[at].name;
@@ -123,8 +127,8 @@ impl Checker<'_> {
             for local in scope.names.values() {
                 let name = format!("{of}.{}", local.name);
                 // INVARIANT: the number of a leaf is the name's place in the scope.
-                let leaf = u16::try_from(own.names.len()).ok().map(Leaf::Own);
-                own.names.insert(name.clone(), Local { name, leaf, ..local.clone() });
+                let leaf = u16::try_from(own.names.len()).ok().map(VariableRef::Own);
+                own.names.insert(name.clone(), LocalName { name, leaf, ..local.clone() });
             }
             for (name, layout) in &scope.layouts {
                 own.layouts.insert(format!("{of}.{name}"), layout.clone());
@@ -141,13 +145,13 @@ impl Checker<'_> {
     }
 
     /// Whether all names are known, and are variables, constants or functions; says what is not.
-    fn data_names(&mut self, e: &ast::Expr, net: &Net) -> bool {
+    fn data_names(&mut self, e: &ast::Expr, net: &QueryNetwork) -> bool {
         let mut known = true;
         each_path(e, &mut |path| known &= self.data_name(path, net));
         known
     }
 
-    fn data_name(&mut self, path: &ast::Path, net: &Net) -> bool {
+    fn data_name(&mut self, path: &ast::Path, net: &QueryNetwork) -> bool {
         let whole = joined(&path.names);
         if net.clocks.contains_key(&whole) {
             self.report(queries::clock_value(&whole, path.span));
@@ -193,13 +197,13 @@ impl Checker<'_> {
     fn refer_member(&mut self, automaton: &Name, member: &Name) {
         let Some(at) = self.s.automata.iter().position(|a| a.name == automaton.text) else { return };
         let Some(scope) = self.networks.scopes.get(&at).cloned() else { return };
-        let known = Env { own: scope.clone(), ..Env::default() };
+        let known = ExprEnv { own: scope.clone(), ..ExprEnv::default() };
         let place = known.place_of(&member.text).or_else(|| scope.locations.get(&member.text).copied());
         self.refer(member, place);
     }
 
     /// Whether the automaton is in the network and has something of this name, and one thing only.
-    fn has_member(&mut self, automaton: &Name, member: &Name, net: &Net) -> bool {
+    fn has_member(&mut self, automaton: &Name, member: &Name, net: &QueryNetwork) -> bool {
         if !net.automata.contains(&automaton.text) {
             let issue = queries::not_in_network(&automaton.text, &net.name, &net.automata, automaton.span);
             self.report(issue);
@@ -225,17 +229,19 @@ impl Checker<'_> {
 
     // ── formulas ──
 
-    fn formula(&mut self, e: &ast::Expr, net: &mut Net) -> Formula {
+    fn formula(&mut self, e: &ast::Expr, net: &mut QueryNetwork) -> TypedFormula {
         match &e.kind {
             Syntax::Binary { op: BinaryOp::And, left, right } => {
                 let left = self.formula(left, net);
-                joined_by(Formula::And, left, self.formula(right, net))
+                joined_by(TypedFormula::And, left, self.formula(right, net))
             }
             Syntax::Binary { op: BinaryOp::Or, left, right } => {
                 let left = self.formula(left, net);
-                joined_by(Formula::Or, left, self.formula(right, net))
+                joined_by(TypedFormula::Or, left, self.formula(right, net))
             }
-            Syntax::Unary { op: UnaryOp::Not, operand } => Formula::Not(Box::new(self.formula(operand, net))),
+            Syntax::Unary { op: UnaryOp::Not, operand } => {
+                TypedFormula::Not(Box::new(self.formula(operand, net)))
+            }
             Syntax::Binary { op, left, right } => match self.clock_formula(*op, (left, right), e.span, net) {
                 Some(formula) => formula,
                 None => self.data(e, net),
@@ -263,35 +269,35 @@ impl Checker<'_> {
     }
 
     /// `deadlock`, or `Automaton.location`.
-    fn state(&mut self, path: &ast::Path, net: &Net) -> Option<Formula> {
+    fn state(&mut self, path: &ast::Path, net: &QueryNetwork) -> Option<TypedFormula> {
         match path.names.as_slice() {
-            [name] if name.text == "deadlock" => Some(Formula::Deadlock),
+            [name] if name.text == "deadlock" => Some(TypedFormula::Deadlock),
             [automaton, member] if self.is_automaton(automaton) => {
                 let whole = joined(&path.names);
                 let (place, location) = *net.locations.get(&whole)?;
                 if !self.has_member(automaton, member, net) {
                     return Some(nothing());
                 }
-                Some(Formula::At { automaton: place, location })
+                Some(TypedFormula::At { automaton: place, location })
             }
             _ => None,
         }
     }
 
-    fn data(&mut self, e: &ast::Expr, net: &mut Net) -> Formula {
+    fn data(&mut self, e: &ast::Expr, net: &mut QueryNetwork) -> TypedFormula {
         if !self.data_names(e, net) {
             return nothing();
         }
-        Formula::Data(self.expr_of(e, Kind::Bool, &mut net.env))
+        TypedFormula::Data(self.expr_of(e, InferredType::Bool, &mut net.env))
     }
 
-    fn measures(&mut self, of: &[ast::Expr], net: &mut Net) -> Vec<Measure> {
+    fn measures(&mut self, of: &[ast::Expr], net: &mut QueryNetwork) -> Vec<TypedMeasure> {
         let mut measures = Vec::new();
         for e in of {
             if let Some(clock) = clock_named(e, net) {
-                measures.push(Measure::Clock(clock));
+                measures.push(TypedMeasure::Clock(clock));
             } else if self.data_names(e, net) {
-                measures.push(Measure::Data(self.expr_of(e, Kind::Int, &mut net.env)));
+                measures.push(TypedMeasure::Data(self.expr_of(e, InferredType::Int, &mut net.env)));
             }
         }
         measures
@@ -300,16 +306,16 @@ impl Checker<'_> {
     // ── clocks ──
 
     /// The times of `clocks op times`, as one sum on the right of the comparison. `None`: reported.
-    fn times_on_the_right(&mut self, sum: &Sum<'_>, net: &mut Net) -> Option<Linear> {
+    fn times_on_the_right(&mut self, sum: &QuerySum<'_>, net: &mut QueryNetwork) -> Option<LinearTime> {
         // What is left of `clocks op times` moves to the right: its signs change.
-        let mut bound = Linear::default();
+        let mut bound = LinearTime::default();
         for (e, subtracted) in &sum.rest {
             let factor = if *subtracted { 1.0 } else { -1.0 };
             if !self.data_names(e, net) {
                 return None;
             }
-            let time = self.expr_of(e, Kind::Float(Dim::TIME), &mut net.env);
-            if time.kind == ExprKind::Error {
+            let time = self.expr_of(e, InferredType::Float(Dimension::TIME), &mut net.env);
+            if time.kind == TypedExprKind::Error {
                 return None;
             }
             match linear(&time) {
@@ -331,9 +337,9 @@ impl Checker<'_> {
         op: BinaryOp,
         (left, right): (&ast::Expr, &ast::Expr),
         span: Span,
-        net: &mut Net,
-    ) -> Option<Formula> {
-        let mut sum = Sum::default();
+        net: &mut QueryNetwork,
+    ) -> Option<TypedFormula> {
+        let mut sum = QuerySum::default();
         sum.add(left, false, net);
         sum.add(right, true, net);
         if sum.plus.is_empty() && sum.minus.is_empty() {
@@ -369,16 +375,16 @@ impl Checker<'_> {
         };
         let one = |op: &ClockOp| {
             let op = if flipped { mirrored(*op) } else { *op };
-            Formula::Clock(ClockConstraint { clock, minus, op, bound: bound.clone() })
+            TypedFormula::Clock(TypedClockConstraint { clock, minus, op, bound: bound.clone() })
         };
         Some(match ops {
             [only] => one(only),
-            several => Formula::Or(several.iter().map(one).collect()),
+            several => TypedFormula::Or(several.iter().map(one).collect()),
         })
     }
 }
 
-impl Net {
+impl QueryNetwork {
     fn knows(&self, automaton: &str, member: &str) -> bool {
         let name = format!("{automaton}.{member}");
         self.locations.contains_key(&name)
@@ -397,8 +403,8 @@ impl Net {
     }
 }
 
-impl<'e> Sum<'e> {
-    fn add(&mut self, e: &'e ast::Expr, negative: bool, net: &Net) {
+impl<'e> QuerySum<'e> {
+    fn add(&mut self, e: &'e ast::Expr, negative: bool, net: &QueryNetwork) {
         if let Some(clock) = clock_named(e, net) {
             if negative {
                 self.minus.push(clock)
@@ -421,20 +427,25 @@ impl<'e> Sum<'e> {
     }
 }
 
-fn add_clock(clocks: &mut Map<String, ClockId>, name: String) {
+fn add_clock(clocks: &mut OrderedMap<String, ClockId>, name: String) {
     let id = ClockId(u16::try_from(clocks.len()).unwrap_or(u16::MAX));
     clocks.insert(name, id);
 }
 
 /// Stands for a formula with a diagnostic.
-fn nothing() -> Formula {
-    Formula::Or(Vec::new())
+fn nothing() -> TypedFormula {
+    TypedFormula::Or(Vec::new())
 }
 
-fn joined_by(join: fn(Vec<Formula>) -> Formula, left: Formula, right: Formula) -> Formula {
+fn joined_by(
+    join: fn(Vec<TypedFormula>) -> TypedFormula,
+    left: TypedFormula,
+    right: TypedFormula,
+) -> TypedFormula {
     // `a and b and c` is one conjunction of three.
     let parts = match (join(Vec::new()), left) {
-        (Formula::And(_), Formula::And(mut parts)) | (Formula::Or(_), Formula::Or(mut parts))
+        (TypedFormula::And(_), TypedFormula::And(mut parts))
+        | (TypedFormula::Or(_), TypedFormula::Or(mut parts))
             if !parts.is_empty() =>
         {
             parts.push(right);
@@ -450,7 +461,7 @@ fn joined(names: &[Name]) -> String {
 }
 
 /// The clock that an expression names: `x`, `P.x`, `x[2]`.
-fn clock_named(e: &ast::Expr, net: &Net) -> Option<ClockId> {
+fn clock_named(e: &ast::Expr, net: &QueryNetwork) -> Option<ClockId> {
     let name = match &e.kind {
         Syntax::Path(path) => joined(&path.names),
         Syntax::Index { of, index } => match (&of.kind, &index.kind) {

@@ -5,31 +5,31 @@ use hrdsl_syntax::ast::{self, Access, Name, StatementKind as Syntax};
 
 use crate::check::{
     checker::Checker,
-    state::scope::Env,
+    state::scope::ExprEnv,
     value::{element::type_of, range},
 };
 use crate::{
-    BinaryOp, Expr, ExprKind, Kind, Leaf, Place, Statement, Type, Value, Var, noun::Noun, report::functions,
-    types::Layout, types::starting_var,
+    AutomatonVar, BinaryOp, InferredType, Type, TypedExpr, TypedExprKind, TypedLvalue, TypedStatement, Value,
+    VariableRef, noun::Noun, report::functions, types::TypeLayout, types::starting_var,
 };
 
 /// The range of a loop's variable where nothing is known of its ends.
 const WIDE: (i64, i64) = (-(1 << 31), (1 << 31) - 1);
 
 /// The function whose statements are being checked.
-pub(in crate::check) struct Body<'n> {
+pub(in crate::check) struct FunctionBody<'n> {
     name: &'n str,
     /// As in [`Callable`](Callable).
     result: Option<Option<Type>>,
     /// INVARIANT: the locals of the environment are the parameters, then these.
-    pub locals: Vec<(Var, Span)>,
+    pub locals: Vec<(AutomatonVar, Span)>,
     /// The places of the variables of loops.
     loops: Vec<u16>,
     /// A statement may be executed more than once.
     again: bool,
 }
 
-impl<'n> Body<'n> {
+impl<'n> FunctionBody<'n> {
     pub fn new(name: &'n str, result: Option<Option<Type>>) -> Self {
         Self { name, result, locals: Vec::new(), loops: Vec::new(), again: false }
     }
@@ -46,12 +46,12 @@ pub(in crate::check) fn unread(statements: &[ast::Statement]) -> bool {
 }
 
 /// Whether no way leads past the end of these statements.
-pub(in crate::check) fn returns(statements: &[Statement]) -> bool {
+pub(in crate::check) fn returns(statements: &[TypedStatement]) -> bool {
     statements.iter().any(|s| match s {
-        Statement::Return(_) => true,
-        Statement::If { then, otherwise, .. } => returns(then) && returns(otherwise),
-        Statement::While { condition, .. } => condition.constant() == Some(Value::Bool(true)),
-        Statement::Assign { .. } | Statement::Call { .. } | Statement::For { .. } => false,
+        TypedStatement::Return(_) => true,
+        TypedStatement::If { then, otherwise, .. } => returns(then) && returns(otherwise),
+        TypedStatement::While { condition, .. } => condition.constant() == Some(Value::Bool(true)),
+        TypedStatement::Assign { .. } | TypedStatement::Call { .. } | TypedStatement::For { .. } => false,
     })
 }
 
@@ -60,9 +60,9 @@ impl Checker<'_> {
     pub(in crate::check) fn block(
         &mut self,
         statements: &[ast::Statement],
-        env: &mut Env,
-        body: &mut Body<'_>,
-    ) -> Vec<Statement> {
+        env: &mut ExprEnv,
+        body: &mut FunctionBody<'_>,
+    ) -> Vec<TypedStatement> {
         let (locals, layouts) = (env.locals.len(), env.layouts.len());
         let mut out = Vec::new();
         for statement in statements {
@@ -76,9 +76,9 @@ impl Checker<'_> {
     fn statement(
         &mut self,
         statement: &ast::Statement,
-        env: &mut Env,
-        body: &mut Body<'_>,
-        out: &mut Vec<Statement>,
+        env: &mut ExprEnv,
+        body: &mut FunctionBody<'_>,
+        out: &mut Vec<TypedStatement>,
     ) {
         match &statement.kind {
             Syntax::Var(var) => self.local_var(var, env, body, out),
@@ -86,46 +86,52 @@ impl Checker<'_> {
                 self.assign_in_function((target, access), *op, value, env, body, out);
             }
             Syntax::Call(call) => match self.called_function(call, env) {
-                Some((id, args)) => out.push(Statement::Call { function: id, args }),
+                Some((id, args)) => out.push(TypedStatement::Call { function: id, args }),
                 None if env.function(&call.name.text).is_some() => {}
                 None => self.no_such_statement(call, env),
             },
             Syntax::If { condition, then, otherwise } => {
-                let condition = self.expr_of(condition, Kind::Bool, env);
+                let condition = self.expr_of(condition, InferredType::Bool, env);
                 let then = self.block(then, env, body);
                 let otherwise = self.block(otherwise, env, body);
-                out.push(Statement::If { condition, then, otherwise });
+                out.push(TypedStatement::If { condition, then, otherwise });
             }
             Syntax::While { condition, body: inner } => {
-                let condition = self.expr_of(condition, Kind::Bool, env);
+                let condition = self.expr_of(condition, InferredType::Bool, env);
                 let again = std::mem::replace(&mut body.again, true);
                 let inner = self.block(inner, env, body);
                 body.again = again;
-                out.push(Statement::While { condition, body: inner });
+                out.push(TypedStatement::While { condition, body: inner });
             }
             Syntax::For { name, range, body: inner } => {
                 out.extend(self.for_loop(name, range, inner, env, body));
             }
             Syntax::Return(value) => {
                 let value = self.returned(value.as_ref(), statement, env, body);
-                out.push(Statement::Return(value));
+                out.push(TypedStatement::Return(value));
             }
             Syntax::Error => {}
         }
     }
 
     /// `var i: 0..5 = 0`
-    fn local_var(&mut self, var: &ast::Var, env: &mut Env, body: &mut Body<'_>, out: &mut Vec<Statement>) {
+    fn local_var(
+        &mut self,
+        var: &ast::Var,
+        env: &mut ExprEnv,
+        body: &mut FunctionBody<'_>,
+        out: &mut Vec<TypedStatement>,
+    ) {
         let span = var.name.span;
         let layout = self.layout(&var.ty).filter(|l| {
             self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of a function", span)
         });
-        let layout = layout.unwrap_or(Layout::Unknown);
+        let layout = layout.unwrap_or(TypeLayout::Unknown);
         let mut values = Vec::new();
         if let Some(e) = &var.init {
             match &layout {
-                Layout::Unknown => drop(self.item(e, env)),
-                Layout::Scalar(_) | Layout::Record(_) | Layout::Array(..) => {
+                TypeLayout::Unknown => drop(self.item(e, env)),
+                TypeLayout::Scalar(_) | TypeLayout::Record(_) | TypeLayout::Array(..) => {
                     self.item_for(e, &layout, env).flatten(&mut values);
                 }
             }
@@ -141,9 +147,9 @@ impl Checker<'_> {
             body.locals.push((starting_var(&name, ty, init), span));
             let value = values.next().filter(|_| given);
             // In a loop it starts anew each time.
-            let again = body.again.then(|| Expr::value(init, Kind::of(ty), span));
+            let again = body.again.then(|| TypedExpr::value(init, InferredType::of(ty), span));
             if let Some(value) = value.or(again) {
-                out.push(Statement::Assign { place: Place::slot(Leaf::Local(i)), value });
+                out.push(TypedStatement::Assign { place: TypedLvalue::slot(VariableRef::Local(i)), value });
             }
         }
     }
@@ -154,9 +160,9 @@ impl Checker<'_> {
         (target, access): (&Name, &[Access]),
         op: Option<BinaryOp>,
         value: &ast::Expr,
-        env: &mut Env,
-        body: &Body<'_>,
-        out: &mut Vec<Statement>,
+        env: &mut ExprEnv,
+        body: &FunctionBody<'_>,
+        out: &mut Vec<TypedStatement>,
     ) {
         let found = env.find(&target.text).map(|l| (l.leaf, l.ty, type_of(l)));
         let layout = match found {
@@ -164,12 +170,12 @@ impl Checker<'_> {
                 self.report(functions::clock(&target.text, target.span));
                 return;
             }
-            Some((Some(Leaf::Local(i)), ..)) if body.loops.contains(&i) => {
+            Some((Some(VariableRef::Local(i)), ..)) if body.loops.contains(&i) => {
                 self.report(functions::loop_variable(&target.text, target.span));
                 return;
             }
-            Some((Some(_), Kind::Unknown, _)) => Layout::Unknown,
-            Some((Some(_), _, ty)) => Layout::Scalar(ty),
+            Some((Some(_), InferredType::Unknown, _)) => TypeLayout::Unknown,
+            Some((Some(_), _, ty)) => TypeLayout::Scalar(ty),
             None => match env.layout(&target.text) {
                 Some(layout) => layout.clone(),
                 None => {
@@ -177,20 +183,20 @@ impl Checker<'_> {
                     let single = single.filter(|n| !n.is_empty() && !n.contains(['.', '[']));
                     let all: Vec<String> = single.chain(env.layout_names()).map(str::to_owned).collect();
                     self.unknown(Noun::Variable, target, &all, None);
-                    Layout::Unknown
+                    TypeLayout::Unknown
                 }
             },
         };
-        if layout == Layout::Unknown {
+        if layout == TypeLayout::Unknown {
             self.item(value, env);
             return;
         }
         let assigned = self.assigned(target, (layout, access), op, value, env);
-        out.extend(assigned.into_iter().map(|(place, value)| Statement::Assign { place, value }));
+        out.extend(assigned.into_iter().map(|(place, value)| TypedStatement::Assign { place, value }));
     }
 
     /// A call of what is no function.
-    fn no_such_statement(&mut self, call: &ast::Call, env: &mut Env) {
+    fn no_such_statement(&mut self, call: &ast::Call, env: &mut ExprEnv) {
         let name = &call.name;
         call.args.iter().flatten().for_each(|a| drop(self.item(a, env)));
         match self.kind_of(&name.text) {
@@ -211,15 +217,15 @@ impl Checker<'_> {
         name: &Name,
         range: &ast::Range,
         inner: &[ast::Statement],
-        env: &mut Env,
-        body: &mut Body<'_>,
-    ) -> Option<Statement> {
-        let lo = self.expr_of(&range.lo, Kind::Int, env);
-        let hi = range.hi.as_ref().map(|hi| self.expr_of(hi, Kind::Int, env));
+        env: &mut ExprEnv,
+        body: &mut FunctionBody<'_>,
+    ) -> Option<TypedStatement> {
+        let lo = self.expr_of(&range.lo, InferredType::Int, env);
+        let hi = range.hi.as_ref().map(|hi| self.expr_of(hi, InferredType::Int, env));
         if hi.is_none() {
             self.report(functions::open_range(range.span));
         }
-        let ends = |e: Option<&Expr>| e.and_then(|e| range::of(e, env)).unwrap_or(WIDE);
+        let ends = |e: Option<&TypedExpr>| e.and_then(|e| range::of(e, env)).unwrap_or(WIDE);
         let (least, most) = (ends(Some(&lo)).0, ends(hi.as_ref()).1);
         let ty = Type::Int { lo: least, hi: most.max(least) };
         let local = env.next_local();
@@ -233,7 +239,7 @@ impl Checker<'_> {
         if let Some(l) = env.locals.get_mut(usize::from(local)) {
             l.name.clear();
         }
-        Some(Statement::For { slot: Leaf::Local(local), lo, hi: hi?, body: inner })
+        Some(TypedStatement::For { slot: VariableRef::Local(local), lo, hi: hi?, body: inner })
     }
 
     /// `return e`
@@ -241,9 +247,9 @@ impl Checker<'_> {
         &mut self,
         value: Option<&ast::Expr>,
         statement: &ast::Statement,
-        env: &mut Env,
-        body: &Body<'_>,
-    ) -> Option<Expr> {
+        env: &mut ExprEnv,
+        body: &FunctionBody<'_>,
+    ) -> Option<TypedExpr> {
         match (value, body.result) {
             (None, None) => None,
             (None, Some(_)) => {
@@ -258,7 +264,7 @@ impl Checker<'_> {
             (Some(e), Some(Some(ty))) => Some(self.expr_for(e, ty, env)),
             (Some(e), Some(None)) => {
                 self.item(e, env);
-                Some(Expr { kind: ExprKind::Error, ty: Kind::Unknown, span: e.span })
+                Some(TypedExpr { kind: TypedExprKind::Error, ty: InferredType::Unknown, span: e.span })
             }
         }
     }

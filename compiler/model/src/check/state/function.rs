@@ -9,7 +9,7 @@ use crate::FunctionId;
 
 /// What is known of functions while they are checked.
 #[derive(Default)]
-pub(crate) struct Functions {
+pub(crate) struct FunctionCalls {
     /// The function whose body is being checked.
     pub open: Option<FunctionId>,
     /// By function: what its body calls, and where.

@@ -9,19 +9,19 @@ use hrdsl_source::{Enumeration, FileId, Span};
 use hrdsl_syntax::ast::{self, Instance, Name, Sort};
 
 use super::{
-    function::Functions,
-    item::Item,
-    phase::Phase,
-    record::{Fields, RecordEntry},
-    scope::Scope,
-    table::{Map, Table},
-    template::{Givens, Template},
+    function::FunctionCalls,
+    item::ExprItem,
+    phase::CheckPhase,
+    record::{DeclaredFields, RecordEntry},
+    scope::NameScope,
+    table::{NameTable, OrderedMap},
+    template::{DeclaredTemplate, TemplateArguments},
     world::WorldNames,
 };
 use crate::PlayerRef;
 
 /// What is checked: the items of a scenario and of its modules, and what of them could not be read.
-pub(crate) struct Source<'a> {
+pub(crate) struct CheckedSource<'a> {
     pub items: Vec<&'a ast::Item>,
     /// The first items come from modules.
     pub from_modules: usize,
@@ -32,36 +32,36 @@ pub(crate) struct Source<'a> {
     /// A member of the agent or automaton that is being checked could not be read.
     pub unread_members: bool,
     /// One declaration is checked alone.
-    pub alone: Option<Alone>,
+    pub alone: Option<LoneDeclaration>,
 }
 
 /// The declaration that is checked alone: the only one of its file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Alone {
+pub(crate) struct LoneDeclaration {
     pub file: FileId,
-    pub phase: Phase,
+    pub phase: CheckPhase,
 }
 
-impl Source<'_> {
+impl CheckedSource<'_> {
     /// Whether what is declared there in this phase is looked at.
-    pub fn looks_at(&self, phase: Phase, at: Span) -> bool {
+    pub fn looks_at(&self, phase: CheckPhase, at: Span) -> bool {
         self.alone.is_none_or(|alone| alone.file == at.file || alone.phase.speaks_of(phase))
     }
 
     /// Whether a phase comes to its turn: it does, unless the one declaration is of an earlier one.
-    pub fn reaches(&self, phase: Phase) -> bool {
+    pub fn reaches(&self, phase: CheckPhase) -> bool {
         self.alone.is_none_or(|alone| phase <= alone.phase)
     }
 }
 
 /// An agent or automaton: as written, and if it is an instance of a template, what is given.
-pub(crate) struct Declared<'a, T> {
+pub(crate) struct DeclaredPlayer<'a, T> {
     pub syntax: &'a T,
-    pub given: Option<Rc<Givens>>,
+    pub given: Option<Rc<TemplateArguments>>,
     pub instance: Option<&'a Instance>,
 }
 
-impl<T> Clone for Declared<'_, T> {
+impl<T> Clone for DeclaredPlayer<'_, T> {
     fn clone(&self) -> Self {
         Self { syntax: self.syntax, given: self.given.clone(), instance: self.instance }
     }
@@ -72,7 +72,7 @@ pub(crate) enum ConstState {
     Unseen,
     /// Its own value is being worked out.
     Open,
-    Done(Item),
+    Done(ExprItem),
 }
 
 pub(crate) struct ConstEntry<'a> {
@@ -84,10 +84,10 @@ pub(crate) struct ConstEntry<'a> {
 /// Enumerations and records.
 #[derive(Default)]
 pub(crate) struct TypeNames<'a> {
-    pub enums: Table,
+    pub enums: NameTable,
     /// By their bare names: the values of enumerations.
-    pub values: Map<&'a str, Vec<Enumeration>>,
-    pub record_names: Table,
+    pub values: OrderedMap<&'a str, Vec<Enumeration>>,
+    pub record_names: NameTable,
     pub records: Vec<RecordEntry<'a>>,
     /// How many records are being resolved, each in the one before.
     pub open_records: usize,
@@ -95,13 +95,13 @@ pub(crate) struct TypeNames<'a> {
 
 /// Templates, and the instance of one that is being checked.
 #[derive(Default)]
-pub(crate) struct Templates<'a> {
+pub(crate) struct TemplateNames<'a> {
     /// By sort and name.
-    pub declared: Map<(Sort, &'a str), Template<'a>>,
+    pub declared: OrderedMap<(Sort, &'a str), DeclaredTemplate<'a>>,
     /// Instances that could not be made: nothing is said about their names.
     pub broken_instances: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
-    pub given: Option<Rc<Givens>>,
+    pub given: Option<Rc<TemplateArguments>>,
     /// A template is being checked by itself, with some values.
     pub by_itself: bool,
 }
@@ -109,19 +109,19 @@ pub(crate) struct Templates<'a> {
 /// Events and stimuli, which are numbered together.
 #[derive(Default)]
 pub(crate) struct EventNames<'a> {
-    pub table: Table,
+    pub table: NameTable,
     /// By [`EventId`](crate::EventId): the parameters as declared.
-    pub fields: Vec<Fields>,
+    pub fields: Vec<DeclaredFields>,
     /// By [`EventId`](crate::EventId): the body of each stimulus.
     pub stimuli: Vec<Option<&'a ast::Stimulus>>,
 }
 
 /// Agents and automata.
 pub(crate) struct PlayerNames<'a> {
-    pub table: Table,
+    pub table: NameTable,
     pub ids: Vec<PlayerRef>,
-    pub agents: Vec<Declared<'a, ast::Agent>>,
-    pub automata: Vec<Declared<'a, ast::Automaton>>,
+    pub agents: Vec<DeclaredPlayer<'a, ast::Agent>>,
+    pub automata: Vec<DeclaredPlayer<'a, ast::Automaton>>,
     /// The names of all agents, `self` and `percept`.
     pub agent_names: Enumeration,
 }
@@ -130,21 +130,21 @@ pub(crate) struct PlayerNames<'a> {
 #[derive(Default)]
 pub(crate) struct SharedNames {
     /// The single values of the variables.
-    pub values: Table,
-    pub names: Table,
+    pub values: NameTable,
+    pub names: NameTable,
     /// What every automaton sees of them, and of the shared clocks.
-    pub scope: Rc<Scope>,
-    pub clocks: Table,
+    pub scope: Rc<NameScope>,
+    pub clocks: NameTable,
     /// What is known of the functions that are being checked.
-    pub functions: Functions,
+    pub functions: FunctionCalls,
 }
 
 /// Channels of automata.
 #[derive(Default)]
 pub(crate) struct ChannelNames {
-    pub table: Table,
+    pub table: NameTable,
     /// By [`ChannelId`](crate::ChannelId): the parameters as declared.
-    pub fields: Vec<Fields>,
+    pub fields: Vec<DeclaredFields>,
     /// Some participant of these channels has a diagnostic.
     pub vague: BTreeSet<String>,
 }
@@ -152,7 +152,7 @@ pub(crate) struct ChannelNames {
 /// The world's parts and names.
 pub(crate) struct WorldState<'a> {
     pub exists: bool,
-    pub parts: Map<&'a str, (&'a ast::Part, Span)>,
+    pub parts: OrderedMap<&'a str, (&'a ast::Part, Span)>,
     /// The parts that are being taken apart, the outermost first.
     pub open_parts: Vec<&'a str>,
     pub names: WorldNames,
@@ -162,7 +162,7 @@ pub(crate) struct WorldState<'a> {
 
 /// What a belief's rules need of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Mode {
+pub(crate) enum ArgumentMode {
     /// Nothing: the rules give it a value.
     Free,
     /// No value for a variable: some rule's head has `_` there.
@@ -177,7 +177,7 @@ pub(crate) struct GoalEntry {
     /// How many arguments are written.
     pub arity: usize,
     /// If their types are declared.
-    pub fields: Option<Fields>,
+    pub fields: Option<DeclaredFields>,
     /// Its declaration's name, or that of the first plan for it.
     pub place: Span,
 }
@@ -185,12 +185,12 @@ pub(crate) struct GoalEntry {
 /// What agents have declared, by agent.
 #[derive(Default)]
 pub(crate) struct AgentNames<'a> {
-    pub beliefs: Vec<Table>,
+    pub beliefs: Vec<NameTable>,
     /// By belief: the parameters as declared.
-    pub belief_fields: Vec<Vec<Fields>>,
-    pub goals: Vec<Map<String, GoalEntry>>,
+    pub belief_fields: Vec<Vec<DeclaredFields>>,
+    pub goals: Vec<OrderedMap<String, GoalEntry>>,
     /// By agent and belief: what its rules need of its arguments.
-    pub modes: BTreeMap<(u16, u16), Vec<Mode>>,
+    pub modes: BTreeMap<(u16, u16), Vec<ArgumentMode>>,
     /// The goals that some message asks somebody to achieve, by name.
     pub asked_goals: BTreeSet<&'a str>,
     /// The variables without a value that were read since this was emptied.
@@ -200,19 +200,19 @@ pub(crate) struct AgentNames<'a> {
 /// Networks of automata, and what is asked of them.
 #[derive(Default)]
 pub(crate) struct NetworkNames {
-    pub table: Table,
+    pub table: NameTable,
     /// By the place in the scenario's automata: what the edges of each see.
-    pub scopes: BTreeMap<usize, Rc<Scope>>,
-    pub queries: Table,
+    pub scopes: BTreeMap<usize, Rc<NameScope>>,
+    pub queries: NameTable,
 }
 
 /// What is judged and covered, and how tests are made.
 #[derive(Default)]
 pub(crate) struct JudgedNames {
-    pub requirements: Table,
-    pub points: Table,
-    pub crosses: Table,
-    pub suites: Table,
+    pub requirements: NameTable,
+    pub points: NameTable,
+    pub crosses: NameTable,
+    pub suites: NameTable,
     /// The suite that is being checked names a player that does not exist.
     pub unknown_player: bool,
 }

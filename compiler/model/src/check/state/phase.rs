@@ -4,7 +4,7 @@ use hrdsl_syntax::ast::{ItemKind, Sort};
 
 /// The phases in their order: each uses the names of those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Phase {
+pub(crate) enum CheckPhase {
     Vocabulary,
     World,
     Stimuli,
@@ -18,7 +18,7 @@ pub(crate) enum Phase {
     Tests,
 }
 
-impl Phase {
+impl CheckPhase {
     /// In which phase the body of a declaration is checked.
     pub fn of(kind: &ItemKind) -> Self {
         match kind {
@@ -31,34 +31,40 @@ impl Phase {
             | ItemKind::Event(_)
             | ItemKind::Var(_)
             | ItemKind::Channel(_)
-            | ItemKind::Error => Phase::Vocabulary,
-            ItemKind::Part(_) | ItemKind::Device(_) | ItemKind::World(_) => Phase::World,
-            ItemKind::Stimulus(_) => Phase::Stimuli,
-            ItemKind::Agent(_) => Phase::Agents,
-            ItemKind::Automaton(_) | ItemKind::Function(_) | ItemKind::Network { .. } => Phase::Automata,
-            ItemKind::Query(_) => Phase::Queries,
-            ItemKind::Require(_) | ItemKind::Assume(_) => Phase::Requirements,
-            ItemKind::Cover(_) | ItemKind::Cross(_) => Phase::Coverage,
-            ItemKind::Suite(_) => Phase::Suites,
-            ItemKind::System(_) => Phase::Systems,
-            ItemKind::Test(_) => Phase::Tests,
+            | ItemKind::Error => CheckPhase::Vocabulary,
+            ItemKind::Part(_) | ItemKind::Device(_) | ItemKind::World(_) => CheckPhase::World,
+            ItemKind::Stimulus(_) => CheckPhase::Stimuli,
+            ItemKind::Agent(_) => CheckPhase::Agents,
+            ItemKind::Automaton(_) | ItemKind::Function(_) | ItemKind::Network { .. } => CheckPhase::Automata,
+            ItemKind::Query(_) => CheckPhase::Queries,
+            ItemKind::Require(_) | ItemKind::Assume(_) => CheckPhase::Requirements,
+            ItemKind::Cover(_) | ItemKind::Cross(_) => CheckPhase::Coverage,
+            ItemKind::Suite(_) => CheckPhase::Suites,
+            ItemKind::System(_) => CheckPhase::Systems,
+            ItemKind::Test(_) => CheckPhase::Tests,
             ItemKind::Instance(instance) => match instance.sort {
-                Sort::Agent => Phase::Agents,
-                Sort::Automaton => Phase::Automata,
-                Sort::Require => Phase::Requirements,
-                Sort::Cover | Sort::Cross => Phase::Coverage,
+                Sort::Agent => CheckPhase::Agents,
+                Sort::Automaton => CheckPhase::Automata,
+                Sort::Require => CheckPhase::Requirements,
+                Sort::Cover | Sort::Cross => CheckPhase::Coverage,
             },
         }
     }
 
     /// Whether something of this phase can speak of what is checked in the other, beyond its name.
-    pub fn speaks_of(self, other: Phase) -> bool {
+    pub fn speaks_of(self, other: CheckPhase) -> bool {
         match other {
-            Phase::Vocabulary | Phase::World => true,
-            Phase::Queries | Phase::Requirements => self == Phase::Suites,
-            Phase::Coverage => matches!(self, Phase::Coverage | Phase::Suites | Phase::Tests),
-            Phase::Stimuli => matches!(self, Phase::Automata | Phase::Tests),
-            Phase::Agents | Phase::Automata | Phase::Suites | Phase::Systems | Phase::Tests => false,
+            CheckPhase::Vocabulary | CheckPhase::World => true,
+            CheckPhase::Queries | CheckPhase::Requirements => self == CheckPhase::Suites,
+            CheckPhase::Coverage => {
+                matches!(self, CheckPhase::Coverage | CheckPhase::Suites | CheckPhase::Tests)
+            }
+            CheckPhase::Stimuli => matches!(self, CheckPhase::Automata | CheckPhase::Tests),
+            CheckPhase::Agents
+            | CheckPhase::Automata
+            | CheckPhase::Suites
+            | CheckPhase::Systems
+            | CheckPhase::Tests => false,
         }
     }
 }

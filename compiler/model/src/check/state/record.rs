@@ -4,13 +4,13 @@ use std::rc::Rc;
 
 use hrdsl_syntax::ast::{Name, Param as SyntaxParam};
 
-use crate::types::Layout;
+use crate::types::TypeLayout;
 
 /// The most single values that something of a record or array type has.
 pub(crate) const MAX_PARTS: usize = 256;
 
 /// Parameters or fields as they were declared: names and layouts.
-pub(crate) type Fields = Rc<[(String, Layout)]>;
+pub(crate) type DeclaredFields = Rc<[(String, TypeLayout)]>;
 
 /// How far the fields of a record are known.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(crate) enum RecordState {
 pub(crate) struct RecordEntry<'a> {
     pub name: &'a Name,
     pub syntax: &'a [SyntaxParam],
-    pub fields: Fields,
+    pub fields: DeclaredFields,
     pub state: RecordState,
     /// How many single values it has.
     pub size: usize,

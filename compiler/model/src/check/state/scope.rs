@@ -1,20 +1,20 @@
 //! Scopes: what an expression can see besides constants.
 
-use super::table::Map;
+use super::table::OrderedMap;
 use std::rc::Rc;
 
 use hrdsl_source::Span;
 
-use crate::{FunctionId, Kind, Leaf, Type, Var, noun::Noun, types::Layout};
+use crate::{AutomatonVar, FunctionId, InferredType, Type, VariableRef, noun::Noun, types::TypeLayout};
 
 /// A name of the place's own scope.
 #[derive(Clone, Debug)]
-pub(crate) struct Local {
+pub(crate) struct LocalName {
     pub name: String,
     pub noun: Noun,
     /// `None`: a clock, which has no value in an expression.
-    pub leaf: Option<Leaf>,
-    pub ty: Kind,
+    pub leaf: Option<VariableRef>,
+    pub ty: InferredType,
     /// Of a whole number, if its type says so.
     pub range: Option<(i64, i64)>,
     /// It has a value here.
@@ -26,25 +26,25 @@ pub(crate) struct Local {
 /// Names that many expressions see: the variables and clocks of an automaton, or the shared variables. The numbers of
 /// the variables' leaves are their places.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Scope {
-    pub names: Map<String, Local>,
+pub(crate) struct NameScope {
+    pub names: OrderedMap<String, LocalName>,
     /// Without values; of an array each element, and the array itself.
-    pub clocks: Map<String, Local>,
+    pub clocks: OrderedMap<String, LocalName>,
     /// The sizes of the arrays of clocks.
-    pub clock_arrays: Map<String, Vec<u16>>,
-    /// As in [`Env::layouts`].
-    pub layouts: Map<String, Layout>,
-    pub functions: Map<String, Callable>,
+    pub clock_arrays: OrderedMap<String, Vec<u16>>,
+    /// As in [`ExprEnv::layouts`].
+    pub layouts: OrderedMap<String, TypeLayout>,
+    pub functions: OrderedMap<String, CallableFunction>,
     /// Of an automaton: where its locations are declared.
-    pub locations: Map<String, Span>,
+    pub locations: OrderedMap<String, Span>,
 }
 
 /// What a call of a function of automata needs to know.
 #[derive(Clone, Debug)]
-pub(crate) struct Callable {
+pub(crate) struct CallableFunction {
     pub id: FunctionId,
     /// A parameter whose type has a diagnostic is of unknown layout.
-    pub params: Rc<[(String, Layout)]>,
+    pub params: Rc<[(String, TypeLayout)]>,
     /// `None`: it has no value; of a type with a diagnostic nothing is known.
     pub result: Option<Option<Type>>,
     /// Its name, where it is declared.
@@ -53,7 +53,7 @@ pub(crate) struct Callable {
 
 /// Which arrays are indexed at run time. The others are taken apart, by indices that lie in them for certain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Elements {
+pub(crate) enum IndexedArrays {
     #[default]
     None,
     /// Those of the automaton's and the shared variables.
@@ -62,13 +62,13 @@ pub(crate) enum Elements {
     Locals,
 }
 
-impl Scope {
-    pub fn add_variable(&mut self, leaf: Leaf, var: &Var, place: Span) {
-        let local = Local {
+impl NameScope {
+    pub fn add_variable(&mut self, leaf: VariableRef, var: &AutomatonVar, place: Span) {
+        let local = LocalName {
             name: var.name.clone(),
             noun: Noun::Variable,
             leaf: Some(leaf),
-            ty: Kind::of(var.ty()),
+            ty: InferredType::of(var.ty()),
             range: var.ty().range(),
             bound: true,
             place,
@@ -77,26 +77,27 @@ impl Scope {
     }
 
     pub fn add_clock(&mut self, name: &str, place: Span) {
-        let (noun, ty) = (Noun::Clock, Kind::Unknown);
-        let clock = Local { name: name.to_owned(), noun, leaf: None, ty, range: None, bound: true, place };
+        let (noun, ty) = (Noun::Clock, InferredType::Unknown);
+        let clock =
+            LocalName { name: name.to_owned(), noun, leaf: None, ty, range: None, bound: true, place };
         self.clocks.insert(name.to_owned(), clock);
     }
 }
 
 /// The scope of an expression.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Env {
+pub(crate) struct ExprEnv {
     /// The place's own.
-    pub locals: Vec<Local>,
+    pub locals: Vec<LocalName>,
     /// The automaton's.
-    pub own: Rc<Scope>,
+    pub own: Rc<NameScope>,
     /// All automata's.
-    pub shared: Rc<Scope>,
+    pub shared: Rc<NameScope>,
     /// Names that stand for several locals, which are called `name.x` or `name[0]`.
-    pub layouts: Vec<(String, Layout)>,
+    pub layouts: Vec<(String, TypeLayout)>,
     /// Names that are bound by something with a diagnostic: nothing is said about what they stand for.
     pub broken: Vec<String>,
-    pub elements: Elements,
+    pub elements: IndexedArrays,
     /// A function that is called may change variables.
     pub effects: bool,
     /// Measurements are allowed; names of the world have this prefix (`robot.` inside of a part, else empty).
@@ -107,7 +108,7 @@ pub(crate) struct Env {
     pub noun: Option<Noun>,
 }
 
-impl Env {
+impl ExprEnv {
     /// Only constants.
     pub fn constants() -> Self {
         Self::default()
@@ -118,7 +119,7 @@ impl Env {
         Self { world: Some(prefix.to_owned()), noun: Some(Noun::Signal), ..Self::default() }
     }
 
-    pub fn find(&self, name: &str) -> Option<&Local> {
+    pub fn find(&self, name: &str) -> Option<&LocalName> {
         let local = self.locals.iter().find(|l| l.name == name);
         local
             .or_else(|| self.own.names.get(name))
@@ -129,21 +130,24 @@ impl Env {
 
     /// Where a name is declared that is a local's, or stands for several.
     pub fn place_of(&self, name: &str) -> Option<Span> {
-        let part = |l: &&Local| l.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['.', '[']));
+        let part =
+            |l: &&LocalName| l.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['.', '[']));
         self.find(name).or_else(|| self.all().find(part)).map(|l| l.place)
     }
 
     /// What a leaf stands for.
-    pub fn of_leaf(&self, leaf: Leaf) -> Option<&Local> {
+    pub fn of_leaf(&self, leaf: VariableRef) -> Option<&LocalName> {
         match leaf {
-            Leaf::Own(i) => self.own.names.get_index(usize::from(i)).map(|(_, local)| local),
-            Leaf::Shared(i) => self.shared.names.get_index(usize::from(i)).map(|(_, local)| local),
-            Leaf::Local(_) | Leaf::Signal(_) => self.locals.iter().find(|l| l.leaf == Some(leaf)),
+            VariableRef::Own(i) => self.own.names.get_index(usize::from(i)).map(|(_, local)| local),
+            VariableRef::Shared(i) => self.shared.names.get_index(usize::from(i)).map(|(_, local)| local),
+            VariableRef::Local(_) | VariableRef::Signal(_) => {
+                self.locals.iter().find(|l| l.leaf == Some(leaf))
+            }
         }
     }
 
     /// The function of automata of this name.
-    pub fn function(&self, name: &str) -> Option<&Callable> {
+    pub fn function(&self, name: &str) -> Option<&CallableFunction> {
         self.own.functions.get(name).or_else(|| self.shared.functions.get(name))
     }
 
@@ -152,7 +156,7 @@ impl Env {
     }
 
     /// All names, those of the place itself first.
-    pub fn all(&self) -> impl Iterator<Item = &Local> {
+    pub fn all(&self) -> impl Iterator<Item = &LocalName> {
         let own = self.own.names.values().chain(self.own.clocks.values());
         let shared = self.shared.names.values().chain(self.shared.clocks.values());
         self.locals.iter().chain(own).chain(shared)
@@ -164,26 +168,34 @@ impl Env {
         local.chain(self.own.layouts.keys().chain(self.shared.layouts.keys()).map(String::as_str))
     }
 
-    pub fn find_mut(&mut self, name: &str) -> Option<&mut Local> {
+    pub fn find_mut(&mut self, name: &str) -> Option<&mut LocalName> {
         self.locals.iter_mut().find(|l| l.name == name)
     }
 
-    /// The number of the next [`Leaf::Local`].
+    /// The number of the next [`VariableRef::LocalName`].
     pub fn next_local(&self) -> u16 {
         u16::try_from(self.locals.len()).unwrap_or(u16::MAX)
     }
 
     /// Adds a local without looking whether the name is free.
-    pub fn push_local(&mut self, name: &str, place: Span, noun: Noun, ty: Kind) -> u16 {
+    pub fn push_local(&mut self, name: &str, place: Span, noun: Noun, ty: InferredType) -> u16 {
         let at = self.next_local();
-        let leaf = Some(Leaf::Local(at));
-        self.locals.push(Local { name: name.to_owned(), noun, leaf, ty, range: None, bound: true, place });
+        let leaf = Some(VariableRef::Local(at));
+        self.locals.push(LocalName {
+            name: name.to_owned(),
+            noun,
+            leaf,
+            ty,
+            range: None,
+            bound: true,
+            place,
+        });
         at
     }
 
     /// The same for one whose type is declared.
     pub fn push_typed(&mut self, name: &str, place: Span, noun: Noun, ty: Type) -> u16 {
-        let at = self.push_local(name, place, noun, Kind::of(ty));
+        let at = self.push_local(name, place, noun, InferredType::of(ty));
         if let Some(local) = self.locals.last_mut() {
             local.range = ty.range();
         }
@@ -191,19 +203,19 @@ impl Env {
     }
 
     /// Says of what parts a name is.
-    pub fn declare_layout(&mut self, name: &str, layout: Layout) {
+    pub fn declare_layout(&mut self, name: &str, layout: TypeLayout) {
         if self.layout(name).is_none() {
             self.layouts.push((name.to_owned(), layout));
         }
     }
 
-    pub fn layout(&self, name: &str) -> Option<&Layout> {
+    pub fn layout(&self, name: &str) -> Option<&TypeLayout> {
         let local = self.layouts.iter().find(|(n, _)| n == name).map(|(_, layout)| layout);
         local.or_else(|| self.own.layouts.get(name)).or_else(|| self.shared.layouts.get(name))
     }
 
     /// A variable is of this kind, which was not known before.
-    pub fn refine(&mut self, leaf: Leaf, ty: Kind) {
+    pub fn refine(&mut self, leaf: VariableRef, ty: InferredType) {
         if let Some(local) = self.locals.iter_mut().find(|l| l.leaf == Some(leaf)) {
             local.ty = local.ty.with(ty).unwrap_or(local.ty);
         }

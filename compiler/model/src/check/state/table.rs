@@ -5,38 +5,38 @@ use indexmap::IndexMap;
 use rustc_hash::FxBuildHasher;
 
 /// In the order of insertion, whatever the hashes.
-pub(crate) type Map<K, V> = IndexMap<K, V, FxBuildHasher>;
+pub(crate) type OrderedMap<K, V> = IndexMap<K, V, FxBuildHasher>;
 
 /// The most names that one table holds: ids are 16 bits wide, and the last number stands for nothing.
 pub(crate) const MAX_NAMES: usize = u16::MAX as usize;
 
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Table {
-    entries: Map<String, Span>,
+pub(crate) struct NameTable {
+    entries: OrderedMap<String, Span>,
     overflown: bool,
 }
 
 /// Why a name was not entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Refused {
+pub(crate) enum RefusedName {
     /// It is there already, declared here.
     Taken(Span),
     /// There is no room; said of the first name only.
     Full { first: bool },
 }
 
-impl Table {
+impl NameTable {
     /// Enters a new name.
-    pub fn insert(&mut self, name: &str, span: Span) -> Result<u16, Refused> {
+    pub fn insert(&mut self, name: &str, span: Span) -> Result<u16, RefusedName> {
         if let Some(first) = self.entries.get(name) {
-            return Err(Refused::Taken(*first));
+            return Err(RefusedName::Taken(*first));
         }
         match u16::try_from(self.entries.len()) {
             Ok(id) if self.entries.len() < MAX_NAMES => {
                 self.entries.insert(name.to_owned(), span);
                 Ok(id)
             }
-            Ok(_) | Err(_) => Err(Refused::Full { first: !std::mem::replace(&mut self.overflown, true) }),
+            Ok(_) | Err(_) => Err(RefusedName::Full { first: !std::mem::replace(&mut self.overflown, true) }),
         }
     }
 
@@ -69,13 +69,13 @@ mod tests {
 
     #[test]
     fn ids_end_before_they_would_be_wrong() {
-        let mut table = Table::default();
+        let mut table = NameTable::default();
         for i in 0..MAX_NAMES {
             assert_eq!(table.insert(&format!("e{i}"), Span::default()), Ok(u16::try_from(i).unwrap()));
         }
-        assert_eq!(table.insert("e7", Span::default()), Err(Refused::Taken(Span::default())));
-        assert_eq!(table.insert("more", Span::default()), Err(Refused::Full { first: true }));
-        assert_eq!(table.insert("yet", Span::default()), Err(Refused::Full { first: false }));
+        assert_eq!(table.insert("e7", Span::default()), Err(RefusedName::Taken(Span::default())));
+        assert_eq!(table.insert("more", Span::default()), Err(RefusedName::Full { first: true }));
+        assert_eq!(table.insert("yet", Span::default()), Err(RefusedName::Full { first: false }));
         assert_eq!((table.get("e65534"), table.get("more")), (Some(65_534), None));
     }
 }

@@ -3,19 +3,19 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, Name};
 
-use super::{item::Item, table::Map};
-use crate::{ActorId, EventPattern, PointId, noun::Noun};
+use super::{item::ExprItem, table::OrderedMap};
+use crate::{ActorId, CoverpointId, EventPattern, noun::Noun};
 
 /// What a parameter of a template stands for.
 #[derive(Clone, Debug)]
-pub(crate) enum Given {
-    Value(Item),
+pub(crate) enum TemplateArgument {
+    Value(ExprItem),
     /// One event or several alternatives.
     Events(Vec<EventPattern>),
     Actor(ActorId),
     /// Something of the world, by its full name.
     Thing(Noun, String),
-    Point(PointId),
+    Point(CoverpointId),
     /// Not known: in the check of the template by itself, or after a wrong argument. Nothing is said about it.
     Unknown,
 }
@@ -23,31 +23,31 @@ pub(crate) enum Given {
 /// A parameter with what it stands for.
 #[derive(Clone, Debug)]
 pub(crate) struct BoundParam {
-    pub given: Given,
+    pub given: TemplateArgument,
     /// The parameter's name, where it is declared.
     pub place: Span,
 }
 
-pub(crate) type Givens = Map<String, BoundParam>;
+pub(crate) type TemplateArguments = OrderedMap<String, BoundParam>;
 
-impl Given {
+impl TemplateArgument {
     /// Whether it is what a parameter of this kind stands for.
     pub(crate) fn is(&self, kind: Noun) -> bool {
         match self {
-            Given::Unknown => true,
-            Given::Value(_) => false,
-            Given::Events(_) => kind == Noun::Event,
-            Given::Actor(_) => kind == Noun::Actor,
-            Given::Point(_) => kind == Noun::Point,
-            Given::Thing(Noun::Arm | Noun::Gripper, _) if kind == Noun::Device => true,
-            Given::Thing(of, _) => *of == kind,
+            TemplateArgument::Unknown => true,
+            TemplateArgument::Value(_) => false,
+            TemplateArgument::Events(_) => kind == Noun::Event,
+            TemplateArgument::Actor(_) => kind == Noun::Actor,
+            TemplateArgument::Point(_) => kind == Noun::Point,
+            TemplateArgument::Thing(Noun::Arm | Noun::Gripper, _) if kind == Noun::Device => true,
+            TemplateArgument::Thing(of, _) => *of == kind,
         }
     }
 }
 
 /// A declaration with parameters.
 #[derive(Clone, Copy)]
-pub(crate) struct Template<'a> {
+pub(crate) struct DeclaredTemplate<'a> {
     pub kind: &'a ItemKind,
     pub name: &'a Name,
     pub params: &'a [ast::Param],

@@ -1,6 +1,6 @@
 //! Names of the world: full names (`robot.palm`) of everything in it, by kind.
 
-use super::table::Table;
+use super::table::NameTable;
 use std::collections::BTreeSet;
 
 use hrdsl_source::Span;
@@ -10,13 +10,13 @@ use crate::{BodyId, BodyRef, CurrentId, noun::Noun};
 /// Full names (`robot.palm`) of everything in the world, by kind.
 #[derive(Default)]
 pub(crate) struct WorldNames {
-    pub instances: Table,
-    pub bodies: Table,
-    pub joints: Table,
-    pub arms: Table,
-    pub grippers: Table,
-    pub currents: Table,
-    pub signals: Table,
+    pub instances: NameTable,
+    pub bodies: NameTable,
+    pub joints: NameTable,
+    pub arms: NameTable,
+    pub grippers: NameTable,
+    pub currents: NameTable,
+    pub signals: NameTable,
     /// Instances of unknown parts: nothing is said about what they have.
     pub broken: BTreeSet<String>,
     /// How many members there are so far.
@@ -24,7 +24,7 @@ pub(crate) struct WorldNames {
 }
 
 impl WorldNames {
-    fn tables(&self) -> [(Noun, &Table); 7] {
+    fn tables(&self) -> [(Noun, &NameTable); 7] {
         [
             (Noun::Body, &self.bodies),
             (Noun::Current, &self.currents),

@@ -7,11 +7,12 @@ use hrdsl_syntax::ast::{self, CrossMemberKind as Member, ExprKind as Syntax, Ite
 
 use crate::check::{
     checker::Checker,
-    state::{scope::Env, table::Table, template::Given},
+    state::{scope::ExprEnv, table::NameTable, template::TemplateArgument},
     vocabulary::template::template,
 };
 use crate::{
-    Bin, BinaryOp, Condition, CoverPoint, Cross, CrossBin, EventPattern, PointId, UnaryOp, Value,
+    BinCondition, BinaryOp, CoverBin, CoverCross, CoverPoint, CoverpointId, CrossBin, EventPattern, UnaryOp,
+    Value,
     noun::Noun,
     report::{coverage::overlap, types},
 };
@@ -31,7 +32,7 @@ impl Checker<'_> {
                     self.add_point(&cover.name, cover, resolved, span);
                 }
                 ItemKind::Instance(instance) if instance.sort == Sort::Cover => {
-                    let Some((template, given)) = self.instance(instance, &Env::constants()) else {
+                    let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
                         continue;
                     };
                     let ItemKind::Cover(cover) = template.kind else { continue };
@@ -55,7 +56,7 @@ impl Checker<'_> {
                     self.cross(&cross.name, resolved);
                 }
                 ItemKind::Instance(instance) if instance.sort == Sort::Cross => {
-                    let Some((template, given)) = self.instance(instance, &Env::constants()) else {
+                    let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
                         continue;
                     };
                     let ItemKind::Cross(cross) = template.kind else { continue };
@@ -72,7 +73,7 @@ impl Checker<'_> {
         &mut self,
         name: &Name,
         syntax: &ast::Cover,
-        (count, bins): (Vec<EventPattern>, Vec<Bin>),
+        (count, bins): (Vec<EventPattern>, Vec<CoverBin>),
         span: Span,
     ) {
         self.not_a_template(Sort::Cover, name);
@@ -82,24 +83,25 @@ impl Checker<'_> {
         }
     }
 
-    fn cross(&mut self, name: &Name, cross: Cross) {
+    fn cross(&mut self, name: &Name, cross: CoverCross) {
         self.not_a_template(Sort::Cross, name);
         if self.issues.declare(&mut self.judged.crosses, Noun::Cross, name).is_some() {
-            self.s.crosses.push(Cross { name: name.text.clone(), ..cross });
+            self.s.crosses.push(CoverCross { name: name.text.clone(), ..cross });
         }
     }
 
-    fn point_of(&mut self, cover: &ast::Cover) -> (Vec<EventPattern>, Vec<Bin>) {
+    fn point_of(&mut self, cover: &ast::Cover) -> (Vec<EventPattern>, Vec<CoverBin>) {
         let count = self.patterns(&cover.count);
-        let mut table = Table::default();
-        let (mut bins, mut covered) = (Vec::new(), Covered::default());
+        let mut table = NameTable::default();
+        let (mut bins, mut covered) = (Vec::new(), CoveredBins::default());
         for bin in &cover.bins {
             self.issues.declare(&mut table, Noun::Bin, &bin.name);
-            let resolved = self.bin(bin).unwrap_or(Bin { name: bin.name.text.clone(), lo: -1, hi: Some(-1) });
+            let resolved =
+                self.bin(bin).unwrap_or(CoverBin { name: bin.name.text.clone(), lo: -1, hi: Some(-1) });
             if resolved.lo >= 0 {
                 let (lo, hi) = (resolved.lo, resolved.hi.unwrap_or(i64::MAX));
                 if let Some(other) = covered.add(lo, hi, bins.len()) {
-                    let (other, first): (&Bin, Span) = (&bins[other], cover.bins[other].span);
+                    let (other, first): (&CoverBin, Span) = (&bins[other], cover.bins[other].span);
                     let issue = overlap(&bin.name.text, bin.span, &other.name, first);
                     self.report(issue);
                 }
@@ -109,7 +111,7 @@ impl Checker<'_> {
         (count, bins)
     }
 
-    fn bin(&mut self, bin: &ast::Bin) -> Option<Bin> {
+    fn bin(&mut self, bin: &ast::Bin) -> Option<CoverBin> {
         let lo = self.count(&bin.lo, "a bin's number", 0)?;
         let hi = match &bin.hi {
             Some(hi) => Some(self.count(hi, "a bin's number", 0)?),
@@ -119,16 +121,16 @@ impl Checker<'_> {
             self.report(types::empty_range(Value::Int(lo), Value::Int(hi), bin.span));
             return None;
         }
-        Some(Bin { name: bin.name.text.clone(), lo, hi })
+        Some(CoverBin { name: bin.name.text.clone(), lo, hi })
     }
 
-    fn cross_of(&mut self, cross: &ast::Cross, span: Span) -> Cross {
+    fn cross_of(&mut self, cross: &ast::Cross, span: Span) -> CoverCross {
         let mut points = Vec::new();
         for name in &cross.points {
             points.extend(self.point_named(name));
         }
         let whole = points.len() == cross.points.len();
-        let mut titles = Table::default();
+        let mut titles = NameTable::default();
         let (mut bins, mut ignore) = (Vec::new(), Vec::new());
         for member in &cross.members {
             match &member.kind {
@@ -142,20 +144,25 @@ impl Checker<'_> {
                 Member::Allow(_) | Member::Error => {}
             }
         }
-        Cross { name: cross.name.text.clone(), points, bins, ignore, origin: span }
+        CoverCross { name: cross.name.text.clone(), points, bins, ignore, origin: span }
     }
 
     /// A formula over `point.bin`.
-    fn cross_condition(&mut self, e: &ast::Expr, points: &[PointId], whole: bool) -> Option<Condition> {
+    fn cross_condition(
+        &mut self,
+        e: &ast::Expr,
+        points: &[CoverpointId],
+        whole: bool,
+    ) -> Option<BinCondition> {
         match &e.kind {
             Syntax::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
                 let (l, r) =
                     (self.cross_condition(left, points, whole), self.cross_condition(right, points, whole));
                 let both = vec![l?, r?];
-                Some(if *op == BinaryOp::And { Condition::And(both) } else { Condition::Or(both) })
+                Some(if *op == BinaryOp::And { BinCondition::And(both) } else { BinCondition::Or(both) })
             }
             Syntax::Unary { op: UnaryOp::Not, operand } => {
-                Some(Condition::Not(Box::new(self.cross_condition(operand, points, whole)?)))
+                Some(BinCondition::Not(Box::new(self.cross_condition(operand, points, whole)?)))
             }
             Syntax::Path(path) => match path.names.as_slice() {
                 [point, bin] => self.in_bin(point, bin, points, whole),
@@ -172,24 +179,34 @@ impl Checker<'_> {
         }
     }
 
-    fn in_bin(&mut self, point: &Name, bin: &Name, points: &[PointId], whole: bool) -> Option<Condition> {
+    fn in_bin(
+        &mut self,
+        point: &Name,
+        bin: &Name,
+        points: &[CoverpointId],
+        whole: bool,
+    ) -> Option<BinCondition> {
         match self.given(&point.text) {
-            Some(Given::Unknown) => {
+            Some(TemplateArgument::Unknown) => {
                 self.refer_given(point);
                 return None;
             }
-            Some(Given::Point(id)) if points.contains(id) => {
+            Some(TemplateArgument::Point(id)) if points.contains(id) => {
                 let id = *id;
                 self.refer_given(point);
                 return self.bin_of(id, bin);
             }
             Some(
-                Given::Point(_) | Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Thing(..),
+                TemplateArgument::Point(_)
+                | TemplateArgument::Value(_)
+                | TemplateArgument::Events(_)
+                | TemplateArgument::Actor(_)
+                | TemplateArgument::Thing(..),
             )
             | None => {}
         }
-        let name_of = |c: &Self, p: &PointId| c.s.points[usize::from(p.0)].name.clone();
-        let here = self.judged.points.get(&point.text).map(PointId).filter(|id| points.contains(id));
+        let name_of = |c: &Self, p: &CoverpointId| c.s.points[usize::from(p.0)].name.clone();
+        let here = self.judged.points.get(&point.text).map(CoverpointId).filter(|id| points.contains(id));
         let Some(id) = here else {
             // A point whose name is wrong may be the one that is meant.
             if !whole {
@@ -204,7 +221,7 @@ impl Checker<'_> {
         self.bin_of(id, bin)
     }
 
-    fn bin_of(&mut self, id: PointId, bin: &Name) -> Option<Condition> {
+    fn bin_of(&mut self, id: CoverpointId, bin: &Name) -> Option<BinCondition> {
         let of_point = &self.s.points[usize::from(id.0)].bins;
         let Some(at) = of_point.iter().position(|b| b.name == bin.text) else {
             let bins: Vec<String> = of_point.iter().map(|b| b.name.clone()).collect();
@@ -213,20 +230,20 @@ impl Checker<'_> {
         };
         let place = self.s.places.bins.get(usize::from(id.0)).and_then(|bins| bins.get(at)).copied();
         self.refer(bin, place);
-        Some(Condition::In { point: id, bin: u16::try_from(at).unwrap_or(u16::MAX) })
+        Some(BinCondition::In { point: id, bin: u16::try_from(at).unwrap_or(u16::MAX) })
     }
 }
 
 /// Which bin has each number: of those that share it the first. Wider numbers than those of bins have room for the end.
 #[derive(Default)]
-struct Covered {
+struct CoveredBins {
     /// By its first number: the last one, and the bin. They do not meet.
     pieces: BTreeMap<i128, (i128, usize)>,
     /// The same, neighbours joined.
     whole: BTreeMap<i128, i128>,
 }
 
-impl Covered {
+impl CoveredBins {
     /// Adds a bin; gives one that it meets.
     fn add(&mut self, lo: i64, hi: i64, bin: usize) -> Option<usize> {
         let (lo, hi) = (i128::from(lo), i128::from(hi));
@@ -259,7 +276,7 @@ mod tests {
     fn a_bin_meets_another_if_they_share_a_number() {
         let mut dice = 7u64;
         for _ in 0..300 {
-            let (mut covered, mut all) = (Covered::default(), Vec::new());
+            let (mut covered, mut all) = (CoveredBins::default(), Vec::new());
             for bin in 0..12 {
                 dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let lo = (dice >> 33) as i64 % 40;

@@ -3,11 +3,11 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemKind, Name, PatternKind, Sort};
 
-use crate::check::state::phase::Phase;
-use crate::check::{checker::Checker, state::scope::Env, vocabulary::template::template};
+use crate::check::state::phase::CheckPhase;
+use crate::check::{checker::Checker, state::scope::ExprEnv, vocabulary::template::template};
 use crate::{
-    Assumption, Expr, ExprKind, Kind, Leaf, Pattern, Requirement, RequirementKind, noun::Noun,
-    report::requirements::says_nothing,
+    InferredType, RequirementKind, RequirementPattern, TypedAssumption, TypedExpr, TypedExprKind,
+    TypedRequirement, VariableRef, noun::Noun, report::requirements::says_nothing,
 };
 
 impl Checker<'_> {
@@ -21,12 +21,12 @@ impl Checker<'_> {
             match item {
                 _ if template(item).is_some() => {}
                 ItemKind::Require(require) => {
-                    let looked_at = self.source.looks_at(Phase::Requirements, span);
+                    let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
                     let resolved = if looked_at { self.resolved(require) } else { None };
                     self.requirement(&require.name, resolved, require.pattern.span, span);
                 }
                 ItemKind::Instance(instance) if instance.sort == Sort::Require => {
-                    let Some((template, given)) = self.instance(instance, &Env::measured("")) else {
+                    let Some((template, given)) = self.instance(instance, &ExprEnv::measured("")) else {
                         continue;
                     };
                     let ItemKind::Require(require) = template.kind else { continue };
@@ -34,7 +34,7 @@ impl Checker<'_> {
                     let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
                     self.requirement(&instance.name, resolved, instance.span, span);
                 }
-                ItemKind::Assume(assume) if self.source.looks_at(Phase::Requirements, span) => {
+                ItemKind::Assume(assume) if self.source.looks_at(CheckPhase::Requirements, span) => {
                     self.assume(assume, span);
                 }
                 _ => {}
@@ -43,7 +43,7 @@ impl Checker<'_> {
     }
 
     /// What a requirement says, whatever its name.
-    fn resolved(&mut self, require: &ast::Require) -> Option<(RequirementKind, String, Pattern)> {
+    fn resolved(&mut self, require: &ast::Require) -> Option<(RequirementKind, String, RequirementPattern)> {
         let kind = match self.choice(Noun::RequirementKind, &require.kind, &["safety", "functional"]) {
             Some(0) => RequirementKind::Safety,
             Some(_) | None => RequirementKind::Functional,
@@ -56,7 +56,7 @@ impl Checker<'_> {
     fn requirement(
         &mut self,
         name: &Name,
-        resolved: Option<(RequirementKind, String, Pattern)>,
+        resolved: Option<(RequirementKind, String, RequirementPattern)>,
         text: Span,
         span: Span,
     ) {
@@ -64,18 +64,18 @@ impl Checker<'_> {
         let new = self.issues.declare(&mut self.judged.requirements, Noun::Requirement, name).is_some();
         if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
             let name = name.text.clone();
-            self.s.requirements.push(Requirement { name, kind, title, pattern, text, span });
+            self.s.requirements.push(TypedRequirement { name, kind, title, pattern, text, span });
         }
     }
 
-    fn requirement_pattern(&mut self, pattern: &ast::Pattern) -> Option<Pattern> {
+    fn requirement_pattern(&mut self, pattern: &ast::Pattern) -> Option<RequirementPattern> {
         Some(match &pattern.kind {
             PatternKind::Causes { trigger, response, within } => {
                 let (trigger, response) = (self.patterns(trigger), self.patterns(response));
                 let within = within.as_ref().and_then(|e| self.time(e, "the time to respond", true));
-                Pattern::Causes { trigger, response, within }
+                RequirementPattern::Causes { trigger, response, within }
             }
-            PatternKind::Forbids { trigger, forbidden, until } => Pattern::Forbids {
+            PatternKind::Forbids { trigger, forbidden, until } => RequirementPattern::Forbids {
                 trigger: self.patterns(trigger),
                 forbidden: self.patterns(forbidden),
                 until: self.patterns(until),
@@ -83,20 +83,22 @@ impl Checker<'_> {
             PatternKind::NeverWhile { events, condition } => {
                 let events = self.patterns(events);
                 let condition = condition.as_ref().map(|e| self.condition(e));
-                Pattern::NeverWhile { events, condition }
+                RequirementPattern::NeverWhile { events, condition }
             }
-            PatternKind::Globally(condition) => Pattern::Globally(self.condition(condition)),
+            PatternKind::Globally(condition) => RequirementPattern::Globally(self.condition(condition)),
             PatternKind::Error => return None,
         })
     }
 
     /// A boolean that depends on the world.
-    fn condition(&mut self, e: &ast::Expr) -> Expr {
-        let e = self.expr_of(e, Kind::Bool, &mut Env::measured(""));
+    fn condition(&mut self, e: &ast::Expr) -> TypedExpr {
+        let e = self.expr_of(e, InferredType::Bool, &mut ExprEnv::measured(""));
         let mut reads = false;
         e.each(&mut |part| {
-            reads |=
-                matches!(part.kind, ExprKind::Term(_) | ExprKind::Leaf(Leaf::Signal(_)) | ExprKind::Error);
+            reads |= matches!(
+                part.kind,
+                TypedExprKind::Term(_) | TypedExprKind::Leaf(VariableRef::Signal(_)) | TypedExprKind::Error
+            );
         });
         // A parameter may stand for something measured.
         if !reads && !self.templates.by_itself {
@@ -110,6 +112,6 @@ impl Checker<'_> {
         let events = self.patterns(&assume.events);
         let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true));
         let at_most = at_most.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
-        self.s.assumptions.push(Assumption { events, at_most, within, span });
+        self.s.assumptions.push(TypedAssumption { events, at_most, within, span });
     }
 }

@@ -6,32 +6,32 @@ use hrdsl_syntax::ast::{
     self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
 };
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::unread;
 use crate::check::{
-    agents::agent::Scope,
+    agents::agent::AgentScope,
     checker::{Checker, NOBODY},
-    state::{issues::too_many, scope::Env, table::MAX_NAMES},
+    state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
 use crate::{
-    Ask, Choice, ChoiceCondition, ChoiceKind, CrossId, Delays, Dim, EventId, EventPattern, Explore, Kind,
-    Method, ModelGoal, NetworkId, Pattern, PlayerRef, QueryId, RequirementId, Role, SearchGoal, Suite, Value,
-    WitnessKind,
+    ChoiceKind, CrossId, DelayChoice, Dimension, EventId, EventPattern, ExploreMode, InferredType, ModelGoal,
+    NetworkId, PlayerRef, QueryId, RequirementId, RequirementPattern, Role, SearchGoal, TypedChoice,
+    TypedChoiceCondition, TypedMethod, TypedQueryKind, TypedSuite, Value, WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
 
 /// What the members of a suite say, whatever its method.
 #[derive(Default)]
-struct Said {
-    choose: Vec<Choice>,
-    explore: Option<Explore>,
+struct SuiteMembers {
+    choose: Vec<TypedChoice>,
+    explore: Option<ExploreMode>,
     goals: Vec<SearchGoal>,
     reached: Vec<ModelGoal>,
     stop_after: Option<u32>,
     minimise: bool,
     witness: WitnessKind,
-    delays: Delays,
+    delays: DelayChoice,
     stimuli: Vec<EventId>,
     awaits: Vec<EventPattern>,
     length: Option<(u32, u32)>,
@@ -46,7 +46,7 @@ impl Checker<'_> {
         self.source.unread_members = self.players.agents.iter().any(|a| unread::in_agent(a.syntax));
         for (item, span) in self.each_item() {
             if let ItemKind::Suite(suite) = item {
-                let looked_at = self.source.looks_at(Phase::Suites, span);
+                let looked_at = self.source.looks_at(CheckPhase::Suites, span);
                 let resolved = if looked_at { self.suite(suite, span) } else { None };
                 let new = self.issues.declare(&mut self.judged.suites, Noun::Suite, &suite.name).is_some();
                 self.s.suites.extend(resolved.filter(|_| new));
@@ -55,7 +55,7 @@ impl Checker<'_> {
         self.source.unread_members = false;
     }
 
-    fn suite(&mut self, suite: &ast::Suite, span: Span) -> Option<Suite> {
+    fn suite(&mut self, suite: &ast::Suite, span: Span) -> Option<TypedSuite> {
         let players = match &suite.method {
             SyntaxMethod::Agents(names) => self.suite_players(names),
             SyntaxMethod::Search(_) | SyntaxMethod::Random => Vec::new(),
@@ -64,7 +64,7 @@ impl Checker<'_> {
             SyntaxMethod::Search(name) => self.suite_network(name),
             SyntaxMethod::Agents(_) | SyntaxMethod::Random => None,
         };
-        let mut said = Said::default();
+        let mut said = SuiteMembers::default();
         for member in &suite.members {
             if self.fits_method(member, &suite.method) {
                 let by_search = matches!(suite.method, SyntaxMethod::Search(_));
@@ -73,18 +73,18 @@ impl Checker<'_> {
         }
         let method = match &suite.method {
             SyntaxMethod::Agents(_) => {
-                let explore = said.explore.unwrap_or(Explore::Wise(2));
-                let Said { choose, reached: goals, stop_after, minimise, .. } = said;
-                Method::Agents { players, choose, explore, stop_after, goals, minimise }
+                let explore = said.explore.unwrap_or(ExploreMode::Wise(2));
+                let SuiteMembers { choose, reached: goals, stop_after, minimise, .. } = said;
+                TypedMethod::Agents { players, choose, explore, stop_after, goals, minimise }
             }
             SyntaxMethod::Search(_) => {
                 if !suite.members.iter().any(is_goal) {
                     let message = format!("the suite `{}` has nothing to reach", suite.name.text);
                     self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
                 }
-                let Said { goals, witness, delays, .. } = said;
+                let SuiteMembers { goals, witness, delays, .. } = said;
                 let network = self.of_network(network?, &goals, suite);
-                Method::Search { network, goals, witness, delays }
+                TypedMethod::Search { network, goals, witness, delays }
             }
             SyntaxMethod::Random => {
                 if !suite.members.iter().any(|m| matches!(m.kind, Member::Stimuli(_) | Member::Error)) {
@@ -93,7 +93,7 @@ impl Checker<'_> {
                 }
                 let (stimuli, awaits) = (said.stimuli, said.awaits);
                 let (length, pause) = (said.length.unwrap_or((5, 20)), said.pause.unwrap_or((0.0, 10.0)));
-                Method::Random {
+                TypedMethod::Random {
                     stimuli,
                     awaits,
                     length_lo: length.0,
@@ -103,7 +103,7 @@ impl Checker<'_> {
                 }
             }
         };
-        Some(Suite {
+        Some(TypedSuite {
             name: suite.name.text.clone(),
             method,
             tests: said.tests.unwrap_or(100),
@@ -200,12 +200,18 @@ impl Checker<'_> {
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn member(&mut self, member: &SuiteMember, players: &[PlayerRef], by_search: bool, said: &mut Said) {
+    fn member(
+        &mut self,
+        member: &SuiteMember,
+        players: &[PlayerRef],
+        by_search: bool,
+        said: &mut SuiteMembers,
+    ) {
         match &member.kind {
             Member::Choose { any, belief, agent, per, condition } => {
                 let choice = self.choose(*any, belief, agent, per.as_ref(), players);
                 let condition = condition.as_ref().and_then(|e| self.choice_condition(agent, e));
-                said.choose.extend(choice.map(|choice| Choice { condition, ..choice }));
+                said.choose.extend(choice.map(|choice| TypedChoice { condition, ..choice }));
             }
             Member::Explore(call) => said.explore = self.explore(call),
             Member::StopAfter(e) => {
@@ -240,7 +246,7 @@ impl Checker<'_> {
                 said.witness = found.map_or(said.witness, |i| kinds[i]);
             }
             Member::Delays(word) => {
-                let kinds = [Delays::Earliest, Delays::Latest, Delays::Sampled];
+                let kinds = [DelayChoice::Earliest, DelayChoice::Latest, DelayChoice::Sampled];
                 let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
                 said.delays = found.map_or(said.delays, |i| kinds[i]);
             }
@@ -275,7 +281,7 @@ impl Checker<'_> {
     }
 
     /// `violation of R1, R2`, `trigger of R1`
-    fn reach_of(&mut self, what: &Name, list: &[Name], said: &mut Said) {
+    fn reach_of(&mut self, what: &Name, list: &[Name], said: &mut SuiteMembers) {
         let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
         for name in list {
             if self.judged.requirements.get(&name.text).is_none() {
@@ -310,18 +316,20 @@ impl Checker<'_> {
         self.refer(name, self.networks.queries.span_of(&name.text));
         let at = self.s.queries.iter().position(|q| q.name == name.text)?;
         match &self.s.queries[at].ask {
-            Ask::Possibly(f) if f.asks_deadlock() => {
+            TypedQueryKind::Possibly(f) if f.asks_deadlock() => {
                 let message = format!("`{}` asks for a deadlock, which is nothing to do", name.text);
                 self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
                 None
             }
-            Ask::Possibly(_) => Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX)))),
-            Ask::Invariantly(_)
-            | Ask::PotentiallyAlways(_)
-            | Ask::Eventually(_)
-            | Ask::LeadsTo(..)
-            | Ask::Sup { .. }
-            | Ask::Inf { .. } => {
+            TypedQueryKind::Possibly(_) => {
+                Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX))))
+            }
+            TypedQueryKind::Invariantly(_)
+            | TypedQueryKind::PotentiallyAlways(_)
+            | TypedQueryKind::Eventually(_)
+            | TypedQueryKind::LeadsTo(..)
+            | TypedQueryKind::Sup { .. }
+            | TypedQueryKind::Inf { .. } => {
                 let message = format!("`{}` does not ask `E<>`: a test cannot reach it", name.text);
                 self.report(bad_suite(name.span, message, "`hrdsl prove` answers it"));
                 None
@@ -346,11 +354,11 @@ impl Checker<'_> {
     }
 
     /// `pairwise`, `wise(3)`, …
-    fn explore(&mut self, call: &ast::Call) -> Option<Explore> {
+    fn explore(&mut self, call: &ast::Call) -> Option<ExploreMode> {
         let words = ["exhaustive", "pairwise", "random", "learn", "wise"];
         let way = self.choice(Noun::Explore, &call.name, &words)?;
         let args = call.args.as_deref().unwrap_or_default();
-        let ways = [Explore::Exhaustive, Explore::Wise(2), Explore::Random, Explore::Learn];
+        let ways = [ExploreMode::Exhaustive, ExploreMode::Wise(2), ExploreMode::Random, ExploreMode::Learn];
         let want = usize::from(words[way] == "wise");
         if args.len() != want {
             let issue = types::counts(Noun::Explore, words[way], want, args.len(), call.span);
@@ -364,7 +372,7 @@ impl Checker<'_> {
             self.report(types::must_be("how many values occur together", "2 to 6", strength.span));
             return None;
         }
-        u8::try_from(t).ok().map(Explore::Wise)
+        u8::try_from(t).ok().map(ExploreMode::Wise)
     }
 
     fn choose(
@@ -374,7 +382,7 @@ impl Checker<'_> {
         agent: &Name,
         per: Option<&Name>,
         players: &[PlayerRef],
-    ) -> Option<Choice> {
+    ) -> Option<TypedChoice> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else {
             let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
@@ -420,21 +428,21 @@ impl Checker<'_> {
                 ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
             }
         };
-        Some(Choice { agent: id, belief: belief_id, how, condition: None })
+        Some(TypedChoice { agent: id, belief: belief_id, how, condition: None })
     }
 
     /// `where F`: a formula over the beliefs of the agent.
-    fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<ChoiceCondition> {
+    fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<TypedChoiceCondition> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else { return None };
-        let mut env = Env { plan: true, noun: Some(Noun::Variable), ..Env::default() };
-        let context = self.context(&Scope::of(id), formula, &mut env);
+        let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
+        let context = self.context(&AgentScope::of(id), formula, &mut env);
         if env.locals.len() > MAX_NAMES {
             let message = format!("the condition has more than {MAX_NAMES} variables");
             self.report(too_many(message, formula.span));
         }
         let vars = env.locals.iter().map(|l| l.name.clone()).collect();
-        Some(ChoiceCondition { context, vars, origin: formula.span })
+        Some(TypedChoiceCondition { context, vars, origin: formula.span })
     }
 
     /// A stimulus that a test can do.
@@ -467,7 +475,8 @@ impl Checker<'_> {
     }
 
     fn pause(&mut self, range: &ast::Range) -> Option<(f64, f64)> {
-        let mut end = |e: &ast::Expr| self.expr_of(e, Kind::Float(Dim::TIME), &mut Env::constants());
+        let mut end =
+            |e: &ast::Expr| self.expr_of(e, InferredType::Float(Dimension::TIME), &mut ExprEnv::constants());
         let lo = end(&range.lo);
         let Some(hi) = range.hi.as_ref().map(end) else {
             self.report(names::missing(range.span, "a pause has an upper end", "write `pause 0 s .. 10 s`"));
@@ -483,11 +492,11 @@ impl Checker<'_> {
 }
 
 /// Whether a requirement needs more than events.
-fn reads_signals(pattern: &Pattern) -> bool {
+fn reads_signals(pattern: &RequirementPattern) -> bool {
     match pattern {
-        Pattern::Causes { .. } | Pattern::Forbids { .. } => false,
-        Pattern::NeverWhile { condition, .. } => condition.is_some(),
-        Pattern::Globally(_) => true,
+        RequirementPattern::Causes { .. } | RequirementPattern::Forbids { .. } => false,
+        RequirementPattern::NeverWhile { condition, .. } => condition.is_some(),
+        RequirementPattern::Globally(_) => true,
     }
 }
 

@@ -6,7 +6,7 @@ use hrdsl_syntax::ast::{self, ItemKind, SystemMemberKind as Member};
 
 use crate::check::checker::Checker;
 use crate::{
-    ActorId, Role, System,
+    ActorId, Role, SystemUnderTest,
     report::{names, roles},
 };
 
@@ -25,14 +25,14 @@ impl Checker<'_> {
         }
     }
 
-    fn system(&mut self, system: &ast::System, span: Span) -> System {
+    fn system(&mut self, system: &ast::System, span: Span) -> SystemUnderTest {
         let actor = self.actor(&system.actor);
         if let Some(actor) = actor.filter(|a| self.role_of(*a) == Role::Environment) {
             let issue = roles::system_plays_environment(self.actor_name(actor), system.actor.span);
             self.report(issue);
         }
         let actor = actor.unwrap_or(ActorId(0));
-        let mut resolved = System {
+        let mut resolved = SystemUnderTest {
             actor,
             run: Vec::new(),
             coverage: Vec::new(),

@@ -2,20 +2,20 @@
 
 use hrdsl_ir::{
     coverage::BinName,
-    test::{Provenance, TestMethod},
+    test::{TestMethod, TestProvenance},
     value::nanos,
 };
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, Call, ItemKind, Name, TestMemberKind as Member, Text};
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::{
     checker::Checker,
-    state::{scope::Env, table::Table},
+    state::{scope::ExprEnv, table::NameTable},
     value::measure::text,
 };
 use crate::{
-    Kind, Test, TestStep, Value,
+    InferredType, Test, TestStep, Value,
     noun::Noun,
     report::{names, scenario_tests::bad_test, types},
 };
@@ -23,7 +23,7 @@ use crate::{
 impl Checker<'_> {
     /// The tests of the scenario itself, then those of the files of tests, which hold nothing else.
     pub(in crate::check) fn tests(&mut self, files: &[&ast::File]) {
-        let mut table = Table::default();
+        let mut table = NameTable::default();
         for (item, span) in self.each_item() {
             if let ItemKind::Test(test) = item {
                 self.test(test, span, &mut table);
@@ -48,7 +48,7 @@ impl Checker<'_> {
         }
     }
 
-    fn test(&mut self, test: &ast::Test, span: Span, table: &mut Table) {
+    fn test(&mut self, test: &ast::Test, span: Span, table: &mut NameTable) {
         let full = text(&test.name.names);
         // Its full name starts with the scenario's, whether that is written or not.
         let prefix = format!("{}.", self.s.name);
@@ -57,11 +57,11 @@ impl Checker<'_> {
         let mut resolved = Test {
             name: format!("{prefix}{short}"),
             seed: 0,
-            provenance: Provenance { suite, ..Provenance::default() },
+            provenance: TestProvenance { suite, ..TestProvenance::default() },
             steps: Vec::new(),
             origin: span,
         };
-        if self.source.looks_at(Phase::Tests, span) {
+        if self.source.looks_at(CheckPhase::Tests, span) {
             test.members.iter().for_each(|member| self.test_member(&member.kind, &mut resolved));
         }
         let (issues, noun) = (&mut self.issues, Noun::Test);
@@ -99,7 +99,9 @@ impl Checker<'_> {
     }
 
     fn seed(&mut self, e: &ast::Expr) -> u64 {
-        let Some(Value::Int(n)) = self.constant(e, Kind::Int, &mut Env::constants()) else { return 0 };
+        let Some(Value::Int(n)) = self.constant(e, InferredType::Int, &mut ExprEnv::constants()) else {
+            return 0;
+        };
         let seed = u64::try_from(n);
         if seed.is_err() {
             self.report(types::must_be("a seed", "at least 0", e.span));
@@ -126,14 +128,14 @@ impl Checker<'_> {
     fn test_do(&mut self, call: &Call, with: &[(Name, ast::Expr)]) -> Option<TestStep> {
         let event = self.test_stimulus(&call.name)?;
         let fields = self.fields_of(event);
-        let args = self.args(Noun::Stimulus, call, &fields, &mut Env::constants());
+        let args = self.args(Noun::Stimulus, call, &fields, &mut ExprEnv::constants());
         for arg in &args {
-            if arg.constant().is_none() && arg.ty != Kind::Unknown {
+            if arg.constant().is_none() && arg.ty != InferredType::Unknown {
                 self.report(types::not_constant(arg.span));
             }
         }
         let samples = self.samples(event, call, with)?;
-        let args: Option<Vec<Value>> = args.iter().map(crate::Expr::constant).collect();
+        let args: Option<Vec<Value>> = args.iter().map(crate::TypedExpr::constant).collect();
         Some(TestStep::Do { event, args: args.filter(|a| a.len() == self.arity_of(event))?, samples })
     }
 
@@ -161,9 +163,9 @@ impl Checker<'_> {
             if values[at].is_some() {
                 self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));
             }
-            let e = self.expr_of(value, declared[at].lo.ty, &mut Env::constants());
+            let e = self.expr_of(value, declared[at].lo.ty, &mut ExprEnv::constants());
             self.in_range(&e, declared[at].ty);
-            if e.constant().is_none() && e.ty != Kind::Unknown {
+            if e.constant().is_none() && e.ty != InferredType::Unknown {
                 self.report(types::not_constant(e.span));
             }
             // A value with a diagnostic of its own is not missing.

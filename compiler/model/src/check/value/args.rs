@@ -6,9 +6,11 @@ use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
 
 use crate::check::{
     checker::Checker,
-    state::{item::Part, record::Fields, scope::Env, template::Given},
+    state::{item::ArgumentPart, record::DeclaredFields, scope::ExprEnv, template::TemplateArgument},
 };
-use crate::{ArgPattern, EventId, EventPattern, Expr, Type, Value, noun::Noun, report::types, types::Layout};
+use crate::{
+    ArgPattern, EventId, EventPattern, Type, TypedExpr, Value, noun::Noun, report::types, types::TypeLayout,
+};
 
 impl Checker<'_> {
     /// The arguments of a call, each of its parameter's type, as single values. Without parentheses there are none.
@@ -16,9 +18,9 @@ impl Checker<'_> {
         &mut self,
         noun: Noun,
         call: &Call,
-        fields: &[(String, Layout)],
-        env: &mut Env,
-    ) -> Vec<Expr> {
+        fields: &[(String, TypeLayout)],
+        env: &mut ExprEnv,
+    ) -> Vec<TypedExpr> {
         let args = call.args.as_deref().unwrap_or_default();
         if args.len() != fields.len() {
             self.wrong_arity(noun, call, fields);
@@ -27,25 +29,27 @@ impl Checker<'_> {
         for (arg, (_, layout)) in args.iter().zip(fields) {
             match layout {
                 // With a wrong number of arguments, which is for which is not known.
-                Layout::Record(_) | Layout::Array(..) if args.len() != fields.len() => {
+                TypeLayout::Record(_) | TypeLayout::Array(..) if args.len() != fields.len() => {
                     self.item(arg, env);
                 }
-                Layout::Scalar(ty) => values.push(self.expr_for(arg, *ty, env)),
-                Layout::Unknown => {}
-                Layout::Record(_) | Layout::Array(..) => self.item_for(arg, layout, env).flatten(&mut values),
+                TypeLayout::Scalar(ty) => values.push(self.expr_for(arg, *ty, env)),
+                TypeLayout::Unknown => {}
+                TypeLayout::Record(_) | TypeLayout::Array(..) => {
+                    self.item_for(arg, layout, env).flatten(&mut values)
+                }
             }
         }
         values
     }
 
-    pub(in crate::check) fn wrong_arity(&mut self, noun: Noun, call: &Call, fields: &[(String, Layout)]) {
+    pub(in crate::check) fn wrong_arity(&mut self, noun: Noun, call: &Call, fields: &[(String, TypeLayout)]) {
         let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
         let got = call.args.as_ref().map_or(0, Vec::len);
         self.report(types::arity(noun, &call.name.text, &names, got, call.span));
     }
 
     /// An event with constants or `_` for arguments; without parentheses any arguments will do.
-    pub(in crate::check) fn pattern(&mut self, call: &Call, env: &mut Env) -> Option<EventPattern> {
+    pub(in crate::check) fn pattern(&mut self, call: &Call, env: &mut ExprEnv) -> Option<EventPattern> {
         let event = self.event(Noun::EventOrStimulus, &call.name, None)?;
         let fields = self.fields_of(event);
         let Some(args) = &call.args else {
@@ -64,14 +68,14 @@ impl Checker<'_> {
         Some(EventPattern { event, args: patterns })
     }
 
-    fn pattern_part(&mut self, part: Part<'_>, env: &mut Env) -> Option<Value> {
+    fn pattern_part(&mut self, part: ArgumentPart<'_>, env: &mut ExprEnv) -> Option<Value> {
         let e = match part {
-            Part::Any | Part::Variable(..) => return None,
-            Part::Syntax(arg, _) if arg.kind == Syntax::Any => return None,
-            Part::Syntax(arg, ty) => self.expr_for(arg, ty, env),
-            Part::Done(e, _) => e,
+            ArgumentPart::Any | ArgumentPart::Variable(..) => return None,
+            ArgumentPart::Syntax(arg, _) if arg.kind == Syntax::Any => return None,
+            ArgumentPart::Syntax(arg, ty) => self.expr_for(arg, ty, env),
+            ArgumentPart::Done(e, _) => e,
         };
-        if e.constant().is_none() && e.ty != crate::Kind::Unknown {
+        if e.constant().is_none() && e.ty != crate::InferredType::Unknown {
             self.report(types::not_constant(e.span).help("write a constant, or `_` for any value"));
         }
         e.constant()
@@ -79,25 +83,29 @@ impl Checker<'_> {
 
     /// Patterns over constants. A parameter of a template may stand for several.
     pub(in crate::check) fn patterns(&mut self, calls: &[Call]) -> Vec<EventPattern> {
-        self.patterns_with(calls, &mut Env::constants()).into_iter().map(|(p, _)| p).collect()
+        self.patterns_with(calls, &mut ExprEnv::constants()).into_iter().map(|(p, _)| p).collect()
     }
 
     /// Patterns with the places where they are named.
     pub(in crate::check) fn patterns_with(
         &mut self,
         calls: &[Call],
-        env: &mut Env,
+        env: &mut ExprEnv,
     ) -> Vec<(EventPattern, Span)> {
         let mut all = Vec::new();
         for call in calls {
             match self.given(&call.name.text) {
-                Some(Given::Events(events)) if call.args.is_none() => {
+                Some(TemplateArgument::Events(events)) if call.args.is_none() => {
                     all.extend(events.iter().map(|p| (p.clone(), call.name.span)));
                     self.refer_given(&call.name);
                 }
-                Some(Given::Unknown) => self.refer_given(&call.name),
+                Some(TemplateArgument::Unknown) => self.refer_given(&call.name),
                 Some(
-                    Given::Events(_) | Given::Value(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_),
+                    TemplateArgument::Events(_)
+                    | TemplateArgument::Value(_)
+                    | TemplateArgument::Actor(_)
+                    | TemplateArgument::Thing(..)
+                    | TemplateArgument::Point(_),
                 )
                 | None => all.extend(self.pattern(call, env).map(|p| (p, call.name.span))),
             }
@@ -105,7 +113,7 @@ impl Checker<'_> {
         all
     }
 
-    pub(in crate::check) fn fields_of(&self, event: EventId) -> Fields {
+    pub(in crate::check) fn fields_of(&self, event: EventId) -> DeclaredFields {
         self.events.fields[usize::from(event.0)].clone()
     }
 
@@ -115,7 +123,7 @@ impl Checker<'_> {
     }
 
     /// A constant that must not be less than another of its type; says so at `span`.
-    pub(in crate::check) fn ordered(&mut self, lo: &Expr, hi: &Expr, span: Span) -> bool {
+    pub(in crate::check) fn ordered(&mut self, lo: &TypedExpr, hi: &TypedExpr, span: Span) -> bool {
         let (Some(a), Some(b)) = (lo.constant(), hi.constant()) else { return true };
         match (a.as_f64(), b.as_f64()) {
             (Some(x), Some(y)) if x > y => {
@@ -135,7 +143,7 @@ impl Checker<'_> {
     }
 
     /// Whether all single values of a layout can be enumerated; says so if not.
-    pub(in crate::check) fn finite_layout(&mut self, layout: &Layout, what: &str, span: Span) -> bool {
+    pub(in crate::check) fn finite_layout(&mut self, layout: &TypeLayout, what: &str, span: Span) -> bool {
         let mut leaves = Vec::new();
         self.leaves("", layout, &mut leaves);
         leaves.iter().all(|(_, ty)| ty.is_finite()) || self.finite(Type::Float(Unit::None), what, span)
@@ -145,10 +153,10 @@ impl Checker<'_> {
     pub(in crate::check) fn spread_args<'e>(
         &mut self,
         args: &'e [ast::Expr],
-        fields: &[(String, Layout)],
-        env: &mut Env,
+        fields: &[(String, TypeLayout)],
+        env: &mut ExprEnv,
         variable: &dyn Fn(&Checker<'_>, &ast::Name) -> bool,
-    ) -> Vec<Part<'e>> {
+    ) -> Vec<ArgumentPart<'e>> {
         let mut parts = Vec::new();
         for (arg, (_, layout)) in args.iter().zip(fields) {
             self.spread(arg, layout, env, variable, &mut parts);

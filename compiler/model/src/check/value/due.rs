@@ -6,19 +6,24 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 use crate::check::{
     checker::Checker,
     state::{
-        item::{Item, Part},
-        scope::Env,
+        item::{ArgumentPart, ExprItem},
+        scope::ExprEnv,
     },
 };
-use crate::{Expr, Kind, noun::Noun, report::types, types::Layout};
+use crate::{InferredType, TypedExpr, noun::Noun, report::types, types::TypeLayout};
 
 impl Checker<'_> {
     /// An expression where something of this layout is due.
-    pub(in crate::check) fn item_for(&mut self, e: &ast::Expr, layout: &Layout, env: &mut Env) -> Item {
+    pub(in crate::check) fn item_for(
+        &mut self,
+        e: &ast::Expr,
+        layout: &TypeLayout,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
         match layout {
-            Layout::Scalar(ty) => return Item::One(self.expr_for(e, *ty, env)),
-            Layout::Unknown => return Item::error(e.span),
-            Layout::Record(_) | Layout::Array(..) => {}
+            TypeLayout::Scalar(ty) => return ExprItem::One(self.expr_for(e, *ty, env)),
+            TypeLayout::Unknown => return ExprItem::error(e.span),
+            TypeLayout::Record(_) | TypeLayout::Array(..) => {}
         }
         if let Syntax::Tuple(parts) = &e.kind {
             let due = self.parts_of(layout);
@@ -28,7 +33,7 @@ impl Checker<'_> {
             }
         }
         if let Syntax::If { condition, then, otherwise } = &e.kind {
-            let condition = self.expr_of(condition, Kind::Bool, env);
+            let condition = self.expr_of(condition, InferredType::Bool, env);
             let (then, otherwise) = (self.item_for(then, layout, env), self.item_for(otherwise, layout, env));
             return self.either_item(&condition, then, otherwise, e.span, env);
         }
@@ -43,42 +48,44 @@ impl Checker<'_> {
     }
 
     /// The layout of what has one part alone: its value needs no parentheses of a tuple, which would be no tuple.
-    fn only_part(&self, layout: &Layout) -> Option<Layout> {
+    fn only_part(&self, layout: &TypeLayout) -> Option<TypeLayout> {
         match self.parts_of(layout).as_slice() {
             [(_, of)] => Some(of.clone()),
             [] | [_, ..] => None,
         }
     }
 
-    fn whole(&self, layout: &Layout, parts: Vec<Item>, span: Span) -> Item {
+    fn whole(&self, layout: &TypeLayout, parts: Vec<ExprItem>, span: Span) -> ExprItem {
         match layout {
-            Layout::Record(id) => Item::Record(*id, parts, span),
-            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Item::Array(parts, span),
+            TypeLayout::Record(id) => ExprItem::Record(*id, parts, span),
+            TypeLayout::Scalar(_) | TypeLayout::Array(..) | TypeLayout::Unknown => {
+                ExprItem::Array(parts, span)
+            }
         }
     }
 
-    fn coerce(&mut self, item: Item, layout: &Layout, env: &mut Env) -> Item {
+    fn coerce(&mut self, item: ExprItem, layout: &TypeLayout, env: &mut ExprEnv) -> ExprItem {
         let span = item.span();
-        if *layout == Layout::Unknown {
-            return Item::error(span);
+        if *layout == TypeLayout::Unknown {
+            return ExprItem::error(span);
         }
         let due = self.parts_of(layout);
         let fits = match (&item, layout) {
-            (Item::One(e), Layout::Scalar(ty)) => {
-                let e = self.fit(e.clone(), Kind::of(*ty), env);
+            (ExprItem::One(e), TypeLayout::Scalar(ty)) => {
+                let e = self.fit(e.clone(), InferredType::of(*ty), env);
                 self.in_range(&e, *ty);
-                return Item::One(e);
+                return ExprItem::One(e);
             }
-            (Item::Record(id, ..), Layout::Record(want)) if id == want => true,
-            (_, Layout::Record(_) | Layout::Array(_, 1))
+            (ExprItem::Record(id, ..), TypeLayout::Record(want)) if id == want => true,
+            (_, TypeLayout::Record(_) | TypeLayout::Array(_, 1))
                 if due.len() == 1 && !item.is_unknown() && !item.is_one_of(layout) =>
             {
                 let part = self.coerce(item, &due[0].1, env);
                 return self.whole(layout, vec![part], span);
             }
-            (Item::Tuple(parts, _), Layout::Record(_) | Layout::Array(..))
-            | (Item::Array(parts, _), Layout::Array(..)) => parts.len() == due.len(),
-            (Item::One(_) | Item::Record(..) | Item::Array(..) | Item::Tuple(..), _) => false,
+            (ExprItem::Tuple(parts, _), TypeLayout::Record(_) | TypeLayout::Array(..))
+            | (ExprItem::Array(parts, _), TypeLayout::Array(..)) => parts.len() == due.len(),
+            (ExprItem::One(_) | ExprItem::Record(..) | ExprItem::Array(..) | ExprItem::Tuple(..), _) => false,
         };
         if !fits {
             if item.is_unknown() {
@@ -90,20 +97,20 @@ impl Checker<'_> {
             return self.error_item(layout, span);
         }
         let parts = match item {
-            Item::One(_) => Vec::new(),
-            Item::Record(_, parts, _) | Item::Array(parts, _) | Item::Tuple(parts, _) => parts,
+            ExprItem::One(_) => Vec::new(),
+            ExprItem::Record(_, parts, _) | ExprItem::Array(parts, _) | ExprItem::Tuple(parts, _) => parts,
         };
         let parts = parts.into_iter().zip(&due).map(|(p, (_, l))| self.coerce(p, l, env)).collect();
         self.whole(layout, parts, span)
     }
 
     /// Something of another shape is needed: says which.
-    fn other_shape(&mut self, layout: &Layout, got: &str, span: Span) {
+    fn other_shape(&mut self, layout: &TypeLayout, got: &str, span: Span) {
         let issue = types::other_shape(&self.shown_layout(layout), got, span);
         let due = self.parts_of(layout);
         let form: Vec<&str> = match layout {
-            Layout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
-            Layout::Scalar(_) | Layout::Array(..) | Layout::Unknown => Vec::new(),
+            TypeLayout::Record(_) => due.iter().map(|(n, _)| n.trim_start_matches('.')).collect(),
+            TypeLayout::Scalar(_) | TypeLayout::Array(..) | TypeLayout::Unknown => Vec::new(),
         };
         self.report(match form.as_slice() {
             [] => issue,
@@ -111,9 +118,9 @@ impl Checker<'_> {
         });
     }
 
-    fn error_item(&self, layout: &Layout, span: Span) -> Item {
-        if matches!(layout, Layout::Scalar(_) | Layout::Unknown) {
-            return Item::error(span);
+    fn error_item(&self, layout: &TypeLayout, span: Span) -> ExprItem {
+        if matches!(layout, TypeLayout::Scalar(_) | TypeLayout::Unknown) {
+            return ExprItem::error(span);
         }
         let parts = self.parts_of(layout).iter().map(|(_, l)| self.error_item(l, span)).collect();
         self.whole(layout, parts, span)
@@ -132,18 +139,23 @@ impl Checker<'_> {
     }
 
     /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
-    pub(in crate::check) fn item_like(&mut self, e: &ast::Expr, like: &Item, env: &mut Env) -> Item {
+    pub(in crate::check) fn item_like(
+        &mut self,
+        e: &ast::Expr,
+        like: &ExprItem,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
         match (&e.kind, like) {
-            (Syntax::Path(_) | Syntax::If { .. }, Item::One(Expr { ty: ty @ Kind::Enum(_), .. }))
-                if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) =>
-            {
-                self.item_due(e, *ty, env)
-            }
-            (Syntax::Tuple(parts), Item::Record(_, due, _) | Item::Array(due, _) | Item::Tuple(due, _))
-                if parts.len() == due.len() =>
-            {
+            (
+                Syntax::Path(_) | Syntax::If { .. },
+                ExprItem::One(TypedExpr { ty: ty @ InferredType::Enum(_), .. }),
+            ) if self.needs_due(e) || matches!(e.kind, Syntax::Path(_)) => self.item_due(e, *ty, env),
+            (
+                Syntax::Tuple(parts),
+                ExprItem::Record(_, due, _) | ExprItem::Array(due, _) | ExprItem::Tuple(due, _),
+            ) if parts.len() == due.len() => {
                 let parts = parts.iter().zip(due).map(|(p, d)| self.item_like(p, d, env)).collect();
-                Item::Tuple(parts, e.span)
+                ExprItem::Tuple(parts, e.span)
             }
             (_, _) => self.item(e, env),
         }
@@ -153,16 +165,20 @@ impl Checker<'_> {
     pub(in crate::check) fn spread<'e>(
         &mut self,
         arg: &'e ast::Expr,
-        layout: &Layout,
-        env: &mut Env,
+        layout: &TypeLayout,
+        env: &mut ExprEnv,
         variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
-        out: &mut Vec<Part<'e>>,
+        out: &mut Vec<ArgumentPart<'e>>,
     ) {
-        if let Layout::Scalar(ty) = layout {
-            out.push(if arg.kind == Syntax::Any { Part::Any } else { Part::Syntax(arg, *ty) });
+        if let TypeLayout::Scalar(ty) = layout {
+            out.push(if arg.kind == Syntax::Any {
+                ArgumentPart::Any
+            } else {
+                ArgumentPart::Syntax(arg, *ty)
+            });
             return;
         }
-        if *layout == Layout::Unknown {
+        if *layout == TypeLayout::Unknown {
             return self.bind_names(arg, env, variable);
         }
         let due = self.parts_of(layout);
@@ -187,12 +203,12 @@ impl Checker<'_> {
             self.other_shape(layout, &format!("a tuple of {}", parts.len()), arg.span);
             parts.iter().for_each(|p| self.bind_names(p, env, variable));
             self.leaves("", layout, &mut leaves);
-            out.extend(leaves.into_iter().map(|_| Part::Any));
+            out.extend(leaves.into_iter().map(|_| ArgumentPart::Any));
             return;
         }
         if arg.kind == Syntax::Any {
             self.leaves("", layout, &mut leaves);
-            out.extend(leaves.into_iter().map(|_| Part::Any));
+            out.extend(leaves.into_iter().map(|_| ArgumentPart::Any));
             return;
         }
         if let Syntax::Path(path) = &arg.kind
@@ -211,11 +227,17 @@ impl Checker<'_> {
         }
         let mut values = Vec::new();
         item.flatten(&mut values);
-        out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| Part::Done(e, ty)));
+        out.extend(values.into_iter().zip(leaves).map(|(e, (_, ty))| ArgumentPart::Done(e, ty)));
     }
 
     /// The parts of a variable that is bound here, or was.
-    fn spread_variable(&mut self, name: &Name, layout: &Layout, env: &mut Env, out: &mut Vec<Part<'_>>) {
+    fn spread_variable(
+        &mut self,
+        name: &Name,
+        layout: &TypeLayout,
+        env: &mut ExprEnv,
+        out: &mut Vec<ArgumentPart<'_>>,
+    ) {
         let mut leaves = Vec::new();
         let is_broken = env.broken.contains(&name.text);
         let other = if is_broken { None } else { self.stands_for_other(name, layout, env) };
@@ -225,20 +247,20 @@ impl Checker<'_> {
                 self.report(types::other_before(&name.text, &want, &got, name.span));
             }
             self.leaves("", layout, &mut leaves);
-            out.extend(leaves.into_iter().map(|_| Part::Any));
+            out.extend(leaves.into_iter().map(|_| ArgumentPart::Any));
             return;
         }
         self.leaves(&name.text, layout, &mut leaves);
         env.declare_layout(&name.text, layout.clone());
-        let part = |(text, ty)| Part::Variable(Name { text, span: name.span }, ty);
+        let part = |(text, ty)| ArgumentPart::Variable(Name { text, span: name.span }, ty);
         out.extend(leaves.into_iter().map(part));
     }
 
     /// What a variable stands for, if it is of another layout.
-    fn stands_for_other(&self, name: &Name, layout: &Layout, env: &Env) -> Option<String> {
+    fn stands_for_other(&self, name: &Name, layout: &TypeLayout, env: &ExprEnv) -> Option<String> {
         match (env.find(&name.text), env.layout(&name.text)) {
             (Some(local), _) => Some(local.ty.to_string()),
-            (None, Some(Layout::Unknown)) => None,
+            (None, Some(TypeLayout::Unknown)) => None,
             (None, Some(other)) => (other != layout).then(|| self.shown_layout(other)),
             (None, None) => None,
         }
@@ -248,7 +270,7 @@ impl Checker<'_> {
     pub(in crate::check) fn bind_names(
         &self,
         e: &ast::Expr,
-        env: &mut Env,
+        env: &mut ExprEnv,
         variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
     ) {
         match &e.kind {
@@ -258,7 +280,7 @@ impl Checker<'_> {
                     && env.find(&name.text).is_none()
                     && env.layout(&name.text).is_none()
                 {
-                    env.push_local(&name.text, name.span, Noun::Variable, Kind::Unknown);
+                    env.push_local(&name.text, name.span, Noun::Variable, InferredType::Unknown);
                     env.broken.push(name.text.clone());
                 }
             }
@@ -269,9 +291,9 @@ impl Checker<'_> {
         }
     }
 
-    fn is_record(&self, callee: &ast::Path, layout: &Layout) -> bool {
+    fn is_record(&self, callee: &ast::Path, layout: &TypeLayout) -> bool {
         match (callee.names.as_slice(), layout) {
-            ([name], Layout::Record(id)) => self.types.records[usize::from(*id)].name.text == name.text,
+            ([name], TypeLayout::Record(id)) => self.types.records[usize::from(*id)].name.text == name.text,
             (_, _) => false,
         }
     }

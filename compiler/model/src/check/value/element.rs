@@ -7,39 +7,44 @@ use hrdsl_source::Span;
 use crate::check::{
     checker::Checker,
     state::{
-        item::Item,
-        scope::{Elements, Env, Local},
+        item::ExprItem,
+        scope::{ExprEnv, IndexedArrays, LocalName},
     },
     value::range,
 };
 use crate::{
-    BinaryOp, Expr, ExprKind, Index, Kind, Leaf, Place, Type, Value, leaves,
+    BinaryOp, InferredType, Type, TypedExpr, TypedExprKind, TypedIndex, TypedLvalue, Value, VariableRef,
+    leaves,
     report::{automata, types},
-    types::Layout,
+    types::TypeLayout,
 };
 
 /// A variable or a part of one, on the way to it.
-pub(in crate::check) struct Reached {
+pub(in crate::check) struct ReachedElements {
     /// `a[0].x`; where an index is chosen at run time, with the first.
     name: String,
-    layout: Layout,
-    indices: Vec<Index>,
+    layout: TypeLayout,
+    indices: Vec<TypedIndex>,
 }
 
-impl Reached {
-    pub fn whole(name: &str, layout: Layout) -> Self {
+impl ReachedElements {
+    pub fn whole(name: &str, layout: TypeLayout) -> Self {
         Self { name: name.to_owned(), layout, indices: Vec::new() }
     }
 }
 
 /// The type of a variable that an automaton or function has.
-pub(in crate::check) fn type_of(local: &Local) -> Type {
+pub(in crate::check) fn type_of(local: &LocalName) -> Type {
     match local.ty {
-        Kind::Int => {
+        InferredType::Int => {
             local.range.map_or(Type::Int { lo: i64::MIN, hi: i64::MAX }, |(lo, hi)| Type::Int { lo, hi })
         }
-        Kind::Enum(of) => Type::Enum(of),
-        Kind::Bool | Kind::Float(_) | Kind::Text | Kind::List(_) | Kind::Unknown => Type::Bool,
+        InferredType::Enum(of) => Type::Enum(of),
+        InferredType::Bool
+        | InferredType::Float(_)
+        | InferredType::Text
+        | InferredType::List(_)
+        | InferredType::Unknown => Type::Bool,
     }
 }
 
@@ -54,8 +59,8 @@ fn root(e: &ast::Expr) -> Option<&ast::Path> {
 
 impl Checker<'_> {
     /// `a[i].x` of a variable; `None`: it is not one whose elements are chosen at run time.
-    pub(in crate::check) fn element(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Item> {
-        if env.elements == Elements::None {
+    pub(in crate::check) fn element(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<ExprItem> {
+        if env.elements == IndexedArrays::None {
             return None;
         }
         let name = root(e)?.names.first()?;
@@ -67,20 +72,20 @@ impl Checker<'_> {
         self.leaves(&name.text, layout, &mut leaves);
         let first = env.find(&leaves.first()?.0)?.leaf?;
         let chosen = match first {
-            Leaf::Own(_) | Leaf::Shared(_) => true,
-            Leaf::Local(_) => env.elements == Elements::Locals,
-            Leaf::Signal(_) => false,
+            VariableRef::Own(_) | VariableRef::Shared(_) => true,
+            VariableRef::Local(_) => env.elements == IndexedArrays::Locals,
+            VariableRef::Signal(_) => false,
         };
         if !chosen {
             return None;
         }
         Some(match self.reach(e, env) {
             Some(reached) => self.reached_item(&reached, e.span, env),
-            None => Item::error(e.span),
+            None => ExprItem::error(e.span),
         })
     }
 
-    fn reach(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Reached> {
+    fn reach(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<ReachedElements> {
         match &e.kind {
             Syntax::Index { of, index } => {
                 let reached = self.reach(of, env)?;
@@ -92,33 +97,33 @@ impl Checker<'_> {
             }
             Syntax::Path(path) => {
                 let (first, fields) = path.names.split_first()?;
-                let whole = Reached::whole(&first.text, env.layout(&first.text)?.clone());
+                let whole = ReachedElements::whole(&first.text, env.layout(&first.text)?.clone());
                 fields.iter().try_fold(whole, |reached, field| self.at_field(reached, field))
             }
             _ => None,
         }
     }
 
-    fn at_field(&mut self, reached: Reached, field: &Name) -> Option<Reached> {
+    fn at_field(&mut self, reached: ReachedElements, field: &Name) -> Option<ReachedElements> {
         let (part, layout) = self.field_of(&reached.layout, field)?;
-        Some(Reached { name: format!("{}{part}", reached.name), layout, indices: reached.indices })
+        Some(ReachedElements { name: format!("{}{part}", reached.name), layout, indices: reached.indices })
     }
 
     /// An index is only looked at: what it calls changes nothing.
     fn at_index(
         &mut self,
-        mut reached: Reached,
+        mut reached: ReachedElements,
         index: &ast::Expr,
         of: Span,
-        env: &mut Env,
-    ) -> Option<Reached> {
+        env: &mut ExprEnv,
+    ) -> Option<ReachedElements> {
         let effects = std::mem::replace(&mut env.effects, false);
-        let at = self.expr_of(index, Kind::Int, env);
+        let at = self.expr_of(index, InferredType::Int, env);
         env.effects = effects;
         let (element, count) = match &reached.layout {
-            Layout::Array(element, count) => ((**element).clone(), *count),
-            Layout::Unknown => return None,
-            other @ (Layout::Scalar(_) | Layout::Record(_)) => {
+            TypeLayout::Array(element, count) => ((**element).clone(), *count),
+            TypeLayout::Unknown => return None,
+            other @ (TypeLayout::Scalar(_) | TypeLayout::Record(_)) => {
                 let message = format!("{} has no elements", self.shown_layout(other));
                 self.report(types::no_elements(message, of));
                 return None;
@@ -133,7 +138,7 @@ impl Checker<'_> {
             None => {
                 let stride = u16::try_from(self.size(&element)).unwrap_or(u16::MAX);
                 reached.name = format!("{}[0]", reached.name);
-                reached.indices.push(Index { at, count, stride });
+                reached.indices.push(TypedIndex { at, count, stride });
             }
         }
         reached.layout = element;
@@ -141,8 +146,8 @@ impl Checker<'_> {
     }
 
     /// Whether an index can lie within an array of so many; says so if not.
-    fn index_possible(&mut self, at: &Expr, count: u16, env: &Env) -> bool {
-        if at.ty != Kind::Int {
+    fn index_possible(&mut self, at: &TypedExpr, count: u16, env: &ExprEnv) -> bool {
+        if at.ty != InferredType::Int {
             return false;
         }
         let last = i64::from(count) - 1;
@@ -154,35 +159,42 @@ impl Checker<'_> {
     }
 
     /// What stands there as a value.
-    fn reached_item(&mut self, reached: &Reached, span: Span, env: &Env) -> Item {
+    fn reached_item(&mut self, reached: &ReachedElements, span: Span, env: &ExprEnv) -> ExprItem {
         if reached.indices.is_empty() {
             return self.assembled(&reached.name, &reached.layout, env, span);
         }
         let copies = self.size(&reached.layout);
         for index in &reached.indices {
-            if !self.may_copy(&Item::One(index.at.clone()), copies, span) {
-                return Item::error(span);
+            if !self.may_copy(&ExprItem::One(index.at.clone()), copies, span) {
+                return ExprItem::error(span);
             }
         }
         self.elements(&reached.name, &reached.layout, &reached.indices, span, env)
     }
 
-    fn elements(&self, name: &str, layout: &Layout, indices: &[Index], span: Span, env: &Env) -> Item {
+    fn elements(
+        &self,
+        name: &str,
+        layout: &TypeLayout,
+        indices: &[TypedIndex],
+        span: Span,
+        env: &ExprEnv,
+    ) -> ExprItem {
         let parts = || {
             let parts = self.parts_of(layout).into_iter();
             parts.map(|(n, part)| self.elements(&format!("{name}{n}"), &part, indices, span, env)).collect()
         };
         match layout {
-            Layout::Scalar(_) => match env.find(name).and_then(|l| Some((l.leaf?, l.ty))) {
+            TypeLayout::Scalar(_) => match env.find(name).and_then(|l| Some((l.leaf?, l.ty))) {
                 Some((leaf, ty)) => {
-                    let place = Place { slot: leaf, indices: indices.to_vec() };
-                    Item::One(Expr { kind: ExprKind::Element(Box::new(place)), ty, span })
+                    let place = TypedLvalue { slot: leaf, indices: indices.to_vec() };
+                    ExprItem::One(TypedExpr { kind: TypedExprKind::Element(Box::new(place)), ty, span })
                 }
-                None => Item::error(span),
+                None => ExprItem::error(span),
             },
-            Layout::Record(id) => Item::Record(*id, parts(), span),
-            Layout::Array(..) => Item::Array(parts(), span),
-            Layout::Unknown => Item::error(span),
+            TypeLayout::Record(id) => ExprItem::Record(*id, parts(), span),
+            TypeLayout::Array(..) => ExprItem::Array(parts(), span),
+            TypeLayout::Unknown => ExprItem::error(span),
         }
     }
 
@@ -192,12 +204,12 @@ impl Checker<'_> {
     pub(in crate::check) fn assigned(
         &mut self,
         target: &Name,
-        (layout, access): (Layout, &[Access]),
+        (layout, access): (TypeLayout, &[Access]),
         op: Option<BinaryOp>,
         value: &ast::Expr,
-        env: &mut Env,
-    ) -> Vec<(Place, Expr)> {
-        let mut reached = Some(Reached::whole(&target.text, layout));
+        env: &mut ExprEnv,
+    ) -> Vec<(TypedLvalue, TypedExpr)> {
+        let mut reached = Some(ReachedElements::whole(&target.text, layout));
         for step in access {
             let Some(before) = reached else { break };
             reached = match step {
@@ -210,17 +222,19 @@ impl Checker<'_> {
         self.leaves(&reached.name, &reached.layout, &mut leaves);
         let place = |name: &str| {
             let leaf = env.find(name).and_then(|l| l.leaf)?;
-            Some(Place { slot: leaf, indices: reached.indices.clone() })
+            Some(TypedLvalue { slot: leaf, indices: reached.indices.clone() })
         };
-        let places: Vec<Place> = leaves.iter().filter_map(|(name, _)| place(name)).collect();
+        let places: Vec<TypedLvalue> = leaves.iter().filter_map(|(name, _)| place(name)).collect();
         let values = match (op, places.as_slice(), &reached.layout) {
-            (None, _, Layout::Scalar(ty)) => vec![self.expr_for(value, *ty, env)],
+            (None, _, TypeLayout::Scalar(ty)) => vec![self.expr_for(value, *ty, env)],
             (None, _, layout) => {
                 let mut values = Vec::new();
                 self.item_for(value, layout, env).flatten(&mut values);
                 values
             }
-            (Some(op), [place], Layout::Scalar(ty)) => vec![self.changed(place, *ty, op, value, target, env)],
+            (Some(op), [place], TypeLayout::Scalar(ty)) => {
+                vec![self.changed(place, *ty, op, value, target, env)]
+            }
             (Some(_), _, layout) => {
                 let got = self.shown_layout(layout);
                 let issue = types::other_shape("one number", &got, target.span);
@@ -238,30 +252,34 @@ impl Checker<'_> {
     /// `target op value`
     fn changed(
         &mut self,
-        place: &Place,
+        place: &TypedLvalue,
         ty: Type,
         op: BinaryOp,
         value: &ast::Expr,
         target: &Name,
-        env: &mut Env,
-    ) -> Expr {
-        if !Kind::of(ty).is_number() {
-            self.report(types::mismatch(Kind::Int, Kind::of(ty), None, target.span));
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
+        if !InferredType::of(ty).is_number() {
+            self.report(types::mismatch(InferredType::Int, InferredType::of(ty), None, target.span));
         }
-        let by = self.expr_of(value, Kind::Int, env);
+        let by = self.expr_of(value, InferredType::Int, env);
         let span = target.span.to(value.span);
         let kind = if place.indices.is_empty() {
-            ExprKind::Leaf(place.slot)
+            TypedExprKind::Leaf(place.slot)
         } else {
-            ExprKind::Element(Box::new(place.clone()))
+            TypedExprKind::Element(Box::new(place.clone()))
         };
-        let old = Expr { kind, ty: Kind::of(ty), span: target.span };
-        Expr { kind: ExprKind::Binary(op, Box::new(old), Box::new(by)), ty: Kind::Int, span }
+        let old = TypedExpr { kind, ty: InferredType::of(ty), span: target.span };
+        TypedExpr {
+            kind: TypedExprKind::Binary(op, Box::new(old), Box::new(by)),
+            ty: InferredType::Int,
+            span,
+        }
     }
 
     /// Several values are set one after the other: none may be read after it is set. Says so if one is.
-    fn apart(&mut self, places: &[Place], values: &[Expr], target: &Name) -> bool {
-        let mut set: Vec<Leaf> = Vec::new();
+    fn apart(&mut self, places: &[TypedLvalue], values: &[TypedExpr], target: &Name) -> bool {
+        let mut set: Vec<VariableRef> = Vec::new();
         for (place, value) in places.iter().zip(values) {
             let mut read = false;
             if !set.is_empty() {

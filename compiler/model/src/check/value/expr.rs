@@ -6,12 +6,13 @@ use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
 use crate::check::{
     checker::Checker,
     state::{
-        item::Item,
-        scope::{Env, is_variable_name},
+        item::ExprItem,
+        scope::{ExprEnv, is_variable_name},
     },
 };
 use crate::{
-    Dim, EvalError, Expr, ExprKind, Kind, NumberFunction, Text, Type, Unit, Value,
+    Dimension, EvalError, InferredType, NumberFunction, Text, Type, TypedExpr, TypedExprKind, UnitOfMeasure,
+    Value,
     noun::Noun,
     report::{names, types},
 };
@@ -31,40 +32,42 @@ const MAX_DATA: f64 = 1e15;
 
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
-    pub(in crate::check) fn expr(&mut self, e: &ast::Expr, env: &mut Env) -> Expr {
+    pub(in crate::check) fn expr(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> TypedExpr {
         let item = self.item(e, env);
         self.one(item)
     }
 
-    fn one(&mut self, item: Item) -> Expr {
+    fn one(&mut self, item: ExprItem) -> TypedExpr {
         match item {
-            Item::One(e) => e,
+            ExprItem::One(e) => e,
             other => {
                 let got = self.shown(&other);
                 self.report(types::several_values(&got, other.span()));
-                Expr::error(other.span())
+                TypedExpr::error(other.span())
             }
         }
     }
 
     /// Resolves and types an expression of one or more values.
-    pub(in crate::check) fn item(&mut self, e: &ast::Expr, env: &mut Env) -> Item {
+    pub(in crate::check) fn item(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> ExprItem {
         let span = e.span;
-        Item::One(match &e.kind {
-            Syntax::Bool(b) => Expr::value(Value::Bool(*b), Kind::Bool, span),
-            Syntax::Int(n) => Expr::value(Value::Int(*n), Kind::Int, span),
-            Syntax::Float(x) => Expr::value(Value::Float(*x), Kind::Float(Dim::NUMBER), span),
+        ExprItem::One(match &e.kind {
+            Syntax::Bool(b) => TypedExpr::value(Value::Bool(*b), InferredType::Bool, span),
+            Syntax::Int(n) => TypedExpr::value(Value::Int(*n), InferredType::Int, span),
+            Syntax::Float(x) => {
+                TypedExpr::value(Value::Float(*x), InferredType::Float(Dimension::NUMBER), span)
+            }
             Syntax::Quantity { number, unit } => self.quantity(*number, unit, span),
             Syntax::Any => {
                 self.report(types::no_value("`_`", span));
-                Expr::error(span)
+                TypedExpr::error(span)
             }
             Syntax::Path(path) => return self.path(path, env),
             Syntax::Call { callee, args } => return self.call(callee, args, span, env),
             Syntax::Unary { op, operand } => return self.unary(*op, operand, span, env),
             Syntax::Binary { op, left, right } => return self.binary(*op, left, right, span, env),
             Syntax::If { condition, then, otherwise } => {
-                let condition = self.expr_of(condition, Kind::Bool, env);
+                let condition = self.expr_of(condition, InferredType::Bool, env);
                 let (then, otherwise) = self.sides(then, otherwise, env);
                 return self.either_item(&condition, then, otherwise, span, env);
             }
@@ -84,18 +87,20 @@ impl<'a> Checker<'a> {
                 let item = self.item(of, env);
                 return self.field(item, name);
             }
-            Syntax::Text(text) => Expr::value(Value::Text(Text::new(text)), Kind::Text, span),
-            Syntax::List { items, rest } => self.list(items, rest.as_deref(), Kind::Unknown, span, env),
+            Syntax::Text(text) => TypedExpr::value(Value::Text(Text::new(text)), InferredType::Text, span),
+            Syntax::List { items, rest } => {
+                self.list(items, rest.as_deref(), InferredType::Unknown, span, env)
+            }
             Syntax::Unify { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Internal(_) => {
                 self.no_value_here(e, env);
-                Expr::error(span)
+                TypedExpr::error(span)
             }
-            Syntax::Error => Expr::error(span),
+            Syntax::Error => TypedExpr::error(span),
         })
     }
 
     /// A value of an enumeration by its bare name, where one of this enumeration is due.
-    fn symbol_of(&mut self, e: &ast::Expr, of: Enumeration) -> Option<Expr> {
+    fn symbol_of(&mut self, e: &ast::Expr, of: Enumeration) -> Option<TypedExpr> {
         let Syntax::Path(path) = &e.kind else { return None };
         let [name] = path.names.as_slice() else { return None };
         if self.given(&name.text).is_some() {
@@ -107,29 +112,39 @@ impl<'a> Checker<'a> {
     }
 
     /// An expression that must be of this kind.
-    pub(in crate::check) fn expr_of(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Expr {
+    pub(in crate::check) fn expr_of(
+        &mut self,
+        e: &ast::Expr,
+        want: InferredType,
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let e = match self.item_due(e, want, env) {
-            Item::One(e) => e,
+            ExprItem::One(e) => e,
             other => self.one(other),
         };
         self.fit(e, want, env)
     }
 
     /// An expression where a value of this kind is due, which may be written by its bare name.
-    pub(in crate::check) fn item_due(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Item {
-        if let (Kind::List(of), Syntax::List { items, rest }) = (want, &e.kind) {
-            return Item::One(self.list(items, rest.as_deref(), of.element(), e.span, env));
+    pub(in crate::check) fn item_due(
+        &mut self,
+        e: &ast::Expr,
+        want: InferredType,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
+        if let (InferredType::List(of), Syntax::List { items, rest }) = (want, &e.kind) {
+            return ExprItem::One(self.list(items, rest.as_deref(), of.element(), e.span, env));
         }
-        let Kind::Enum(of) = want else { return self.item(e, env) };
+        let InferredType::Enum(of) = want else { return self.item(e, env) };
         if let Some(symbol) = self.symbol_of(e, of) {
-            return Item::One(symbol);
+            return ExprItem::One(symbol);
         }
         match &e.kind {
             Syntax::If { condition, then, otherwise } if self.needs_due(e) => {
-                let condition = self.expr_of(condition, Kind::Bool, env);
+                let condition = self.expr_of(condition, InferredType::Bool, env);
                 let then = self.expr_of(then, want, env);
                 let otherwise = self.expr_of(otherwise, want, env);
-                Item::One(self.conditional(condition, then, otherwise, e.span, env))
+                ExprItem::One(self.conditional(condition, then, otherwise, e.span, env))
             }
             Syntax::Path(path) if path.names.len() == 1 && self.means_nothing(&path.names[0], env) => {
                 let name = &path.names[0];
@@ -147,14 +162,14 @@ impl<'a> Checker<'a> {
                 if !self.source.unread_items {
                     self.report(issue);
                 }
-                Item::error(e.span)
+                ExprItem::error(e.span)
             }
             _ => self.item(e, env),
         }
     }
 
     /// A name that nothing has.
-    fn means_nothing(&self, name: &Name, env: &Env) -> bool {
+    fn means_nothing(&self, name: &Name, env: &ExprEnv) -> bool {
         let local = env.find(&name.text).is_some() || env.layout(&name.text).is_some();
         let signal = env
             .world
@@ -165,14 +180,14 @@ impl<'a> Checker<'a> {
     }
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
-    pub(in crate::check) fn expr_for(&mut self, e: &ast::Expr, ty: Type, env: &mut Env) -> Expr {
-        let e = self.expr_of(e, Kind::of(ty), env);
+    pub(in crate::check) fn expr_for(&mut self, e: &ast::Expr, ty: Type, env: &mut ExprEnv) -> TypedExpr {
+        let e = self.expr_of(e, InferredType::of(ty), env);
         self.in_range(&e, ty);
         e
     }
 
     /// A constant must lie in the range of its type.
-    pub(in crate::check) fn in_range(&mut self, e: &Expr, ty: Type) {
+    pub(in crate::check) fn in_range(&mut self, e: &TypedExpr, ty: Type) {
         if let Some(value) = e.constant() {
             self.value_in_range(value, ty, e.span);
         }
@@ -191,22 +206,27 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant of this kind; `None` with a diagnostic otherwise.
-    pub(in crate::check) fn constant(&mut self, e: &ast::Expr, want: Kind, env: &mut Env) -> Option<Value> {
+    pub(in crate::check) fn constant(
+        &mut self,
+        e: &ast::Expr,
+        want: InferredType,
+        env: &mut ExprEnv,
+    ) -> Option<Value> {
         let e = self.expr_of(e, want, env);
-        if e.constant().is_none() && e.ty != Kind::Unknown {
+        if e.constant().is_none() && e.ty != InferredType::Unknown {
             self.report(types::not_constant(e.span));
         }
-        e.constant().filter(|_| e.ty != Kind::Unknown)
+        e.constant().filter(|_| e.ty != InferredType::Unknown)
     }
 
     /// A constant quantity, in SI units.
-    pub(in crate::check) fn quantity_of(&mut self, e: &ast::Expr, dim: Dim) -> Option<f64> {
-        self.constant(e, Kind::Float(dim), &mut Env::constants()).and_then(Value::as_f64)
+    pub(in crate::check) fn quantity_of(&mut self, e: &ast::Expr, dim: Dimension) -> Option<f64> {
+        self.constant(e, InferredType::Float(dim), &mut ExprEnv::constants()).and_then(Value::as_f64)
     }
 
     /// A constant time in seconds, not negative; or more than zero.
     pub(in crate::check) fn time(&mut self, e: &ast::Expr, what: &str, positive: bool) -> Option<f64> {
-        let t = self.quantity_of(e, Dim::TIME)?;
+        let t = self.quantity_of(e, Dimension::TIME)?;
         if t < 0.0 || positive && t == 0.0 {
             let rule = if positive { "more than 0 s" } else { "at least 0 s" };
             self.report(types::must_be(what, rule, e.span));
@@ -221,7 +241,7 @@ impl<'a> Checker<'a> {
 
     /// A constant amount of data, in bytes: at least one.
     pub(in crate::check) fn amount_of_data(&mut self, e: &ast::Expr, what: &str) -> Option<u64> {
-        let bytes = self.quantity_of(e, Dim::DATA)?;
+        let bytes = self.quantity_of(e, Dimension::DATA)?;
         if (1.0..=MAX_DATA).contains(&bytes) {
             return Some(bytes as u64);
         }
@@ -232,7 +252,9 @@ impl<'a> Checker<'a> {
 
     /// A constant whole number of at least `lo`.
     pub(in crate::check) fn count(&mut self, e: &ast::Expr, what: &str, lo: i64) -> Option<i64> {
-        let Value::Int(n) = self.constant(e, Kind::Int, &mut Env::constants())? else { return None };
+        let Value::Int(n) = self.constant(e, InferredType::Int, &mut ExprEnv::constants())? else {
+            return None;
+        };
         let most = i64::from(u32::MAX);
         if n < lo || n > most {
             let rule = if n < lo { format!("at least {lo}") } else { format!("at most {most}") };
@@ -243,165 +265,187 @@ impl<'a> Checker<'a> {
     }
 
     /// Makes an expression fit the kind that its place needs, or says that it does not.
-    pub(in crate::check) fn fit(&mut self, e: Expr, want: Kind, env: &mut Env) -> Expr {
-        if e.ty == want || want == Kind::Unknown {
+    pub(in crate::check) fn fit(&mut self, e: TypedExpr, want: InferredType, env: &mut ExprEnv) -> TypedExpr {
+        if e.ty == want || want == InferredType::Unknown {
             return e;
         }
         match (want, e.ty) {
-            (_, Kind::Unknown) => {
+            (_, InferredType::Unknown) => {
                 self.learn(&e, want, env);
                 e
             }
-            (Kind::Float(Dim::NUMBER), Kind::Int) => as_float(e),
-            (Kind::List(_), Kind::List(_)) if want.with(e.ty).is_some() => {
+            (InferredType::Float(Dimension::NUMBER), InferredType::Int) => as_float(e),
+            (InferredType::List(_), InferredType::List(_)) if want.with(e.ty).is_some() => {
                 self.learn(&e, want, env);
                 e
             }
             (
-                Kind::Bool
-                | Kind::Int
-                | Kind::Float(_)
-                | Kind::Enum(_)
-                | Kind::Text
-                | Kind::List(_)
-                | Kind::Unknown,
+                InferredType::Bool
+                | InferredType::Int
+                | InferredType::Float(_)
+                | InferredType::Enum(_)
+                | InferredType::Text
+                | InferredType::List(_)
+                | InferredType::Unknown,
                 _,
             ) => {
                 self.report(types::mismatch(want, e.ty, e.constant(), e.span));
-                Expr::error(e.span)
+                TypedExpr::error(e.span)
             }
         }
     }
 
     /// A variable's kind is known from its use.
-    fn learn(&mut self, e: &Expr, ty: Kind, env: &mut Env) {
-        if let ExprKind::Leaf(leaf) = e.kind {
+    fn learn(&mut self, e: &TypedExpr, ty: InferredType, env: &mut ExprEnv) {
+        if let TypedExprKind::Leaf(leaf) = e.kind {
             env.refine(leaf, ty);
         }
     }
 
-    fn quantity(&mut self, number: f64, unit: &Name, span: Span) -> Expr {
-        match Unit::of(&unit.text) {
+    fn quantity(&mut self, number: f64, unit: &Name, span: Span) -> TypedExpr {
+        match UnitOfMeasure::of(&unit.text) {
             Some(unit) => {
                 let si = Ok(Value::Float(unit.to_si(number)));
-                self.folded(Some(si), Expr::value(Value::Float(0.0), Kind::Float(unit.dim), span))
+                self.folded(
+                    Some(si),
+                    TypedExpr::value(Value::Float(0.0), InferredType::Float(unit.dim), span),
+                )
             }
             None => {
                 self.report(types::unknown_unit(&unit.text, unit.span));
-                Expr::error(span)
+                TypedExpr::error(span)
             }
         }
     }
 
-    fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
+    fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut ExprEnv) -> ExprItem {
         let name = &callee.names[0];
         // One of an automaton has its name before it, in a query.
         let whole = callee.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
         let whole = Name { text: whole, ..name.clone() };
         if let Some(value) = self.applied_function(&whole, args, span, env) {
-            return Item::One(value);
+            return ExprItem::One(value);
         }
         if let ([_], Some(id)) = (callee.names.as_slice(), self.types.record_names.get(&name.text)) {
             self.refer(name, self.types.record_names.span(id));
             return self.record(id, name, args, span, env);
         }
         let plain = FUNCTIONS.iter().find(|(n, _)| *n == name.text && callee.names.len() == 1);
-        let Some((text, f)) = plain else { return Item::One(self.measured(callee, args, span, env)) };
+        let Some((text, f)) = plain else { return ExprItem::One(self.measured(callee, args, span, env)) };
         if *f == NumberFunction::Norm {
-            return Item::One(self.norm(args, span, env));
+            return ExprItem::One(self.norm(args, span, env));
         }
         let want = if *f == NumberFunction::Abs { 1 } else { 2 };
-        let args: Vec<Expr> = args.iter().map(|a| self.expr(a, env)).collect();
+        let args: Vec<TypedExpr> = args.iter().map(|a| self.expr(a, env)).collect();
         if args.len() != want {
             self.report(types::counts(Noun::Function, text, want, args.len(), span));
-            return Item::error(span);
+            return ExprItem::error(span);
         }
         for arg in &args {
             if !arg.ty.is_number() {
-                let want = Kind::Float(Dim::NUMBER);
+                let want = InferredType::Float(Dimension::NUMBER);
                 self.report(types::mismatch(want, arg.ty, None, arg.span));
-                return Item::error(span);
+                return ExprItem::error(span);
             }
         }
         let Some(ty) = args.iter().skip(1).try_fold(args[0].ty, |ty, a| {
             self.same(text, (ty, args[0].span, args[0].constant()), (a.ty, a.span, a.constant()))
         }) else {
-            return Item::error(span);
+            return ExprItem::error(span);
         };
-        Item::One(self.applied(*f, args, ty, span))
+        ExprItem::One(self.applied(*f, args, ty, span))
     }
 
     /// `Pose(1 m, 2 m)`
-    fn record(&mut self, id: u16, name: &Name, args: &[ast::Expr], span: Span, env: &mut Env) -> Item {
-        let Some(fields) = self.record_fields(id, name) else { return Item::error(span) };
+    fn record(
+        &mut self,
+        id: u16,
+        name: &Name,
+        args: &[ast::Expr],
+        span: Span,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
+        let Some(fields) = self.record_fields(id, name) else { return ExprItem::error(span) };
         if args.len() != fields.len() {
             let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
             let issue = types::counts(Noun::Record, &name.text, fields.len(), args.len(), span);
             self.report(issue.help(format!("write `{}({})`", name.text, names.join(", "))));
-            return Item::error(span);
+            return ExprItem::error(span);
         }
         let parts =
             args.iter().zip(fields.iter()).map(|(a, (_, layout))| self.item_for(a, layout, env)).collect();
-        Item::Record(id, parts, span)
+        ExprItem::Record(id, parts, span)
     }
 
     pub(in crate::check) fn applied(
         &mut self,
         f: NumberFunction,
-        args: Vec<Expr>,
-        ty: Kind,
+        args: Vec<TypedExpr>,
+        ty: InferredType,
         span: Span,
-    ) -> Expr {
-        let values: Option<Vec<Value>> = args.iter().map(Expr::constant).collect();
+    ) -> TypedExpr {
+        let values: Option<Vec<Value>> = args.iter().map(TypedExpr::constant).collect();
         let folded = values.map(|v| hrdsl_ir::expr::call(f, &v));
-        self.folded(folded, Expr { kind: ExprKind::Call(f, args), ty, span })
+        self.folded(folded, TypedExpr { kind: TypedExprKind::Call(f, args), ty, span })
     }
 
-    fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &mut Env) -> Item {
+    fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &mut ExprEnv) -> ExprItem {
         let operand = match op {
-            UnaryOp::Not => Item::One(self.expr_of(operand, Kind::Bool, env)),
+            UnaryOp::Not => ExprItem::One(self.expr_of(operand, InferredType::Bool, env)),
             UnaryOp::Neg => self.item(operand, env),
         };
         self.unary_item(op, operand, span)
     }
 
-    fn unary_item(&mut self, op: UnaryOp, operand: Item, span: Span) -> Item {
+    fn unary_item(&mut self, op: UnaryOp, operand: ExprItem, span: Span) -> ExprItem {
         let operand = match operand {
-            Item::One(operand) => operand,
-            Item::Array(parts, _) | Item::Tuple(parts, _) => {
-                return Item::Array(parts.into_iter().map(|p| self.unary_item(op, p, span)).collect(), span);
+            ExprItem::One(operand) => operand,
+            ExprItem::Array(parts, _) | ExprItem::Tuple(parts, _) => {
+                return ExprItem::Array(
+                    parts.into_iter().map(|p| self.unary_item(op, p, span)).collect(),
+                    span,
+                );
             }
-            Item::Record(..) => {
+            ExprItem::Record(..) => {
                 let got = self.shown(&operand);
                 let issue = types::other_shape("a number", &got, operand.span());
                 self.report(issue.help("a record has no negative: name a part of it"));
-                return Item::error(span);
+                return ExprItem::error(span);
             }
         };
         if op == UnaryOp::Neg && !operand.ty.is_number() {
-            let want = Kind::Float(Dim::NUMBER);
+            let want = InferredType::Float(Dimension::NUMBER);
             self.report(types::mismatch(want, operand.ty, None, operand.span));
-            return Item::error(span);
+            return ExprItem::error(span);
         }
-        let ty = if op == UnaryOp::Not { Kind::Bool } else { operand.ty };
+        let ty = if op == UnaryOp::Not { InferredType::Bool } else { operand.ty };
         let folded = operand.constant().map(|v| hrdsl_ir::expr::unary(op, v));
-        Item::One(self.folded(folded, Expr { kind: ExprKind::Unary(op, Box::new(operand)), ty, span }))
+        ExprItem::One(
+            self.folded(folded, TypedExpr { kind: TypedExprKind::Unary(op, Box::new(operand)), ty, span }),
+        )
     }
 
-    fn binary(&mut self, op: BinaryOp, l: &ast::Expr, r: &ast::Expr, span: Span, env: &mut Env) -> Item {
+    fn binary(
+        &mut self,
+        op: BinaryOp,
+        l: &ast::Expr,
+        r: &ast::Expr,
+        span: Span,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
         if matches!(op, BinaryOp::And | BinaryOp::Or) {
-            let (l, r) = (self.expr_of(l, Kind::Bool, env), self.expr_of(r, Kind::Bool, env));
-            return Item::One(self.operate(op, l, r, span, env));
+            let (l, r) = (self.expr_of(l, InferredType::Bool, env), self.expr_of(r, InferredType::Bool, env));
+            return ExprItem::One(self.operate(op, l, r, span, env));
         }
         let (l, r) = self.sides(l, r, env);
         match (l, r) {
-            (Item::One(l), Item::One(r)) => Item::One(self.operate(op, l, r, span, env)),
+            (ExprItem::One(l), ExprItem::One(r)) => ExprItem::One(self.operate(op, l, r, span, env)),
             (l, r) => self.combine(op, l, r, span, env),
         }
     }
 
     /// Both operands; bare names of an enumeration's values are of the other side's enumeration.
-    fn sides(&mut self, l: &ast::Expr, r: &ast::Expr, env: &mut Env) -> (Item, Item) {
+    fn sides(&mut self, l: &ast::Expr, r: &ast::Expr, env: &mut ExprEnv) -> (ExprItem, ExprItem) {
         if !self.types.values.is_empty() && self.needs_due(l) && !self.needs_due(r) {
             let right = self.item(r, env);
             return (self.item_like(l, &right, env), right);
@@ -415,45 +459,45 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn operate(
         &mut self,
         op: BinaryOp,
-        l: Expr,
-        r: Expr,
+        l: TypedExpr,
+        r: TypedExpr,
         span: Span,
-        env: &mut Env,
-    ) -> Expr {
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let logical = matches!(op, BinaryOp::And | BinaryOp::Or);
         // What is multiplied with a quantity need not be one.
         let scaled = matches!(op, BinaryOp::Mul | BinaryOp::Div);
-        let quantity = |ty: Kind| matches!(ty, Kind::Float(dim) if dim != Dim::NUMBER);
-        let tells = |ty: Kind| !logical && (!scaled || !quantity(ty));
-        if l.ty == Kind::Unknown && r.ty != Kind::Unknown && tells(r.ty) {
+        let quantity = |ty: InferredType| matches!(ty, InferredType::Float(dim) if dim != Dimension::NUMBER);
+        let tells = |ty: InferredType| !logical && (!scaled || !quantity(ty));
+        if l.ty == InferredType::Unknown && r.ty != InferredType::Unknown && tells(r.ty) {
             self.learn(&l, r.ty, env);
-        } else if r.ty == Kind::Unknown && tells(l.ty) {
+        } else if r.ty == InferredType::Unknown && tells(l.ty) {
             self.learn(&r, l.ty, env);
         }
-        if !logical && (l.kind == ExprKind::Error || r.kind == ExprKind::Error) {
+        if !logical && (l.kind == TypedExprKind::Error || r.kind == TypedExprKind::Error) {
             // One of them has a diagnostic; nothing follows from the other.
-            return Expr::error(span);
+            return TypedExpr::error(span);
         }
-        let ty = if logical { Some(Kind::Bool) } else { self.result(op, &l, &r) };
-        let Some(ty) = ty else { return Expr::error(span) };
+        let ty = if logical { Some(InferredType::Bool) } else { self.result(op, &l, &r) };
+        let Some(ty) = ty else { return TypedExpr::error(span) };
         let folded = l.constant().zip(r.constant()).map(|(a, b)| hrdsl_ir::expr::binary(op, a, b));
-        self.folded(folded, Expr { kind: ExprKind::Binary(op, Box::new(l), Box::new(r)), ty, span })
+        self.folded(folded, TypedExpr { kind: TypedExprKind::Binary(op, Box::new(l), Box::new(r)), ty, span })
     }
 
     /// What an operator yields on these operands.
-    fn result(&mut self, op: BinaryOp, l: &Expr, r: &Expr) -> Option<Kind> {
+    fn result(&mut self, op: BinaryOp, l: &TypedExpr, r: &TypedExpr) -> Option<InferredType> {
         let (left, right) = ((l.ty, l.span, l.constant()), (r.ty, r.span, r.constant()));
         match op {
-            BinaryOp::And | BinaryOp::Or => Some(Kind::Bool),
+            BinaryOp::And | BinaryOp::Or => Some(InferredType::Bool),
             BinaryOp::Eq | BinaryOp::Ne => {
                 if !l.ty.is_number() && l.ty.with(r.ty).is_some() {
-                    return Some(Kind::Bool);
+                    return Some(InferredType::Bool);
                 }
-                self.same(symbol(op), left, right).map(|_| Kind::Bool)
+                self.same(symbol(op), left, right).map(|_| InferredType::Bool)
             }
             BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
                 self.numbers(op, l, r)?;
-                self.same(symbol(op), left, right).map(|_| Kind::Bool)
+                self.same(symbol(op), left, right).map(|_| InferredType::Bool)
             }
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Rem => {
                 self.numbers(op, l, r)?;
@@ -462,18 +506,18 @@ impl<'a> Checker<'a> {
             BinaryOp::Mul | BinaryOp::Div => {
                 self.numbers(op, l, r)?;
                 Some(match (l.ty, r.ty) {
-                    (Kind::Int, Kind::Int) => Kind::Int,
-                    (Kind::Unknown, _) | (_, Kind::Unknown) => Kind::Unknown,
+                    (InferredType::Int, InferredType::Int) => InferredType::Int,
+                    (InferredType::Unknown, _) | (_, InferredType::Unknown) => InferredType::Unknown,
                     (a, b) => {
                         let (a, b) = (a.dim().unwrap_or_default(), b.dim().unwrap_or_default());
-                        Kind::Float(if op == BinaryOp::Mul { a.times(b) } else { a.per(b) })
+                        InferredType::Float(if op == BinaryOp::Mul { a.times(b) } else { a.per(b) })
                     }
                 })
             }
         }
     }
 
-    fn numbers(&mut self, op: BinaryOp, l: &Expr, r: &Expr) -> Option<()> {
+    fn numbers(&mut self, op: BinaryOp, l: &TypedExpr, r: &TypedExpr) -> Option<()> {
         if !l.ty.is_number() || !r.ty.is_number() {
             self.report(types::operands(symbol(op), (l.ty, l.span), (r.ty, r.span)));
             return None;
@@ -485,28 +529,28 @@ impl<'a> Checker<'a> {
     fn same(
         &mut self,
         op: &str,
-        l: (Kind, Span, Option<Value>),
-        r: (Kind, Span, Option<Value>),
-    ) -> Option<Kind> {
+        l: (InferredType, Span, Option<Value>),
+        r: (InferredType, Span, Option<Value>),
+    ) -> Option<InferredType> {
         match (l.0, r.0) {
-            (Kind::Unknown, other) | (other, Kind::Unknown) => Some(other),
+            (InferredType::Unknown, other) | (other, InferredType::Unknown) => Some(other),
             (a, b) if a == b => Some(a),
-            (Kind::List(_), Kind::List(_)) if l.0.with(r.0).is_some() => l.0.with(r.0),
-            (Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_), _)
-            | (_, Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_)) => {
+            (InferredType::List(_), InferredType::List(_)) if l.0.with(r.0).is_some() => l.0.with(r.0),
+            (InferredType::Bool | InferredType::Enum(_) | InferredType::Text | InferredType::List(_), _)
+            | (_, InferredType::Bool | InferredType::Enum(_) | InferredType::Text | InferredType::List(_)) => {
                 self.report(types::operands(op, (l.0, l.1), (r.0, r.1)));
                 None
             }
-            (a, b) if a.dim() == b.dim() => Some(Kind::Float(Dim::NUMBER)),
-            (a, Kind::Float(dim)) if a.is_bare() => {
+            (a, b) if a.dim() == b.dim() => Some(InferredType::Float(Dimension::NUMBER)),
+            (a, InferredType::Float(dim)) if a.is_bare() => {
                 self.report(types::bare_number(dim, l.2, l.1));
                 None
             }
-            (Kind::Float(dim), b) if b.is_bare() => {
+            (InferredType::Float(dim), b) if b.is_bare() => {
                 self.report(types::bare_number(dim, r.2, r.1));
                 None
             }
-            (Kind::Int | Kind::Float(_), Kind::Int | Kind::Float(_)) => {
+            (InferredType::Int | InferredType::Float(_), InferredType::Int | InferredType::Float(_)) => {
                 self.report(types::dimensions(op, (l.0, l.1), (r.0, r.1)));
                 None
             }
@@ -515,54 +559,58 @@ impl<'a> Checker<'a> {
 
     pub(in crate::check) fn conditional(
         &mut self,
-        condition: Expr,
-        then: Expr,
-        otherwise: Expr,
+        condition: TypedExpr,
+        then: TypedExpr,
+        otherwise: TypedExpr,
         span: Span,
-        env: &mut Env,
-    ) -> Expr {
-        if then.kind == ExprKind::Error || otherwise.kind == ExprKind::Error {
-            return Expr::error(span);
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
+        if then.kind == TypedExprKind::Error || otherwise.kind == TypedExprKind::Error {
+            return TypedExpr::error(span);
         }
         let sides =
             ((then.ty, then.span, then.constant()), (otherwise.ty, otherwise.span, otherwise.constant()));
-        let Some(ty) = self.same("if", sides.0, sides.1) else { return Expr::error(span) };
+        let Some(ty) = self.same("if", sides.0, sides.1) else { return TypedExpr::error(span) };
         let (then, otherwise) = (self.fit(then, ty, env), self.fit(otherwise, ty, env));
         if let Some(Value::Bool(b)) = condition.constant() {
-            return Expr { span, ..if b { then } else { otherwise } };
+            return TypedExpr { span, ..if b { then } else { otherwise } };
         }
-        Expr { kind: ExprKind::If(Box::new(condition), Box::new(then), Box::new(otherwise)), ty, span }
+        TypedExpr {
+            kind: TypedExprKind::If(Box::new(condition), Box::new(then), Box::new(otherwise)),
+            ty,
+            span,
+        }
     }
 
     /// The constant, if the operands were.
-    fn folded(&mut self, value: Option<Result<Value, EvalError>>, e: Expr) -> Expr {
+    fn folded(&mut self, value: Option<Result<Value, EvalError>>, e: TypedExpr) -> TypedExpr {
         match value {
             None => e,
             Some(Ok(Value::Float(x))) if !x.is_finite() => {
                 self.report(types::fold(EvalError::Overflow, e.span));
-                Expr::error(e.span)
+                TypedExpr::error(e.span)
             }
-            Some(Ok(value)) => Expr::value(value, e.ty, e.span),
+            Some(Ok(value)) => TypedExpr::value(value, e.ty, e.span),
             Some(Err(error)) => {
                 self.report(types::fold(error, e.span));
-                Expr::error(e.span)
+                TypedExpr::error(e.span)
             }
         }
     }
 }
 
-pub(in crate::check) fn symbol_value(of: Enumeration, symbol: Symbol, span: Span) -> Expr {
-    Expr::value(Value::Symbol(symbol), Kind::Enum(of), span)
+pub(in crate::check) fn symbol_value(of: Enumeration, symbol: Symbol, span: Span) -> TypedExpr {
+    TypedExpr::value(Value::Symbol(symbol), InferredType::Enum(of), span)
 }
 
 /// A whole number where a float is due.
-fn as_float(e: Expr) -> Expr {
-    let (ty, span) = (Kind::Float(Dim::NUMBER), e.span);
+fn as_float(e: TypedExpr) -> TypedExpr {
+    let (ty, span) = (InferredType::Float(Dimension::NUMBER), e.span);
     match e.constant().and_then(Value::as_f64) {
-        Some(x) => Expr::value(Value::Float(x), ty, span),
+        Some(x) => TypedExpr::value(Value::Float(x), ty, span),
         None => {
-            let one = Expr::value(Value::Float(1.0), ty, span);
-            Expr { kind: ExprKind::Binary(BinaryOp::Mul, Box::new(e), Box::new(one)), ty, span }
+            let one = TypedExpr::value(Value::Float(1.0), ty, span);
+            TypedExpr { kind: TypedExprKind::Binary(BinaryOp::Mul, Box::new(e), Box::new(one)), ty, span }
         }
     }
 }

@@ -3,13 +3,13 @@
 use hrdsl_source::Span;
 
 use crate::check::value::expr::MAX_TIME;
-use crate::{BinaryOp, Expr, ExprKind, Kind, Time, TimeTerm, UnaryOp, Value};
+use crate::{BinaryOp, InferredType, TypedExpr, TypedExprKind, TypedTime, TypedTimeTerm, UnaryOp, Value};
 
 /// `constant + Σ factor · value`, in SI units; each value is a whole number.
 #[derive(Clone, Debug, Default)]
-pub(in crate::check) struct Linear {
+pub(in crate::check) struct LinearTime {
     constant: f64,
-    terms: Vec<(f64, Expr)>,
+    terms: Vec<(f64, TypedExpr)>,
 }
 
 /// Why a sum is no time that an engine can count with.
@@ -20,13 +20,13 @@ pub(crate) enum BadTime {
     TooLong,
 }
 
-impl Linear {
+impl LinearTime {
     fn constant(constant: f64) -> Self {
         Self { constant, terms: Vec::new() }
     }
 
     /// Adds another, multiplied.
-    pub fn add(&mut self, other: Linear, times: f64) {
+    pub fn add(&mut self, other: LinearTime, times: f64) {
         self.constant += other.constant * times;
         self.terms.extend(other.terms.into_iter().map(|(f, e)| (f * times, e)));
     }
@@ -38,7 +38,7 @@ impl Linear {
     }
 
     fn product(self, other: Self) -> Self {
-        let mut terms: Vec<(f64, Expr)> = Vec::new();
+        let mut terms: Vec<(f64, TypedExpr)> = Vec::new();
         for (f, a) in &self.terms {
             terms.extend(other.terms.iter().map(|(g, b)| (f * g, times(a, b))));
         }
@@ -48,12 +48,12 @@ impl Linear {
     }
 
     /// `if condition { self } else { other }`: where it does not apply, a part is not evaluated.
-    fn either(self, other: Self, condition: &Expr) -> Self {
-        let number = |n| Expr::value(Value::Int(n), Kind::Int, condition.span);
-        let choice = |a: Expr, b: Expr| Expr {
+    fn either(self, other: Self, condition: &TypedExpr) -> Self {
+        let number = |n| TypedExpr::value(Value::Int(n), InferredType::Int, condition.span);
+        let choice = |a: TypedExpr, b: TypedExpr| TypedExpr {
             span: condition.span,
-            kind: ExprKind::If(Box::new(condition.clone()), Box::new(a), Box::new(b)),
-            ty: Kind::Int,
+            kind: TypedExprKind::If(Box::new(condition.clone()), Box::new(a), Box::new(b)),
+            ty: InferredType::Int,
         };
         let mut terms = vec![(self.constant - other.constant, choice(number(1), number(0)))];
         terms.extend(self.terms.into_iter().map(|(f, e)| (f, choice(e, number(0)))));
@@ -62,57 +62,59 @@ impl Linear {
     }
 
     /// In nanoseconds, multiplied by `sign`.
-    pub fn time(self, sign: f64) -> Result<Time, BadTime> {
+    pub fn time(self, sign: f64) -> Result<TypedTime, BadTime> {
         let nanos = |seconds: f64| {
             let fits = seconds.abs() <= MAX_TIME;
             fits.then(|| (seconds * sign * 1e9).round() as i64).ok_or(BadTime::TooLong)
         };
-        let mut time = Time::constant(nanos(self.constant)?);
+        let mut time = TypedTime::constant(nanos(self.constant)?);
         for (factor, value) in self.terms.into_iter().filter(|(f, _)| *f != 0.0) {
             // What the conversion from decimal seconds costs is no fraction.
             let exact = factor.abs() * 1e9;
             if (exact - exact.round()).abs() > 1e-4_f64.max(exact * 1e-15) {
                 return Err(BadTime::Fraction);
             }
-            time.terms.push(TimeTerm { factor: nanos(factor)?, value });
+            time.terms.push(TypedTimeTerm { factor: nanos(factor)?, value });
         }
         Ok(time)
     }
 }
 
-fn times(a: &Expr, b: &Expr) -> Expr {
-    let kind = ExprKind::Binary(BinaryOp::Mul, Box::new(a.clone()), Box::new(b.clone()));
-    Expr { kind, ty: Kind::Int, span: a.span.to(b.span) }
+fn times(a: &TypedExpr, b: &TypedExpr) -> TypedExpr {
+    let kind = TypedExprKind::Binary(BinaryOp::Mul, Box::new(a.clone()), Box::new(b.clone()));
+    TypedExpr { kind, ty: InferredType::Int, span: a.span.to(b.span) }
 }
 
 /// A number as such a sum.
 ///
 /// # Errors
 /// The part that is none; `None` if it has a diagnostic already.
-pub(in crate::check) fn linear(e: &Expr) -> Result<Linear, Option<Span>> {
+pub(in crate::check) fn linear(e: &TypedExpr) -> Result<LinearTime, Option<Span>> {
     if let (Some(n), true) = (e.constant().and_then(Value::as_f64), e.ty.is_number()) {
-        return Ok(Linear::constant(n));
+        return Ok(LinearTime::constant(n));
     }
     match e.ty {
-        Kind::Int => return Ok(Linear { constant: 0.0, terms: vec![(1.0, e.clone())] }),
-        Kind::Unknown => return Err(None),
-        Kind::Float(_) => {}
-        Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) => return Err(Some(e.span)),
+        InferredType::Int => return Ok(LinearTime { constant: 0.0, terms: vec![(1.0, e.clone())] }),
+        InferredType::Unknown => return Err(None),
+        InferredType::Float(_) => {}
+        InferredType::Bool | InferredType::Enum(_) | InferredType::Text | InferredType::List(_) => {
+            return Err(Some(e.span));
+        }
     }
     match &e.kind {
-        ExprKind::Unary(UnaryOp::Neg, a) => Ok(linear(a)?.scaled(-1.0)),
-        ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), a, b) => {
+        TypedExprKind::Unary(UnaryOp::Neg, a) => Ok(linear(a)?.scaled(-1.0)),
+        TypedExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), a, b) => {
             let mut sum = linear(a)?;
             sum.add(linear(b)?, if *op == BinaryOp::Add { 1.0 } else { -1.0 });
             Ok(sum)
         }
-        ExprKind::Binary(BinaryOp::Mul, a, b) => Ok(linear(a)?.product(linear(b)?)),
-        ExprKind::Binary(BinaryOp::Div, a, b) => match b.constant().and_then(Value::as_f64) {
+        TypedExprKind::Binary(BinaryOp::Mul, a, b) => Ok(linear(a)?.product(linear(b)?)),
+        TypedExprKind::Binary(BinaryOp::Div, a, b) => match b.constant().and_then(Value::as_f64) {
             Some(by) if by != 0.0 => Ok(linear(a)?.scaled(1.0 / by)),
             Some(_) | None => Err(Some(e.span)),
         },
-        ExprKind::If(condition, a, b) => Ok(linear(a)?.either(linear(b)?, condition)),
-        ExprKind::Error => Err(None),
+        TypedExprKind::If(condition, a, b) => Ok(linear(a)?.either(linear(b)?, condition)),
+        TypedExprKind::Error => Err(None),
         _ => Err(Some(e.span)),
     }
 }
@@ -120,25 +122,29 @@ pub(in crate::check) fn linear(e: &Expr) -> Result<Linear, Option<Span>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Dim, Leaf};
+    use crate::{Dimension, VariableRef};
 
-    fn float(x: f64) -> Expr {
-        Expr::value(Value::Float(x), Kind::Float(Dim::TIME), Span::default())
+    fn float(x: f64) -> TypedExpr {
+        TypedExpr::value(Value::Float(x), InferredType::Float(Dimension::TIME), Span::default())
     }
 
-    fn var() -> Expr {
-        Expr { kind: ExprKind::Leaf(Leaf::Own(0)), ty: Kind::Int, span: Span::default() }
+    fn var() -> TypedExpr {
+        TypedExpr {
+            kind: TypedExprKind::Leaf(VariableRef::Own(0)),
+            ty: InferredType::Int,
+            span: Span::default(),
+        }
     }
 
-    fn op(op: BinaryOp, a: Expr, b: Expr) -> Expr {
-        let kind = ExprKind::Binary(op, Box::new(a), Box::new(b));
-        Expr { kind, ty: Kind::Float(Dim::TIME), span: Span::default() }
+    fn op(op: BinaryOp, a: TypedExpr, b: TypedExpr) -> TypedExpr {
+        let kind = TypedExprKind::Binary(op, Box::new(a), Box::new(b));
+        TypedExpr { kind, ty: InferredType::Float(Dimension::TIME), span: Span::default() }
     }
 
     #[test]
     fn factors_are_whole_nanoseconds() {
         let time = |x| linear(&op(BinaryOp::Mul, var(), float(x))).unwrap().time(1.0);
-        let one = |factor| [TimeTerm { factor, value: var() }];
+        let one = |factor| [TypedTimeTerm { factor, value: var() }];
         assert_eq!(time(0.1).unwrap().terms, one(100_000_000));
         assert_eq!(time(1e-9).unwrap().terms, one(1));
         assert_eq!(time(0.5e-9), Err(BadTime::Fraction));
@@ -150,11 +156,12 @@ mod tests {
     #[test]
     fn products_and_quotients_are_taken_apart() {
         let sum = op(BinaryOp::Add, op(BinaryOp::Mul, float(2.0), var()), float(3.0));
-        let half = op(BinaryOp::Div, sum, Expr::value(Value::Int(2), Kind::Int, Span::default()));
+        let half =
+            op(BinaryOp::Div, sum, TypedExpr::value(Value::Int(2), InferredType::Int, Span::default()));
         let time = linear(&half).unwrap().time(-1.0).unwrap();
         assert_eq!(
             (time.nanos, time.terms),
-            (-1_500_000_000, vec![TimeTerm { factor: -1_000_000_000, value: var() }])
+            (-1_500_000_000, vec![TypedTimeTerm { factor: -1_000_000_000, value: var() }])
         );
         assert!(linear(&op(BinaryOp::Div, float(1.0), var())).is_err());
         assert!(linear(&op(BinaryOp::Rem, float(1.0), float(2.0))).is_err());

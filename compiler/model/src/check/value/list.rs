@@ -3,15 +3,15 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ExprKind as Syntax};
 
-use crate::check::{checker::Checker, state::scope::Env};
+use crate::check::{checker::Checker, state::scope::ExprEnv};
 use crate::{
-    Dim, Expr, ExprKind, Kind, List, Value,
+    Dimension, InferredType, List, TypedExpr, TypedExprKind, Value,
     report::{agents, types},
 };
 
 impl Checker<'_> {
     /// What belongs into a formula stands where a value is needed.
-    pub(in crate::check) fn no_value_here(&mut self, e: &ast::Expr, env: &Env) {
+    pub(in crate::check) fn no_value_here(&mut self, e: &ast::Expr, env: &ExprEnv) {
         let issue = match &e.kind {
             Syntax::Unify { .. } => agents::no_binding(e.span, env.plan),
             Syntax::Internal(call) => {
@@ -33,40 +33,42 @@ impl Checker<'_> {
         &mut self,
         items: &[ast::Expr],
         rest: Option<&ast::Expr>,
-        element: Kind,
+        element: InferredType,
         span: Span,
-        env: &mut Env,
-    ) -> Expr {
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let mut element = element;
-        let due = |element: Kind| if element == Kind::Int { Kind::Unknown } else { element };
+        let due = |element: InferredType| {
+            if element == InferredType::Int { InferredType::Unknown } else { element }
+        };
         let mut values = Vec::new();
         for item in items {
             let value = match &item.kind {
                 Syntax::List { items, rest } => {
-                    let inner = element.element().unwrap_or(Kind::Unknown);
+                    let inner = element.element().unwrap_or(InferredType::Unknown);
                     let value = self.list(items, rest.as_deref(), inner, item.span, env);
                     self.fit(value, element, env)
                 }
                 _ => self.expr_of(item, due(element), env),
             };
             element = match (element, value.ty) {
-                (Kind::Int, Kind::Float(Dim::NUMBER)) => value.ty,
-                (Kind::Int, got) if got.with(Kind::Int).is_none() => {
-                    self.report(types::mismatch(Kind::Int, got, None, item.span));
-                    return Expr::error(span);
+                (InferredType::Int, InferredType::Float(Dimension::NUMBER)) => value.ty,
+                (InferredType::Int, got) if got.with(InferredType::Int).is_none() => {
+                    self.report(types::mismatch(InferredType::Int, got, None, item.span));
+                    return TypedExpr::error(span);
                 }
                 (known, got) => known.with(got).unwrap_or(known),
             };
             values.push(value);
         }
-        let values: Vec<Expr> = values.into_iter().map(|v| self.fit(v, element, env)).collect();
-        let rest = rest.map(|r| self.expr_of(r, Kind::list(element), env));
-        if values.iter().chain(&rest).any(|v| v.kind == ExprKind::Error) {
-            return Expr::error(span);
+        let values: Vec<TypedExpr> = values.into_iter().map(|v| self.fit(v, element, env)).collect();
+        let rest = rest.map(|r| self.expr_of(r, InferredType::list(element), env));
+        if values.iter().chain(&rest).any(|v| v.kind == TypedExprKind::Error) {
+            return TypedExpr::error(span);
         }
         let known = rest.as_ref().and_then(|r| r.ty.element()).and_then(|of| of.with(element));
-        let ty = Kind::list(known.unwrap_or(element));
-        let mut constants: Option<Vec<Value>> = values.iter().map(Expr::constant).collect();
+        let ty = InferredType::list(known.unwrap_or(element));
+        let mut constants: Option<Vec<Value>> = values.iter().map(TypedExpr::constant).collect();
         if let Some(rest) = &rest {
             constants = match (constants, rest.constant()) {
                 (Some(mut all), Some(Value::List(more))) => {
@@ -77,8 +79,8 @@ impl Checker<'_> {
             };
         }
         match constants {
-            Some(all) => Expr::value(Value::List(List::of(&all)), ty, span),
-            None => Expr { kind: ExprKind::List(values, rest.map(Box::new)), ty, span },
+            Some(all) => TypedExpr::value(Value::List(List::of(&all)), ty, span),
+            None => TypedExpr { kind: TypedExprKind::List(values, rest.map(Box::new)), ty, span },
         }
     }
 }

@@ -3,25 +3,31 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::Name;
 
-use crate::check::{checker::Checker, state::scope::Env};
-use crate::{noun::Noun, report::names::duplicate, types::Layout};
+use crate::check::{checker::Checker, state::scope::ExprEnv};
+use crate::{noun::Noun, report::names::duplicate, types::TypeLayout};
 
 impl Checker<'_> {
     /// Adds a local with a name that must be free.
-    pub(in crate::check) fn add_local(&mut self, env: &mut Env, name: &Name, noun: Noun, layout: &Layout) {
+    pub(in crate::check) fn add_local(
+        &mut self,
+        env: &mut ExprEnv,
+        name: &Name,
+        noun: Noun,
+        layout: &TypeLayout,
+    ) {
         self.check_free(env, noun, name);
         let mut leaves = Vec::new();
         self.leaves(&name.text, layout, &mut leaves);
         for (part, ty) in leaves {
             env.push_typed(&part, name.span, noun, ty);
         }
-        if !matches!(layout, Layout::Scalar(_)) {
+        if !matches!(layout, TypeLayout::Scalar(_)) {
             env.declare_layout(&name.text, layout.clone());
         }
     }
 
     /// The name is neither a local, a parameter of the template, nor a constant.
-    pub(in crate::check) fn check_free(&mut self, env: &Env, noun: Noun, name: &Name) {
+    pub(in crate::check) fn check_free(&mut self, env: &ExprEnv, noun: Noun, name: &Name) {
         let constant: Option<Span> = self.consts.get(name.text.as_str()).map(|c| c.name.span);
         let local = env.find(&name.text).map(|l| l.noun);
         let local = local.or_else(|| env.layout(&name.text).map(|_| Noun::Variable));

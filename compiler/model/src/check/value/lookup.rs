@@ -6,27 +6,31 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 use crate::check::{
     checker::Checker,
     state::{
-        item::Item,
+        item::ExprItem,
         names::ConstState,
-        scope::{Env, Local, is_variable_name},
-        template::Given,
+        scope::{ExprEnv, LocalName, is_variable_name},
+        template::TemplateArgument,
     },
     value::{expr::symbol_value, measure::text},
 };
 use crate::{
-    Expr, ExprKind,
+    TypedExpr, TypedExprKind,
     noun::Noun,
     report::{agents::unbound, automata::clock_misused, functions, names, types},
 };
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn path(&mut self, path: &ast::Path, env: &mut Env) -> Item {
+    pub(in crate::check) fn path(&mut self, path: &ast::Path, env: &mut ExprEnv) -> ExprItem {
         if let [_, _, ..] = path.names.as_slice() {
             // A part of a local has a name of its own.
             if let Some(leaf) =
                 env.find(&text(&path.names)).filter(|l| l.bound).and_then(|l| Some((l.leaf?, l.ty)))
             {
-                return Item::One(Expr { kind: ExprKind::Leaf(leaf.0), ty: leaf.1, span: path.span });
+                return ExprItem::One(TypedExpr {
+                    kind: TypedExprKind::Leaf(leaf.0),
+                    ty: leaf.1,
+                    span: path.span,
+                });
             }
         }
         // Of an automaton, in a query.
@@ -37,12 +41,12 @@ impl<'a> Checker<'a> {
             let item = self.assembled(&whole, &layout, env, path.span);
             return fields.iter().fold(item, |item, field| self.field(item, field));
         }
-        let [first, fields @ ..] = path.names.as_slice() else { return Item::error(path.span) };
+        let [first, fields @ ..] = path.names.as_slice() else { return ExprItem::error(path.span) };
         if let ([value, parts @ ..], Some(of)) = (fields, self.types.enums.get(&first.text)) {
             let of = self.s.enums[usize::from(of)].of;
             self.refer(first, self.types.enums.span_of(&first.text));
             self.refer_value(of, value);
-            let symbol = Item::One(self.symbol_named(of, value, first.span.to(value.span)));
+            let symbol = ExprItem::One(self.symbol_named(of, value, first.span.to(value.span)));
             return parts.iter().fold(symbol, |item, part| self.field(item, part));
         }
         if let ([value, ..], None, None) = (fields, env.find(&first.text), env.layout(&first.text))
@@ -50,11 +54,15 @@ impl<'a> Checker<'a> {
             && let Some(of) = self.misspelt_enum(first, value)
         {
             self.report(names::unknown(Noun::Enum, &first.text, first.span, [of]));
-            return Item::error(path.span);
+            return ExprItem::error(path.span);
         }
         let Some(mut item) = self.named(first, env) else {
             let alone = fields.is_empty() || env.world.is_none();
-            return Item::One(if alone { self.without_value(first, env) } else { self.dotted(path, env) });
+            return ExprItem::One(if alone {
+                self.without_value(first, env)
+            } else {
+                self.dotted(path, env)
+            });
         };
         for field in fields {
             item = self.field(item, field);
@@ -63,16 +71,16 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name stands for that has a value; `None` if it has none.
-    fn named(&mut self, name: &Name, env: &mut Env) -> Option<Item> {
+    fn named(&mut self, name: &Name, env: &mut ExprEnv) -> Option<ExprItem> {
         if env.broken.contains(&name.text) {
-            return Some(Item::error(name.span));
+            return Some(ExprItem::error(name.span));
         }
         if let Some(local) = env.find(&name.text) {
-            return Some(Item::One(self.local_named(name, local, env)));
+            return Some(ExprItem::One(self.local_named(name, local, env)));
         }
         if let Some(layout) = env.layout(&name.text).cloned() {
             if !self.all_bound(&name.text, &layout, env) {
-                return Some(Item::One(self.without_value(name, env)));
+                return Some(ExprItem::One(self.without_value(name, env)));
             }
             self.refer(name, env.place_of(&name.text));
             return Some(self.assembled(&name.text, &layout, env, name.span));
@@ -81,12 +89,22 @@ impl<'a> Checker<'a> {
             self.refer_given(name);
         }
         match self.given(&name.text) {
-            Some(Given::Value(item)) => {
+            Some(TemplateArgument::Value(item)) => {
                 let item = item.named_at(name.span);
-                return Some(if self.may_copy(&item, 1, name.span) { item } else { Item::error(name.span) });
+                return Some(if self.may_copy(&item, 1, name.span) {
+                    item
+                } else {
+                    ExprItem::error(name.span)
+                });
             }
-            Some(Given::Unknown) => return Some(Item::error(name.span)),
-            Some(Given::Events(_) | Given::Actor(_) | Given::Thing(..) | Given::Point(_)) | None => {}
+            Some(TemplateArgument::Unknown) => return Some(ExprItem::error(name.span)),
+            Some(
+                TemplateArgument::Events(_)
+                | TemplateArgument::Actor(_)
+                | TemplateArgument::Thing(..)
+                | TemplateArgument::Point(_),
+            )
+            | None => {}
         }
         if let Some(constant) = self.consts.get(name.text.as_str()) {
             let place = constant.name.span;
@@ -99,16 +117,18 @@ impl<'a> Checker<'a> {
         if env.plan
             && let Some(symbol) = self.players.agent_names.symbol(&name.text)
         {
-            return Some(Item::One(symbol_value(self.players.agent_names, symbol, name.span)));
+            return Some(ExprItem::One(symbol_value(self.players.agent_names, symbol, name.span)));
         }
-        self.signal_named(name, env).map(Item::One)
+        self.signal_named(name, env).map(ExprItem::One)
     }
 
     /// The value of a variable of the place itself: a parameter, a bound variable or a clock.
-    fn local_named(&mut self, name: &Name, local: &Local, env: &Env) -> Expr {
+    fn local_named(&mut self, name: &Name, local: &LocalName, env: &ExprEnv) -> TypedExpr {
         self.refer(name, Some(local.place));
         match local.leaf {
-            Some(leaf) if local.bound => Expr { kind: ExprKind::Leaf(leaf), ty: local.ty, span: name.span },
+            Some(leaf) if local.bound => {
+                TypedExpr { kind: TypedExprKind::Leaf(leaf), ty: local.ty, span: name.span }
+            }
             Some(_) => self.without_value(name, env),
             None => {
                 self.report(if self.shared.functions.open.is_some() {
@@ -116,22 +136,22 @@ impl<'a> Checker<'a> {
                 } else {
                     clock_misused(&name.text, name.span)
                 });
-                Expr::error(name.span)
+                TypedExpr::error(name.span)
             }
         }
     }
 
     /// A value of an enumeration; of two enumerations that both have it, neither is meant.
-    fn enumeration_value(&mut self, name: &Name) -> Option<Item> {
+    fn enumeration_value(&mut self, name: &Name) -> Option<ExprItem> {
         match self.types.values.get(name.text.as_str())?.as_slice() {
             &[of] => {
                 self.refer_value(of, name);
-                Some(Item::One(symbol_value(of, Symbol::intern(&name.text), name.span)))
+                Some(ExprItem::One(symbol_value(of, Symbol::intern(&name.text), name.span)))
             }
             several => {
                 let of: Vec<&str> = several.iter().map(|of| of.name()).collect();
                 self.report(names::ambiguous(&name.text, &of, name.span));
-                Some(Item::error(name.span))
+                Some(ExprItem::error(name.span))
             }
         }
     }
@@ -146,11 +166,11 @@ impl<'a> Checker<'a> {
     }
 
     /// A plan's variable by its full name, of which `P.x` may be one.
-    pub(in crate::check) fn variable(&mut self, name: &Name, env: &Env) -> Expr {
+    pub(in crate::check) fn variable(&mut self, name: &Name, env: &ExprEnv) -> TypedExpr {
         let local = env.find(&name.text).filter(|l| l.bound);
         self.refer(name, local.map(|l| l.place));
         match local.and_then(|l| Some((l.leaf?, l.ty))) {
-            Some((leaf, ty)) => Expr { kind: ExprKind::Leaf(leaf), ty, span: name.span },
+            Some((leaf, ty)) => TypedExpr { kind: TypedExprKind::Leaf(leaf), ty, span: name.span },
             None => self.without_value(name, env),
         }
     }
@@ -166,19 +186,19 @@ impl<'a> Checker<'a> {
     }
 
     /// `Order.feed`
-    fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> Expr {
+    fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> TypedExpr {
         match of.symbol(&value.text) {
             Some(symbol) => symbol_value(of, symbol, span),
             None => {
                 let near = of.values().iter().map(|v| v.name());
                 self.report(names::unknown(Noun::EnumValue, &value.text, value.span, near));
-                Expr::error(span)
+                TypedExpr::error(span)
             }
         }
     }
 
     /// A name that has no value here.
-    fn without_value(&mut self, name: &Name, env: &Env) -> Expr {
+    fn without_value(&mut self, name: &Name, env: &ExprEnv) -> TypedExpr {
         let names = self.names_with_value(env);
         self.agents.unbound.insert(name.text.clone());
         if let Some(help) = self.values_of_type(name) {
@@ -197,17 +217,19 @@ impl<'a> Checker<'a> {
                 crate::report::agents::small_variable(issue, &name.text, &names);
             }
         }
-        Expr::error(name.span)
+        TypedExpr::error(name.span)
     }
 
     /// All names that have a value here.
-    pub(in crate::check) fn names_with_value(&self, env: &Env) -> Vec<String> {
+    pub(in crate::check) fn names_with_value(&self, env: &ExprEnv) -> Vec<String> {
         let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
         let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
         let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));
         let given = self.templates.given.iter().flat_map(|given| given.iter());
         names.extend(
-            given.filter(|(_, bound)| matches!(bound.given, Given::Value(_))).map(|(n, _)| n.clone()),
+            given
+                .filter(|(_, bound)| matches!(bound.given, TemplateArgument::Value(_)))
+                .map(|(n, _)| n.clone()),
         );
         names.extend(self.signal_names(env));
         if env.plan {
@@ -229,8 +251,8 @@ impl<'a> Checker<'a> {
     }
 
     /// The value of a constant, worked out at its first use.
-    fn const_value(&mut self, name: &Name) -> Item {
-        let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return Item::error(name.span) };
+    fn const_value(&mut self, name: &Name) -> ExprItem {
+        let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return ExprItem::error(name.span) };
         match std::mem::replace(&mut entry.state, ConstState::Open) {
             ConstState::Done(item) => {
                 let here = item.named_at(name.span);
@@ -240,14 +262,14 @@ impl<'a> Checker<'a> {
             ConstState::Open => {
                 let declared = entry.name.span;
                 self.report(types::constant_cycle(&name.text, name.span, declared));
-                Item::error(name.span)
+                ExprItem::error(name.span)
             }
             ConstState::Unseen => {
                 let declared = entry.name;
                 self.work_out(declared);
                 match self.consts.get(name.text.as_str()).map(|entry| &entry.state) {
                     Some(ConstState::Done(item)) => item.named_at(name.span),
-                    Some(ConstState::Unseen | ConstState::Open) | None => Item::error(name.span),
+                    Some(ConstState::Unseen | ConstState::Open) | None => ExprItem::error(name.span),
                 }
             }
         }
@@ -271,10 +293,10 @@ impl<'a> Checker<'a> {
             let Some(value) = self.consts.get(name.text.as_str()).map(|entry| entry.value) else { continue };
             // A constant does not see the template that reads it.
             let given = self.templates.given.take();
-            let mut item = self.item(value, &mut Env::constants());
+            let mut item = self.item(value, &mut ExprEnv::constants());
             self.templates.given = given;
             if !item.is_constant() {
-                item = Item::error(item.span());
+                item = ExprItem::error(item.span());
             }
             let ty = self.shown(&item);
             self.s.names.infer(name.span, ty);

@@ -5,11 +5,12 @@ use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
 
 use crate::check::{
     checker::Checker,
-    state::{scope::Env, template::Given},
+    state::{scope::ExprEnv, template::TemplateArgument},
     value::expr::FUNCTIONS,
 };
 use crate::{
-    ArmId, Axis, BodyRef, Dim, Expr, ExprKind, GripperId, Kind, Leaf, SignalId, Term,
+    ArmId, Axis, BodyRef, Dimension, GripperId, InferredType, SignalId, SignalTerm, TypedExpr, TypedExprKind,
+    VariableRef,
     nearest::nearest,
     noun::Noun,
     report::{names, types},
@@ -19,23 +20,23 @@ const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "
 
 impl Checker<'_> {
     /// A declared signal.
-    pub(in crate::check) fn signal_named(&mut self, name: &Name, env: &Env) -> Option<Expr> {
+    pub(in crate::check) fn signal_named(&mut self, name: &Name, env: &ExprEnv) -> Option<TypedExpr> {
         let prefix = env.world.as_ref()?;
         let id = self.world.names.signals.get(&format!("{prefix}{}", name.text))?;
         self.refer(name, self.world.names.signals.span(id));
         Some(self.signal(id, name.span))
     }
 
-    fn signal(&self, id: u16, span: Span) -> Expr {
+    fn signal(&self, id: u16, span: Span) -> TypedExpr {
         let ty = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id)));
         if ty.is_some_and(|s| self.world.names.broken.contains(&s.name)) {
-            return Expr::error(span);
+            return TypedExpr::error(span);
         }
-        let ty = ty.map_or(Kind::Unknown, |s| Kind::of(s.ty));
-        Expr { kind: ExprKind::Leaf(Leaf::Signal(SignalId(id))), ty, span }
+        let ty = ty.map_or(InferredType::Unknown, |s| InferredType::of(s.ty));
+        TypedExpr { kind: TypedExprKind::Leaf(VariableRef::Signal(SignalId(id))), ty, span }
     }
 
-    pub(in crate::check) fn signal_names(&self, env: &Env) -> Vec<String> {
+    pub(in crate::check) fn signal_names(&self, env: &ExprEnv) -> Vec<String> {
         match &env.world {
             Some(prefix) => self.world.names.below(Noun::Signal, prefix),
             None => Vec::new(),
@@ -43,7 +44,7 @@ impl Checker<'_> {
     }
 
     /// `person.hand.x`, `robot.signal`
-    pub(in crate::check) fn dotted(&mut self, path: &ast::Path, env: &Env) -> Expr {
+    pub(in crate::check) fn dotted(&mut self, path: &ast::Path, env: &ExprEnv) -> TypedExpr {
         let Some(prefix) = env.world.clone() else {
             self.report(names::unknown(
                 env.noun.unwrap_or(Noun::Constant),
@@ -51,7 +52,7 @@ impl Checker<'_> {
                 path.span,
                 [],
             ));
-            return Expr::error(path.span);
+            return TypedExpr::error(path.span);
         };
         if let Some(id) = self.world.names.signals.get(&format!("{prefix}{}", text(&path.names))) {
             return self.signal(id, path.span);
@@ -63,33 +64,33 @@ impl Checker<'_> {
         if whole {
             let issue = types::no_value(&format!("the body `{}`", text(&path.names)), path.span);
             self.report(issue.help(format!("name a coordinate: `{}.x`", text(&path.names))));
-            return Expr::error(path.span);
+            return TypedExpr::error(path.span);
         }
         if let Some(base) = self.full_name(body, &prefix).filter(|base| self.world.names.is_instance(base)) {
             if !self.world.names.broken.contains(&base) {
                 let near = self.world.names.below(Noun::Signal, &format!("{base}."));
                 self.unknown(Noun::Signal, axis, &near, Some(Noun::Signal));
             }
-            return Expr::error(path.span);
+            return TypedExpr::error(path.span);
         }
         if let [only] = body
             && let Some((noun, near)) = self.meant_in_world(only, &prefix, env)
         {
             self.unknown(noun, only, &near, None);
-            return Expr::error(path.span);
+            return TypedExpr::error(path.span);
         }
-        let Some(body) = self.body_ref(body, &prefix) else { return Expr::error(path.span) };
+        let Some(body) = self.body_ref(body, &prefix) else { return TypedExpr::error(path.span) };
         match self.choice(Noun::Coordinate, axis, &["x", "y", "z"]) {
             Some(axis) => {
                 let axis = [Axis::X, Axis::Y, Axis::Z][axis];
-                term(Term::Coordinate(body, axis), Kind::Float(Dim::LENGTH), path.span)
+                term(SignalTerm::Coordinate(body, axis), InferredType::Float(Dimension::LENGTH), path.span)
             }
-            None => Expr::error(path.span),
+            None => TypedExpr::error(path.span),
         }
     }
 
     /// What a name before a dot is near to, if that is a value or a part of the world, and no body is.
-    fn meant_in_world(&self, name: &Name, prefix: &str, env: &Env) -> Option<(Noun, Vec<String>)> {
+    fn meant_in_world(&self, name: &Name, prefix: &str, env: &ExprEnv) -> Option<(Noun, Vec<String>)> {
         let near = |names: &[String]| nearest(&name.text, names.iter().map(String::as_str)).is_some();
         let full = self.full_name(std::slice::from_ref(name), prefix)?;
         let bodies = self.world.names.below(Noun::Body, prefix);
@@ -108,14 +109,14 @@ impl Checker<'_> {
         callee: &ast::Path,
         args: &[ast::Expr],
         span: Span,
-        env: &mut Env,
-    ) -> Expr {
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let name = text(&callee.names);
         let known = MEASURES.contains(&name.as_str());
         let Some(prefix) = env.world.clone().filter(|_| known) else {
             self.no_function(callee, env, known);
             args.iter().for_each(|a| self.item_quietly(a, env));
-            return Expr::error(span);
+            return TypedExpr::error(span);
         };
         let want = match name.as_str() {
             "distance" | "range" | "angle" | "visible" => 2..=2,
@@ -124,35 +125,37 @@ impl Checker<'_> {
         };
         if !want.contains(&args.len()) {
             self.report(types::counts(Noun::Function, &name, *want.start(), args.len(), span));
-            return Expr::error(span);
+            return TypedExpr::error(span);
         }
-        self.term(&name, args, &prefix, span).unwrap_or_else(|| Expr::error(span))
+        self.term(&name, args, &prefix, span).unwrap_or_else(|| TypedExpr::error(span))
     }
 
-    fn term(&mut self, name: &str, args: &[ast::Expr], prefix: &str, span: Span) -> Option<Expr> {
-        let length = Kind::Float(Dim::LENGTH);
+    fn term(&mut self, name: &str, args: &[ast::Expr], prefix: &str, span: Span) -> Option<TypedExpr> {
+        let length = InferredType::Float(Dimension::LENGTH);
         let (what, ty) = match name {
             "joint_speed" => {
                 let arm = self.world_arg(Noun::Arm, &args[0], prefix)?;
-                (Term::JointSpeed(ArmId(arm)), Kind::Float(Dim::ANGULAR_SPEED))
+                (SignalTerm::JointSpeed(ArmId(arm)), InferredType::Float(Dimension::ANGULAR_SPEED))
             }
             "holds" => {
                 let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
                 let body = args.get(1).map(|a| self.body_arg(a, prefix));
                 match body {
-                    Some(body) => (Term::Holds(gripper?, body?), Kind::Bool),
-                    None => (Term::HoldsAny(gripper?), Kind::Bool),
+                    Some(body) => (SignalTerm::Holds(gripper?, body?), InferredType::Bool),
+                    None => (SignalTerm::HoldsAny(gripper?), InferredType::Bool),
                 }
             }
-            "speed" => (Term::Speed(self.body_arg(&args[0], prefix)?), Kind::Float(Dim::SPEED)),
+            "speed" => {
+                (SignalTerm::Speed(self.body_arg(&args[0], prefix)?), InferredType::Float(Dimension::SPEED))
+            }
             _ => {
                 let (a, b) = (self.body_arg(&args[0], prefix), self.body_arg(&args[1], prefix));
                 let (a, b) = (a?, b?);
                 match name {
-                    "distance" => (Term::Distance(a, b), length),
-                    "range" => (Term::Range(a, b), length),
-                    "angle" => (Term::Angle(a, b), Kind::Float(Dim::ANGLE)),
-                    _ => (Term::Visible(a, b), Kind::Bool),
+                    "distance" => (SignalTerm::Distance(a, b), length),
+                    "range" => (SignalTerm::Range(a, b), length),
+                    "angle" => (SignalTerm::Angle(a, b), InferredType::Float(Dimension::ANGLE)),
+                    _ => (SignalTerm::Visible(a, b), InferredType::Bool),
                 }
             }
         };
@@ -216,7 +219,7 @@ impl Checker<'_> {
             self.refer_in_world(names, &full);
             return Some(id);
         }
-        if let Some(Given::Thing(is, given)) = self.given(&names[0].text) {
+        if let Some(TemplateArgument::Thing(is, given)) = self.given(&names[0].text) {
             let (is, given) = (*is, given.clone());
             return self.not_in_given(noun, is, names, &given);
         }
@@ -254,12 +257,16 @@ impl Checker<'_> {
     /// The full name of something of the world, which a parameter may stand for; `None` if that is not known.
     pub(in crate::check) fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
         match self.given(&names[0].text) {
-            Some(Given::Unknown) => None,
-            Some(Given::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
-            Some(Given::Thing(_, full)) => Some(format!("{full}.{}", text(&names[1..]))),
-            Some(Given::Value(_) | Given::Events(_) | Given::Actor(_) | Given::Point(_)) | None => {
-                Some(format!("{prefix}{}", text(names)))
-            }
+            Some(TemplateArgument::Unknown) => None,
+            Some(TemplateArgument::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
+            Some(TemplateArgument::Thing(_, full)) => Some(format!("{full}.{}", text(&names[1..]))),
+            Some(
+                TemplateArgument::Value(_)
+                | TemplateArgument::Events(_)
+                | TemplateArgument::Actor(_)
+                | TemplateArgument::Point(_),
+            )
+            | None => Some(format!("{prefix}{}", text(names))),
         }
     }
 
@@ -311,7 +318,7 @@ impl Checker<'_> {
         None
     }
 
-    fn no_function(&mut self, callee: &ast::Path, env: &Env, known: bool) {
+    fn no_function(&mut self, callee: &ast::Path, env: &ExprEnv, known: bool) {
         let name = text(&callee.names);
         if known {
             let message = format!("`{name}` is measured in the world, which cannot be read here");
@@ -335,7 +342,7 @@ impl Checker<'_> {
     }
 
     /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
-    fn item_quietly(&mut self, e: &ast::Expr, env: &mut Env) {
+    fn item_quietly(&mut self, e: &ast::Expr, env: &mut ExprEnv) {
         match &e.kind {
             Syntax::Path(_) | Syntax::Any => {}
             Syntax::Tuple(parts) => parts.iter().for_each(|p| self.item_quietly(p, env)),
@@ -348,8 +355,8 @@ fn not_a_name(noun: Noun, span: Span) -> hrdsl_source::Diagnostic {
     types::no_value("this expression", span).help(format!("name {} of the world here", noun.with_article()))
 }
 
-fn term(term: Term, ty: Kind, span: Span) -> Expr {
-    Expr { kind: ExprKind::Term(term), ty, span }
+fn term(term: SignalTerm, ty: InferredType, span: Span) -> TypedExpr {
+    TypedExpr { kind: TypedExprKind::Term(term), ty, span }
 }
 
 /// A dotted name as text.

@@ -1,36 +1,36 @@
 //! In which range a whole number lies, whatever the values of the variables in it.
 
-use crate::check::state::scope::Env;
-use crate::{BinaryOp, Expr, ExprKind, Kind, NumberFunction, UnaryOp, Value};
+use crate::check::state::scope::ExprEnv;
+use crate::{BinaryOp, InferredType, NumberFunction, TypedExpr, TypedExprKind, UnaryOp, Value};
 
 /// The smallest and largest value that is possible; `None` if that is not known.
-pub(in crate::check) fn of(e: &Expr, env: &Env) -> Option<(i64, i64)> {
-    if e.ty != Kind::Int {
+pub(in crate::check) fn of(e: &TypedExpr, env: &ExprEnv) -> Option<(i64, i64)> {
+    if e.ty != InferredType::Int {
         return None;
     }
     match &e.kind {
-        ExprKind::Const(Value::Int(n)) => Some((*n, *n)),
-        ExprKind::Const(
+        TypedExprKind::Const(Value::Int(n)) => Some((*n, *n)),
+        TypedExprKind::Const(
             Value::Bool(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_),
         )
-        | ExprKind::List(..)
-        | ExprKind::Term(_)
-        | ExprKind::Error => None,
-        ExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),
+        | TypedExprKind::List(..)
+        | TypedExprKind::Term(_)
+        | TypedExprKind::Error => None,
+        TypedExprKind::Leaf(leaf) => env.of_leaf(*leaf).and_then(|l| l.range),
         // The elements of an array are of one type.
-        ExprKind::Element(place) => env.of_leaf(place.slot).and_then(|l| l.range),
-        ExprKind::Apply(_, _, ty) => ty.range(),
-        ExprKind::Unary(UnaryOp::Neg, a) => {
+        TypedExprKind::Element(place) => env.of_leaf(place.slot).and_then(|l| l.range),
+        TypedExprKind::Apply(_, _, ty) => ty.range(),
+        TypedExprKind::Unary(UnaryOp::Neg, a) => {
             let (lo, hi) = of(a, env)?;
             Some((hi.checked_neg()?, lo.checked_neg()?))
         }
-        ExprKind::Unary(UnaryOp::Not, _) => None,
-        ExprKind::Binary(op, a, b) => binary(*op, of(a, env)?, of(b, env)?),
-        ExprKind::If(_, a, b) => {
+        TypedExprKind::Unary(UnaryOp::Not, _) => None,
+        TypedExprKind::Binary(op, a, b) => binary(*op, of(a, env)?, of(b, env)?),
+        TypedExprKind::If(_, a, b) => {
             let (a, b) = (of(a, env)?, of(b, env)?);
             Some((a.0.min(b.0), a.1.max(b.1)))
         }
-        ExprKind::Call(f, args) => {
+        TypedExprKind::Call(f, args) => {
             let ranges: Vec<(i64, i64)> = args.iter().map(|a| of(a, env)).collect::<Option<_>>()?;
             match (f, ranges.as_slice()) {
                 (NumberFunction::Min, [a, b]) => Some((a.0.min(b.0), a.1.min(b.1))),

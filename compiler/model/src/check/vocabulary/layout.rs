@@ -9,18 +9,18 @@ use crate::check::{
     checker::Checker,
     state::{
         issues::too_many,
-        record::{Fields, MAX_PARTS, RecordEntry, RecordState},
-        scope::Env,
-        table::Table,
+        record::{DeclaredFields, MAX_PARTS, RecordEntry, RecordState},
+        scope::ExprEnv,
+        table::NameTable,
     },
     vocabulary::{template, template::KIND_WORDS},
 };
 use crate::{
-    Enum, Kind, Param, Type, Value,
+    EnumDecl, InferredType, Parameter, Type, Value,
     noun::Noun,
     report::{automata, names, types},
     type_named, type_names,
-    types::Layout,
+    types::TypeLayout,
 };
 
 /// How deep records can be in records.
@@ -41,7 +41,7 @@ impl<'a> Checker<'a> {
             let help = format!("write `enum {} {{ first, second }}`", name.text);
             self.report(names::missing(name.span, "an enumeration has values", help));
         }
-        let mut table = Table::default();
+        let mut table = NameTable::default();
         if self.issues.declare(&mut self.types.enums, Noun::Enum, name).is_none() {
             return;
         }
@@ -52,7 +52,7 @@ impl<'a> Checker<'a> {
         for value in values.iter().filter(|v| table.span_of(&v.text) == Some(v.span)) {
             self.types.values.entry(&value.text).or_default().push(of);
         }
-        self.s.enums.push(Enum { of, span });
+        self.s.enums.push(EnumDecl { of, span });
     }
 
     pub(in crate::check) fn declare_record(&mut self, name: &'a Name, syntax: &'a [SyntaxParam]) {
@@ -61,7 +61,13 @@ impl<'a> Checker<'a> {
         }
         if self.issues.declare(&mut self.types.record_names, Noun::Record, name).is_some() {
             let state = RecordState::Unseen;
-            self.types.records.push(RecordEntry { name, syntax, fields: Fields::default(), state, size: 0 });
+            self.types.records.push(RecordEntry {
+                name,
+                syntax,
+                fields: DeclaredFields::default(),
+                state,
+                size: 0,
+            });
         }
     }
 
@@ -109,7 +115,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The fields of a record, which may be needed before its turn; `None` if they need themselves.
-    pub(in crate::check) fn record_fields(&mut self, id: u16, name: &Name) -> Option<Fields> {
+    pub(in crate::check) fn record_fields(&mut self, id: u16, name: &Name) -> Option<DeclaredFields> {
         self.resolve_record(usize::from(id), self.types.open_records);
         let entry = &self.types.records[usize::from(id)];
         if entry.state == RecordState::Open {
@@ -120,15 +126,15 @@ impl<'a> Checker<'a> {
     }
 
     /// Parameters; names are distinct.
-    pub(in crate::check) fn fields(&mut self, params: &[SyntaxParam]) -> Fields {
+    pub(in crate::check) fn fields(&mut self, params: &[SyntaxParam]) -> DeclaredFields {
         self.fields_as(Noun::Parameter, params)
     }
 
-    fn fields_as(&mut self, noun: Noun, params: &[SyntaxParam]) -> Fields {
-        let mut table = Table::default();
+    fn fields_as(&mut self, noun: Noun, params: &[SyntaxParam]) -> DeclaredFields {
+        let mut table = NameTable::default();
         let mut resolved = Vec::new();
         for param in params {
-            let layout = self.layout(&param.ty).unwrap_or(Layout::Unknown);
+            let layout = self.layout(&param.ty).unwrap_or(TypeLayout::Unknown);
             self.issues.declare(&mut table, noun, &param.name);
             resolved.push((param.name.text.clone(), layout));
         }
@@ -136,20 +142,20 @@ impl<'a> Checker<'a> {
     }
 
     /// The single values of parameters.
-    pub(in crate::check) fn flat(&self, fields: &[(String, Layout)]) -> Vec<Param> {
+    pub(in crate::check) fn flat(&self, fields: &[(String, TypeLayout)]) -> Vec<Parameter> {
         let mut leaves = Vec::new();
         for (name, layout) in fields {
             self.leaves(name, layout, &mut leaves);
         }
-        leaves.into_iter().map(|(name, ty)| Param { name, ty }).collect()
+        leaves.into_iter().map(|(name, ty)| Parameter { name, ty }).collect()
     }
 
     /// The type of one value.
     pub(in crate::check) fn ty(&mut self, ty: &TypeExpr) -> Option<Type> {
         match self.layout(ty)? {
-            Layout::Scalar(ty) => Some(ty),
-            Layout::Unknown => None,
-            layout @ (Layout::Record(_) | Layout::Array(..)) => {
+            TypeLayout::Scalar(ty) => Some(ty),
+            TypeLayout::Unknown => None,
+            layout @ (TypeLayout::Record(_) | TypeLayout::Array(..)) => {
                 let got = self.shown_layout(&layout);
                 let issue = types::other_shape("the type of one value", &got, type_span(ty));
                 self.report(issue.help("write a type such as `bool` or `length`, or a range `0..4`"));
@@ -159,16 +165,16 @@ impl<'a> Checker<'a> {
     }
 
     /// What a type expression means.
-    pub(in crate::check) fn layout(&mut self, ty: &TypeExpr) -> Option<Layout> {
+    pub(in crate::check) fn layout(&mut self, ty: &TypeExpr) -> Option<TypeLayout> {
         let layout = match ty {
             TypeExpr::Error => return None,
             TypeExpr::Named(name) => self.named_type(name)?,
-            TypeExpr::Range(lo, hi) => Layout::Scalar(self.range_type(lo, hi)?),
+            TypeExpr::Range(lo, hi) => TypeLayout::Scalar(self.range_type(lo, hi)?),
             TypeExpr::Array(..) => self.array_type(ty)?,
             TypeExpr::List(of) => match self.layout(of)? {
-                Layout::Scalar(of) => Layout::Scalar(Type::List(ListOf::new(of))),
-                Layout::Unknown => return None,
-                other @ (Layout::Record(_) | Layout::Array(..)) => {
+                TypeLayout::Scalar(of) => TypeLayout::Scalar(Type::List(ListOf::new(of))),
+                TypeLayout::Unknown => return None,
+                other @ (TypeLayout::Record(_) | TypeLayout::Array(..)) => {
                     let got = self.shown_layout(&other);
                     let issue = types::other_shape("the type of one value", &got, type_span(of));
                     self.report(issue.help("the elements of a list are single values, or lists"));
@@ -185,7 +191,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `T[2][3]`: two of three; the indices are written in the order of the sizes.
-    fn array_type(&mut self, ty: &TypeExpr) -> Option<Layout> {
+    fn array_type(&mut self, ty: &TypeExpr) -> Option<TypeLayout> {
         let (mut of, mut sizes) = (ty, Vec::new());
         while let TypeExpr::Array(inner, size) = of {
             sizes.push(size);
@@ -199,23 +205,23 @@ impl<'a> Checker<'a> {
                 let rule = format!("at most {MAX_PARTS}");
                 self.report(types::must_be("the size of an array", &rule, size.span));
             }
-            layout = layout.zip(fits).map(|(of, n)| Layout::Array(Box::new(of), n));
+            layout = layout.zip(fits).map(|(of, n)| TypeLayout::Array(Box::new(of), n));
         }
         layout
     }
 
     /// How many single values there are.
-    pub(in crate::check) fn size(&self, layout: &Layout) -> usize {
+    pub(in crate::check) fn size(&self, layout: &TypeLayout) -> usize {
         match layout {
-            Layout::Scalar(_) => 1,
-            Layout::Unknown => 0,
-            Layout::Record(id) => self.types.records[usize::from(*id)].size,
-            Layout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
+            TypeLayout::Scalar(_) => 1,
+            TypeLayout::Unknown => 0,
+            TypeLayout::Record(id) => self.types.records[usize::from(*id)].size,
+            TypeLayout::Array(of, n) => self.size(of).saturating_mul(usize::from(*n)),
         }
     }
 
     /// Parameters of what is not an agent's: neither strings nor lists.
-    pub(in crate::check) fn plain_fields(&mut self, params: &[SyntaxParam]) -> Fields {
+    pub(in crate::check) fn plain_fields(&mut self, params: &[SyntaxParam]) -> DeclaredFields {
         let fields = self.fields(params);
         for (param, (_, layout)) in params.iter().zip(fields.iter()) {
             self.plain(layout, &param.name.text, type_span(&param.ty));
@@ -224,7 +230,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Says if a string or list is in something that no agent has.
-    pub(in crate::check) fn plain(&mut self, layout: &Layout, name: &str, span: Span) -> bool {
+    pub(in crate::check) fn plain(&mut self, layout: &TypeLayout, name: &str, span: Span) -> bool {
         let mut leaves = Vec::new();
         self.leaves(name, layout, &mut leaves);
         let found = leaves.into_iter().find(|(_, ty)| ty.is_of_agents());
@@ -234,16 +240,16 @@ impl<'a> Checker<'a> {
         found.is_none()
     }
 
-    fn named_type(&mut self, name: &Name) -> Option<Layout> {
+    fn named_type(&mut self, name: &Name) -> Option<TypeLayout> {
         if name.text == "agent" {
-            return Some(Layout::Scalar(Type::Enum(self.players.agent_names)));
+            return Some(TypeLayout::Scalar(Type::Enum(self.players.agent_names)));
         }
         if let Some(ty) = type_named(&name.text) {
-            return Some(Layout::Scalar(ty));
+            return Some(TypeLayout::Scalar(ty));
         }
         if let Some(id) = self.types.enums.get(&name.text) {
             self.refer(name, self.types.enums.span(id));
-            return Some(Layout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
+            return Some(TypeLayout::Scalar(Type::Enum(self.s.enums[usize::from(id)].of)));
         }
         if let Some(id) = self.types.record_names.get(&name.text) {
             self.refer(name, self.types.record_names.span(id));
@@ -253,7 +259,7 @@ impl<'a> Checker<'a> {
                 return None;
             }
             // One without fields has a diagnostic.
-            return (self.types.records[usize::from(id)].size > 0).then_some(Layout::Record(id));
+            return (self.types.records[usize::from(id)].size > 0).then_some(TypeLayout::Record(id));
         }
         if name.text == "clock" {
             self.report(automata::clock_type(name.span));
@@ -280,8 +286,8 @@ impl<'a> Checker<'a> {
 
     fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
         let span = lo.span.to(hi.span);
-        let lo = self.constant(lo, Kind::Int, &mut Env::constants());
-        let hi = self.constant(hi, Kind::Int, &mut Env::constants());
+        let lo = self.constant(lo, InferredType::Int, &mut ExprEnv::constants());
+        let hi = self.constant(hi, InferredType::Int, &mut ExprEnv::constants());
         let (Some(Value::Int(lo)), Some(Value::Int(hi))) = (lo, hi) else { return None };
         if lo > hi {
             self.report(types::empty_range(Value::Int(lo), Value::Int(hi), span));

@@ -11,19 +11,19 @@ use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
 use crate::check::{
     checker::{Checker, NOBODY},
     state::{
-        names::{ConstEntry, ConstState, Declared},
-        record::Fields,
-        scope::Env,
-        table::{Map, Table},
+        names::{ConstEntry, ConstState, DeclaredPlayer},
+        record::DeclaredFields,
+        scope::ExprEnv,
+        table::{NameTable, OrderedMap},
     },
     vocabulary::template::template,
 };
 use crate::{
-    Actor, ActorId, Agent, AgentId, Automaton, AutomatonId, Event, Expr, Leaf, LocationId, PlayerRef, Role,
-    Stimulus, Type, Value, Var,
+    Actor, ActorId, AgentId, AutomatonId, AutomatonVar, LocationId, PlayerRef, Role, Type, TypedAgent,
+    TypedAutomaton, TypedEvent, TypedExpr, TypedStimulus, Value, VariableRef,
     noun::Noun,
     report::{names, roles, types},
-    types::{Layout, starting_var},
+    types::{TypeLayout, starting_var},
 };
 
 impl<'a> Checker<'a> {
@@ -68,11 +68,11 @@ impl<'a> Checker<'a> {
             match item {
                 _ if template(item).is_some() => {}
                 ItemKind::Agent(syntax) => {
-                    let plain = Declared { syntax, given: None, instance: None };
+                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
                     self.declare_agent(plain, &syntax.name, span);
                 }
                 ItemKind::Automaton(syntax) => {
-                    let plain = Declared { syntax, given: None, instance: None };
+                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
                     self.declare_automaton(plain, &syntax.name, span);
                 }
                 ItemKind::Instance(instance) => self.declare_instance(instance, span),
@@ -88,15 +88,15 @@ impl<'a> Checker<'a> {
         if !matches!(instance.sort, Sort::Agent | Sort::Automaton) {
             return;
         }
-        let Some((template, given)) = self.instance(instance, &Env::constants()) else { return };
+        let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else { return };
         let (given, instance_of) = (Some(given), Some(instance));
         match template.kind {
             ItemKind::Agent(syntax) => {
-                let declared = Declared { syntax, given, instance: instance_of };
+                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
                 self.declare_agent(declared, &instance.name, span);
             }
             ItemKind::Automaton(syntax) => {
-                let declared = Declared { syntax, given, instance: instance_of };
+                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
                 self.declare_automaton(declared, &instance.name, span);
             }
             _ => {}
@@ -164,7 +164,7 @@ impl<'a> Checker<'a> {
     fn push_event(
         &mut self,
         name: &Name,
-        fields: Fields,
+        fields: DeclaredFields,
         from: Option<ActorId>,
         to: Vec<ActorId>,
         stimulus: Option<&'a ast::Stimulus>,
@@ -174,10 +174,10 @@ impl<'a> Checker<'a> {
         if self.issues.declare(&mut self.events.table, noun, name).is_some() {
             // Without its actor, which has a diagnostic, the event still is a name.
             let from = from.unwrap_or(NOBODY);
-            let body = stimulus.map(|_| Stimulus { samples: Vec::new(), steps: Vec::new() });
+            let body = stimulus.map(|_| TypedStimulus { samples: Vec::new(), steps: Vec::new() });
             let params = self.flat(&fields);
             self.events.fields.push(fields);
-            self.s.events.push(Event {
+            self.s.events.push(TypedEvent {
                 name: name.text.clone(),
                 params,
                 from,
@@ -189,7 +189,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn declare_agent(&mut self, agent: Declared<'a, ast::Agent>, name: &Name, span: Span) {
+    fn declare_agent(&mut self, agent: DeclaredPlayer<'a, ast::Agent>, name: &Name, span: Span) {
         self.not_a_template(Sort::Agent, name);
         if self.issues.declare(&mut self.players.table, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
@@ -200,13 +200,18 @@ impl<'a> Checker<'a> {
     }
 
     /// An agent that has nothing yet.
-    pub(in crate::check) fn push_agent(&mut self, agent: &Declared<'a, ast::Agent>, name: &Name, span: Span) {
+    pub(in crate::check) fn push_agent(
+        &mut self,
+        agent: &DeclaredPlayer<'a, ast::Agent>,
+        name: &Name,
+        span: Span,
+    ) {
         let plays = &agent.syntax.plays;
         let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
-        self.agents.beliefs.push(Table::default());
-        self.agents.goals.push(Map::default());
+        self.agents.beliefs.push(NameTable::default());
+        self.agents.goals.push(OrderedMap::default());
         self.agents.belief_fields.push(Vec::new());
-        self.s.agents.push(Agent {
+        self.s.agents.push(TypedAgent {
             name: name.text.clone(),
             actor,
             beliefs: Vec::new(),
@@ -219,7 +224,7 @@ impl<'a> Checker<'a> {
         });
     }
 
-    fn declare_automaton(&mut self, automaton: Declared<'a, ast::Automaton>, name: &Name, span: Span) {
+    fn declare_automaton(&mut self, automaton: DeclaredPlayer<'a, ast::Automaton>, name: &Name, span: Span) {
         self.not_a_template(Sort::Automaton, name);
         if self.issues.declare(&mut self.players.table, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
@@ -232,7 +237,7 @@ impl<'a> Checker<'a> {
     /// An automaton that has nothing yet.
     pub(in crate::check) fn push_automaton(
         &mut self,
-        automaton: &Declared<'a, ast::Automaton>,
+        automaton: &DeclaredPlayer<'a, ast::Automaton>,
         name: &Name,
         span: Span,
     ) {
@@ -240,7 +245,7 @@ impl<'a> Checker<'a> {
         let actor = plays.map(|plays| {
             self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY)
         });
-        self.s.automata.push(Automaton {
+        self.s.automata.push(TypedAutomaton {
             name: name.text.clone(),
             actor,
             clocks: Vec::new(),
@@ -253,7 +258,7 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_shared(&mut self, var: &ast::Var, span: Span) {
-        self.check_free(&Env::constants(), Noun::Variable, &var.name);
+        self.check_free(&ExprEnv::constants(), Noun::Variable, &var.name);
         let (issues, names) = (&mut self.issues, &mut self.shared.names);
         if issues.declare(names, Noun::Variable, &var.name).is_none() {
             return;
@@ -269,27 +274,27 @@ impl<'a> Checker<'a> {
             let Some(i) = issues.declare_as(table, Noun::Variable, &var.name, place) else {
                 return;
             };
-            Rc::make_mut(&mut self.shared.scope).add_variable(Leaf::Shared(i), &var, place);
+            Rc::make_mut(&mut self.shared.scope).add_variable(VariableRef::Shared(i), &var, place);
             self.s.shared.push(var);
         }
-        if !matches!(layout, Layout::Scalar(_)) {
+        if !matches!(layout, TypeLayout::Scalar(_)) {
             Rc::make_mut(&mut self.shared.scope).layouts.insert(var.name.text.clone(), layout);
         }
     }
 
     /// A variable of an automaton or shared: of finite types, each part with a value at the start.
-    pub(in crate::check) fn var(&mut self, var: &ast::Var) -> (Layout, Vec<Var>) {
+    pub(in crate::check) fn var(&mut self, var: &ast::Var) -> (TypeLayout, Vec<AutomatonVar>) {
         let span = var.name.span;
         let layout = self.layout(&var.ty).filter(|l| {
             self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of automata", span)
         });
-        let layout = layout.unwrap_or(Layout::Unknown);
+        let layout = layout.unwrap_or(TypeLayout::Unknown);
         let mut values = Vec::new();
         if let Some(e) = &var.init {
-            self.item_for(e, &layout, &mut Env::constants()).flatten(&mut values);
+            self.item_for(e, &layout, &mut ExprEnv::constants()).flatten(&mut values);
         }
         for e in &values {
-            if e.constant().is_none() && e.ty != crate::Kind::Unknown {
+            if e.constant().is_none() && e.ty != crate::InferredType::Unknown {
                 self.report(types::not_constant(e.span));
             }
         }
@@ -297,7 +302,7 @@ impl<'a> Checker<'a> {
         self.leaves(&var.name.text, &layout, &mut leaves);
         let mut values = values.into_iter();
         let vars = leaves.into_iter().map(|(name, ty)| {
-            let init = values.next().and_then(|e: Expr| e.constant());
+            let init = values.next().and_then(|e: TypedExpr| e.constant());
             starting_var(&name, ty, init.unwrap_or(nearest_to_zero(ty)))
         });
         (layout, vars.collect())

@@ -2,28 +2,28 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use hrdsl_source::{Code, Diagnostic, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 use hrdsl_syntax::ast::{self, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
 
 use crate::check::{
     checker::Checker,
     state::{
-        item::Item,
-        scope::Env,
-        template::{BoundParam, Given, Givens, Template},
+        item::ExprItem,
+        scope::ExprEnv,
+        template::{BoundParam, DeclaredTemplate, TemplateArgument, TemplateArguments},
     },
     value::measure,
 };
 use crate::{
-    BinaryOp, EventPattern, Expr, Kind, List, Text, Type, Value,
+    BinaryOp, EventPattern, InferredType, List, Text, Type, TypedExpr, Value,
     noun::Noun,
     report::{names, types},
-    types::Layout,
+    types::TypeLayout,
 };
 
 /// Values that stand for the parameters of a template that is checked by itself.
 #[derive(Clone, Copy)]
-pub(in crate::check) enum Trial {
+pub(in crate::check) enum TemplateTrial {
     Least,
     Greatest,
     /// Least and greatest in turn.
@@ -31,15 +31,16 @@ pub(in crate::check) enum Trial {
     Mirrored,
 }
 
-impl Trial {
-    pub const ALL: [Trial; 4] = [Trial::Greatest, Trial::Least, Trial::Mixed, Trial::Mirrored];
+impl TemplateTrial {
+    pub const ALL: [TemplateTrial; 4] =
+        [TemplateTrial::Greatest, TemplateTrial::Least, TemplateTrial::Mixed, TemplateTrial::Mirrored];
 
     fn great(self, index: usize) -> bool {
         match self {
-            Trial::Least => false,
-            Trial::Greatest => true,
-            Trial::Mixed => index.is_multiple_of(2),
-            Trial::Mirrored => !index.is_multiple_of(2),
+            TemplateTrial::Least => false,
+            TemplateTrial::Greatest => true,
+            TemplateTrial::Mixed => index.is_multiple_of(2),
+            TemplateTrial::Mirrored => !index.is_multiple_of(2),
         }
     }
 }
@@ -73,7 +74,7 @@ fn kind_of_param(param: &ast::Param) -> Option<Noun> {
 }
 
 /// The template that an item declares, if it has parameters.
-pub(in crate::check) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)> {
+pub(in crate::check) fn template(kind: &ItemKind) -> Option<(Sort, DeclaredTemplate<'_>)> {
     let (sort, name, params) = match kind {
         ItemKind::Agent(a) => (Sort::Agent, &a.name, &a.params),
         ItemKind::Automaton(a) => (Sort::Automaton, &a.name, &a.params),
@@ -103,7 +104,7 @@ pub(in crate::check) fn template(kind: &ItemKind) -> Option<(Sort, Template<'_>)
         | ItemKind::Instance(_)
         | ItemKind::Error => return None,
     };
-    params.as_deref().map(|params| (sort, Template { kind, name, params }))
+    params.as_deref().map(|params| (sort, DeclaredTemplate { kind, name, params }))
 }
 
 impl<'a> Checker<'a> {
@@ -135,7 +136,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name stands for in the instance that is being checked.
-    pub(in crate::check) fn given(&self, name: &str) -> Option<&Given> {
+    pub(in crate::check) fn given(&self, name: &str) -> Option<&TemplateArgument> {
         self.templates.given.as_ref()?.get(name).map(|bound| &bound.given)
     }
 
@@ -161,8 +162,8 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn instance(
         &mut self,
         instance: &'a ast::Instance,
-        env: &Env,
-    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        env: &ExprEnv,
+    ) -> Option<(DeclaredTemplate<'a>, Rc<TemplateArguments>)> {
         let made = self.make_instance(instance, env);
         if made.is_none() {
             self.templates.broken_instances.insert(instance.name.text.clone());
@@ -173,8 +174,8 @@ impl<'a> Checker<'a> {
     fn make_instance(
         &mut self,
         instance: &'a ast::Instance,
-        env: &Env,
-    ) -> Option<(Template<'a>, Rc<Givens>)> {
+        env: &ExprEnv,
+    ) -> Option<(DeclaredTemplate<'a>, Rc<TemplateArguments>)> {
         let Some(template) =
             self.templates.declared.get(&(instance.sort, instance.of.text.as_str())).copied()
         else {
@@ -202,23 +203,25 @@ impl<'a> Checker<'a> {
         params: &[ast::Param],
         args: &[ast::Expr],
         span: Span,
-        env: &Env,
+        env: &ExprEnv,
         whole: bool,
-    ) -> Option<Rc<Givens>> {
+    ) -> Option<Rc<TemplateArguments>> {
         if args.len() != params.len() {
             let names: Vec<&str> = params.iter().map(|p| p.name.text.as_str()).collect();
             self.report(types::arity(Noun::Template, &name.text, &names, args.len(), span));
             return None;
         }
-        let mut given = Givens::default();
+        let mut given = TemplateArguments::default();
         for (param, arg) in params.iter().zip(args) {
             let value = match kind_of_param(param) {
                 Some(kind) => self.given_thing(kind, arg, env, whole),
                 None => {
                     let layout = self.inside(&given, |c| c.layout(&param.ty));
                     match layout {
-                        Some(layout) => Given::Value(self.item_for(arg, &layout, &mut env.clone())),
-                        None => Given::Unknown,
+                        Some(layout) => {
+                            TemplateArgument::Value(self.item_for(arg, &layout, &mut env.clone()))
+                        }
+                        None => TemplateArgument::Unknown,
                     }
                 }
             };
@@ -229,24 +232,24 @@ impl<'a> Checker<'a> {
     }
 
     /// Something that sees these parameters.
-    fn inside<T>(&mut self, given: &Givens, f: impl FnOnce(&mut Self) -> T) -> T {
+    fn inside<T>(&mut self, given: &TemplateArguments, f: impl FnOnce(&mut Self) -> T) -> T {
         let outer = self.templates.given.replace(Rc::new(given.clone()));
         let result = f(self);
         self.templates.given = outer;
         result
     }
 
-    fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &Env, whole: bool) -> Given {
+    fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &ExprEnv, whole: bool) -> TemplateArgument {
         if kind == Noun::Event
             && let Some(patterns) = self.alternatives(arg)
         {
-            return patterns.map_or(Given::Unknown, Given::Events);
+            return patterns.map_or(TemplateArgument::Unknown, TemplateArgument::Events);
         }
         let Syntax::Path(path) = &arg.kind else {
             if arg.kind != Syntax::Error {
                 self.report(types::needs_name(kind, arg.span));
             }
-            return Given::Unknown;
+            return TemplateArgument::Unknown;
         };
         if let [name] = path.names.as_slice()
             && let Some(outer) = self.given(&name.text).cloned()
@@ -256,14 +259,18 @@ impl<'a> Checker<'a> {
             }
             let issue = names::wrong_kind(kind, Noun::Parameter, &name.text, name.span, []);
             self.report(issue.help(format!("this parameter does not stand for {}", kind.with_article())));
-            return Given::Unknown;
+            return TemplateArgument::Unknown;
         }
         match (kind, path.names.as_slice()) {
-            (Noun::Actor, [name]) => self.actor(name).map_or(Given::Unknown, Given::Actor),
-            (Noun::Point, [name]) => self.point_named(name).map_or(Given::Unknown, Given::Point),
+            (Noun::Actor, [name]) => {
+                self.actor(name).map_or(TemplateArgument::Unknown, TemplateArgument::Actor)
+            }
+            (Noun::Point, [name]) => {
+                self.point_named(name).map_or(TemplateArgument::Unknown, TemplateArgument::Point)
+            }
             (Noun::Actor | Noun::Point | Noun::Event, _) => {
                 self.report(types::needs_name(kind, arg.span));
-                Given::Unknown
+                TemplateArgument::Unknown
             }
             (_, _) => {
                 let prefix = env.world.clone().unwrap_or_default();
@@ -273,7 +280,7 @@ impl<'a> Checker<'a> {
                         _ => self.world_name(kind, &path.names, &prefix).is_some(),
                     };
                 let full = format!("{prefix}{}", measure::text(&path.names));
-                if known { Given::Thing(kind, full) } else { Given::Unknown }
+                if known { TemplateArgument::Thing(kind, full) } else { TemplateArgument::Unknown }
             }
         }
     }
@@ -310,17 +317,17 @@ impl<'a> Checker<'a> {
     // ── the template by itself ──
 
     /// What the parameters are in the check of the template by itself: some value of their type, or nothing known.
-    fn placeholders(&mut self, params: &[ast::Param], trial: Trial) -> Rc<Givens> {
-        let mut given = Givens::default();
+    fn placeholders(&mut self, params: &[ast::Param], trial: TemplateTrial) -> Rc<TemplateArguments> {
+        let mut given = TemplateArguments::default();
         for (index, param) in params.iter().enumerate() {
             let value = if kind_of_param(param).is_some() {
-                Given::Unknown
+                TemplateArgument::Unknown
             } else {
                 match self.inside(&given, |c| c.layout(&param.ty)) {
                     Some(layout) => {
-                        Given::Value(self.some_value(&layout, param.name.span, trial.great(index)))
+                        TemplateArgument::Value(self.some_value(&layout, param.name.span, trial.great(index)))
                     }
-                    None => Given::Unknown,
+                    None => TemplateArgument::Unknown,
                 }
             };
             let bound = BoundParam { given: value, place: param.name.span };
@@ -331,7 +338,7 @@ impl<'a> Checker<'a> {
         Rc::new(given)
     }
 
-    fn some_value(&self, layout: &Layout, span: Span, great: bool) -> Item {
+    fn some_value(&self, layout: &TypeLayout, span: Span, great: bool) -> ExprItem {
         let one = |ty: Type| {
             let value = match ty {
                 Type::Bool => Value::Bool(great),
@@ -345,26 +352,31 @@ impl<'a> Checker<'a> {
                 Type::Text => Value::Text(Text::new(if great { "b" } else { "a" })),
                 Type::List(_) => Value::List(List::EMPTY),
             };
-            Item::One(Expr::value(value, Kind::of(ty), span))
+            ExprItem::One(TypedExpr::value(value, InferredType::of(ty), span))
         };
         match layout {
-            Layout::Scalar(ty) => one(*ty),
-            Layout::Unknown => Item::error(span),
-            Layout::Record(id) => {
+            TypeLayout::Scalar(ty) => one(*ty),
+            TypeLayout::Unknown => ExprItem::error(span),
+            TypeLayout::Record(id) => {
                 let fields = &self.types.records[usize::from(*id)].fields;
                 let parts = fields.iter().map(|(_, l)| self.some_value(l, span, great)).collect();
-                Item::Record(*id, parts, span)
+                ExprItem::Record(*id, parts, span)
             }
-            Layout::Array(of, n) => {
-                Item::Array((0..*n).map(|_| self.some_value(of, span, great)).collect(), span)
+            TypeLayout::Array(of, n) => {
+                ExprItem::Array((0..*n).map(|_| self.some_value(of, span, great)).collect(), span)
             }
         }
     }
 
     /// Checks each template of a sort by itself.
-    pub(in crate::check) fn templates_of(&mut self, sort: Sort, check: impl Fn(&mut Self, Template<'a>)) {
-        let of_sort = |((s, _), t): (&(Sort, &'a str), &Template<'a>)| (*s == sort).then_some(*t);
-        let templates: Vec<Template<'a>> = self.templates.declared.iter().filter_map(of_sort).collect();
+    pub(in crate::check) fn templates_of(
+        &mut self,
+        sort: Sort,
+        check: impl Fn(&mut Self, DeclaredTemplate<'a>),
+    ) {
+        let of_sort = |((s, _), t): (&(Sort, &'a str), &DeclaredTemplate<'a>)| (*s == sort).then_some(*t);
+        let templates: Vec<DeclaredTemplate<'a>> =
+            self.templates.declared.iter().filter_map(of_sort).collect();
         for template in templates {
             self.by_itself(template.params, |c| check(c, template));
         }
@@ -377,7 +389,7 @@ impl<'a> Checker<'a> {
         let mut always: Option<Vec<Diagnostic>> = None;
         // What is said in one trial may be taken back.
         let (said, said_of) = (self.issues.said.clone(), self.issues.said_of);
-        for trial in Trial::ALL {
+        for trial in TemplateTrial::ALL {
             let given = self.placeholders(params, trial);
             let outer = self.templates.given.replace(given);
             let alone = std::mem::replace(&mut self.templates.by_itself, true);
@@ -387,7 +399,7 @@ impl<'a> Checker<'a> {
             let found = self.issues.list.split_off(before);
             self.issues.said.clone_from(&said);
             self.issues.said_of = said_of;
-            let places: BTreeSet<(Code, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
+            let places: BTreeSet<(DiagnosticCode, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
             let again = |known: &Diagnostic| places.contains(&(known.code, known.span()));
             always = Some(match always {
                 None => found,
@@ -404,7 +416,7 @@ impl<'a> Checker<'a> {
     /// the instance that it is wrong in.
     pub(in crate::check) fn as_instance<T>(
         &mut self,
-        given: Option<Rc<Givens>>,
+        given: Option<Rc<TemplateArguments>>,
         instance: Option<(&Name, Span)>,
         check: impl FnOnce(&mut Self) -> T,
     ) -> T {

@@ -11,15 +11,15 @@ use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemKind, Name};
 
 use crate::check::{
     checker::Checker,
-    state::{table::Map, template::Given},
+    state::{table::OrderedMap, template::TemplateArgument},
     vocabulary::layout::type_span,
 };
 use crate::{
-    ArmId, GripperId, Kind, Type,
+    ArmId, GripperId, InferredType, Type,
     noun::Noun,
     report::{devices, names},
-    types::Layout,
-    world::RuleOn,
+    types::TypeLayout,
+    world::TypedRuleTrigger,
 };
 
 impl<'a> Checker<'a> {
@@ -32,7 +32,7 @@ impl<'a> Checker<'a> {
             commands: Vec::new(),
         };
         self.s.device_kinds = DeviceSort::ALL.map(kind).into();
-        let mut known = Map::default();
+        let mut known = OrderedMap::default();
         for item in self.source.items.clone() {
             let ItemKind::Device(device) = &item.kind else { continue };
             let sort = self.device_sort(&device.kind);
@@ -127,10 +127,10 @@ impl<'a> Checker<'a> {
         primitive: DevicePrimitive,
         takes: &PrimitiveParam,
         param: &ast::CommandParam,
-        layout: &Layout,
+        layout: &TypeLayout,
     ) {
         let ast::Param { name, ty } = &param.param;
-        if *layout != Layout::Unknown && *layout != layout_of(takes.ty) {
+        if *layout != TypeLayout::Unknown && *layout != layout_of(takes.ty) {
             let got = self.shown_layout(layout);
             self.report(devices::other_type(
                 primitive.name(),
@@ -164,7 +164,7 @@ impl<'a> Checker<'a> {
         command: &Name,
         device: &ast::Path,
         prefix: &str,
-    ) -> Option<RuleOn> {
+    ) -> Option<TypedRuleTrigger> {
         let knows = |kind: &&DeviceKind| kind.command(&command.text).is_some();
         let knowing: Vec<DeviceSort> = self.s.device_kinds.iter().filter(knows).map(|k| k.sort).collect();
         let Some(body) = self.device_of(device, &knowing, prefix) else {
@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
         let kind = self.device_kind(body.sort())?;
         if let Some(id) = kind.command(&command.text) {
             self.refer(command, place);
-            return Some(RuleOn::Commanded { device: body, command: id });
+            return Some(TypedRuleTrigger::Commanded { device: body, command: id });
         }
         let all = kind.commands.iter().map(|c| c.name.as_str());
         let issue = devices::cannot(command, &kind.with_article(), all);
@@ -193,7 +193,7 @@ impl<'a> Checker<'a> {
     fn device_of(&mut self, path: &ast::Path, meant: &[DeviceSort], prefix: &str) -> Option<DeviceBody> {
         // A parameter stands for what it is declared to be.
         if let [only] = path.names.as_slice()
-            && let Some(Given::Thing(is, _)) = self.given(&only.text)
+            && let Some(TemplateArgument::Thing(is, _)) = self.given(&only.text)
         {
             let is = *is;
             let sort = DeviceSort::ALL.into_iter().find(|sort| noun_of(*sort) == is);
@@ -227,21 +227,21 @@ fn noun_of(sort: DeviceSort) -> Noun {
     }
 }
 
-fn layout_of(ty: CommandType) -> Layout {
+fn layout_of(ty: CommandType) -> TypeLayout {
     let element = Type::Float(ty.unit);
     match ty.count {
-        NumberCount::One => Layout::Scalar(element),
-        NumberCount::Array(n) => Layout::Array(Box::new(Layout::Scalar(element)), n),
-        NumberCount::List => Layout::Scalar(Type::List(ListOf::new(element))),
+        NumberCount::One => TypeLayout::Scalar(element),
+        NumberCount::Array(n) => TypeLayout::Array(Box::new(TypeLayout::Scalar(element)), n),
+        NumberCount::List => TypeLayout::Scalar(Type::List(ListOf::new(element))),
     }
 }
 
 /// As it is declared: `length[3]`.
 fn type_text(ty: CommandType) -> String {
-    let element = Kind::of(Type::Float(ty.unit));
+    let element = InferredType::of(Type::Float(ty.unit));
     match ty.count {
         NumberCount::One => element.type_name(),
         NumberCount::Array(n) => format!("{}[{n}]", element.type_name()),
-        NumberCount::List => Kind::list(element).type_name(),
+        NumberCount::List => InferredType::list(element).type_name(),
     }
 }

@@ -11,20 +11,23 @@ use hrdsl_syntax::ast::{
 
 use crate::check::{
     checker::Checker,
-    state::{scope::Env, world::WorldNames},
+    state::{scope::ExprEnv, world::WorldNames},
     vocabulary::layout,
-    world::parts::Placed,
+    world::parts::PlacedMember,
 };
 use crate::{
-    ActorId, BodyId, Current, Dim, GripperId, JointId, Kind, Motion, Shape, Value,
+    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, JointId, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
-    world::{Arm, Body, Frame, Gripper, Joint, RuleOn, Signal, World, WorldRule},
+    world::{
+        PartFrame, TypedArm, TypedBody, TypedGripper, TypedJoint, TypedRuleTrigger, TypedSignal, TypedWorld,
+        TypedWorldRule,
+    },
 };
 
-const LENGTH: Kind = Kind::Float(Dim::LENGTH);
-const ANGLE: Kind = Kind::Float(Dim::ANGLE);
-const NUMBER: Kind = Kind::Float(Dim::NUMBER);
+const LENGTH: InferredType = InferredType::Float(Dimension::LENGTH);
+const ANGLE: InferredType = InferredType::Float(Dimension::ANGLE);
+const NUMBER: InferredType = InferredType::Float(Dimension::NUMBER);
 
 impl<'a> Checker<'a> {
     pub(in crate::check) fn world(&mut self) {
@@ -42,7 +45,7 @@ impl<'a> Checker<'a> {
     }
 
     fn build(&mut self, members: &'a [WorldMember], span: Span) {
-        self.s.world = Some(World {
+        self.s.world = Some(TypedWorld {
             step: 0.01,
             sample: 0.05,
             gravity: [0.0, 0.0, -9.81],
@@ -56,9 +59,9 @@ impl<'a> Checker<'a> {
             parts: Vec::new(),
             span,
         });
-        let placed = self.flatten(members, "", Frame::default(), None);
+        let placed = self.flatten(members, "", PartFrame::default(), None);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &Placed<'a>); 7] = [
+        let passes: [fn(&mut Self, &PlacedMember<'a>); 7] = [
             Self::settings_and_bodies,
             Self::joint,
             Self::gripper,
@@ -110,11 +113,11 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(in crate::check) fn world_mut(&mut self) -> &mut World {
+    pub(in crate::check) fn world_mut(&mut self) -> &mut TypedWorld {
         self.s.world.as_mut().expect("`build` has made it")
     }
 
-    fn settings_and_bodies(&mut self, p: &Placed<'a>) {
+    fn settings_and_bodies(&mut self, p: &PlacedMember<'a>) {
         match &p.member.kind {
             Member::Step(_) | Member::Sample(_) | Member::Gravity(_) if !p.prefix.is_empty() => {
                 let message = "a part has no step, sample or gravity of its own";
@@ -148,27 +151,27 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn body(&mut self, p: &Placed<'a>, body: &'a ast::Body) {
+    fn body(&mut self, p: &PlacedMember<'a>, body: &'a ast::Body) {
         let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic"]) {
-            Some(1) => Motion::Dynamic,
-            Some(2) => Motion::Kinematic,
-            Some(_) | None => Motion::Fixed,
+            Some(1) => BodyMotion::Dynamic,
+            Some(2) => BodyMotion::Kinematic,
+            Some(_) | None => BodyMotion::Fixed,
         };
         let shape = self.shape(body);
         let position = self.vector(&body.at, LENGTH).unwrap_or_default();
         let rotation = body.rotated.as_ref().and_then(|r| self.vector(r, ANGLE)).unwrap_or_default();
-        let mass = body.mass.as_ref().and_then(|m| self.more_than_zero(m, Dim::MASS, "a mass"));
-        if motion == Motion::Dynamic && body.mass.is_none() {
+        let mass = body.mass.as_ref().and_then(|m| self.more_than_zero(m, Dimension::MASS, "a mass"));
+        if motion == BodyMotion::Dynamic && body.mass.is_none() {
             let message = format!("the dynamic body `{}` has no mass", body.name.text);
             self.report(bad_world(body.name.span, message, "add `mass 1 kg`"));
         }
         let name = format!("{}{}", p.prefix, body.name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.bodies);
         if issues.declare_as(table, Noun::Body, &name, body.name.span).is_some() {
-            let body = Body {
+            let body = TypedBody {
                 name,
                 motion,
-                shape: shape.unwrap_or(Shape::Sphere { radius: 0.1 }),
+                shape: shape.unwrap_or(BodyShape::Sphere { radius: 0.1 }),
                 frame: p.frame,
                 position,
                 rotation,
@@ -181,7 +184,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn shape(&mut self, body: &ast::Body) -> Option<Shape> {
+    fn shape(&mut self, body: &ast::Body) -> Option<BodyShape> {
         let shapes = ["box", "sphere", "capsule", "cylinder"];
         let usage = ["box(X, Y, Z)", "sphere(RADIUS)", "capsule(RADIUS, LENGTH)", "cylinder(RADIUS, LENGTH)"];
         let chosen = self.choice(Noun::Shape, &body.shape, &shapes)?;
@@ -193,17 +196,17 @@ impl<'a> Checker<'a> {
             return None;
         }
         let sizes: Vec<Option<f64>> =
-            body.sizes.iter().map(|e| self.more_than_zero(e, Dim::LENGTH, "a size")).collect();
+            body.sizes.iter().map(|e| self.more_than_zero(e, Dimension::LENGTH, "a size")).collect();
         let size = |i: usize| sizes[i];
         Some(match chosen {
-            0 => Shape::Box { size: [size(0)?, size(1)?, size(2)?] },
-            1 => Shape::Sphere { radius: size(0)? },
-            2 => Shape::Capsule { radius: size(0)?, length: size(1)? },
-            _ => Shape::Cylinder { radius: size(0)?, length: size(1)? },
+            0 => BodyShape::Box { size: [size(0)?, size(1)?, size(2)?] },
+            1 => BodyShape::Sphere { radius: size(0)? },
+            2 => BodyShape::Capsule { radius: size(0)?, length: size(1)? },
+            _ => BodyShape::Cylinder { radius: size(0)?, length: size(1)? },
         })
     }
 
-    fn more_than_zero(&mut self, e: &ast::Expr, dim: Dim, what: &str) -> Option<f64> {
+    fn more_than_zero(&mut self, e: &ast::Expr, dim: Dimension, what: &str) -> Option<f64> {
         let x = self.quantity_of(e, dim)?;
         if x <= 0.0 {
             let rule = format!("more than 0 {}", dim.symbol().unwrap_or_default());
@@ -217,7 +220,7 @@ impl<'a> Checker<'a> {
         self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
     }
 
-    fn joint(&mut self, p: &Placed<'a>) {
+    fn joint(&mut self, p: &PlacedMember<'a>) {
         let Member::Joint { name, parent, child, at, axis, limits } = &p.member.kind else { return };
         let bodies = (self.local_body(parent, &p.prefix), self.local_body(child, &p.prefix));
         if parent.text == child.text {
@@ -233,7 +236,7 @@ impl<'a> Checker<'a> {
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
         if issues.declare_as(table, Noun::Joint, &full, name.span).is_some() {
-            self.world_mut().joints.push(Joint {
+            self.world_mut().joints.push(TypedJoint {
                 name: full,
                 parent: bodies.0.unwrap_or(BodyId(0)),
                 child: bodies.1.unwrap_or(BodyId(0)),
@@ -246,26 +249,26 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn gripper(&mut self, p: &Placed<'a>) {
+    fn gripper(&mut self, p: &PlacedMember<'a>) {
         let Member::Gripper { name, palm, tool, reach, delay } = &p.member.kind else { return };
         let palm = self.local_body(palm, &p.prefix).unwrap_or(BodyId(0));
         let tool = self.vector(tool, LENGTH).unwrap_or_default();
-        let reach = self.more_than_zero(reach, Dim::LENGTH, "the reach").unwrap_or(0.0);
+        let reach = self.more_than_zero(reach, Dimension::LENGTH, "the reach").unwrap_or(0.0);
         let delay = self.time(delay, "the delay", false).unwrap_or(0.0);
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.grippers);
         if issues.declare_as(table, Noun::Gripper, &full, name.span).is_some() {
-            self.world_mut().grippers.push(Gripper { name: full, palm, tool, reach, delay });
+            self.world_mut().grippers.push(TypedGripper { name: full, palm, tool, reach, delay });
         }
     }
 
     fn limits(&mut self, limits: &ast::Range) -> (f64, f64) {
-        let lo = self.quantity_of(&limits.lo, Dim::ANGLE);
+        let lo = self.quantity_of(&limits.lo, Dimension::ANGLE);
         let Some(hi) = &limits.hi else {
             self.report(bad_world(limits.span, "limits have two ends", "write `limits -90 deg .. 90 deg`"));
             return (0.0, 0.0);
         };
-        let hi = self.quantity_of(hi, Dim::ANGLE);
+        let hi = self.quantity_of(hi, Dimension::ANGLE);
         let (Some(lo), Some(hi)) = (lo, hi) else { return (0.0, 0.0) };
         if lo > hi {
             self.report(types::empty_range(Value::Float(lo), Value::Float(hi), limits.span));
@@ -273,7 +276,7 @@ impl<'a> Checker<'a> {
         (lo, hi)
     }
 
-    fn arm(&mut self, p: &Placed<'a>) {
+    fn arm(&mut self, p: &PlacedMember<'a>) {
         let Member::Arm { name, joints, tip, tool, speed } = &p.member.kind else { return };
         let ids: Vec<JointId> = joints
             .iter()
@@ -285,16 +288,16 @@ impl<'a> Checker<'a> {
             self.chain(&ids, joints, tip, tip_id);
         }
         let tool = self.vector(tool, LENGTH).unwrap_or_default();
-        let speed = self.more_than_zero(speed, Dim::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
+        let speed = self.more_than_zero(speed, Dimension::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
         if issues.declare_as(table, Noun::Arm, &full, name.span).is_some() {
             let tip = tip_id.unwrap_or(BodyId(0));
-            self.world_mut().arms.push(Arm { name: full, joints: ids, tip, tool, speed });
+            self.world_mut().arms.push(TypedArm { name: full, joints: ids, tip, tool, speed });
         }
     }
 
-    fn current(&mut self, p: &Placed<'a>) {
+    fn current(&mut self, p: &PlacedMember<'a>) {
         let Member::Current { name, of, by } = &p.member.kind else { return };
         let bodies = of.iter().filter_map(|path| self.world_name(Noun::Body, &path.names, &p.prefix));
         let of: Vec<BodyId> = bodies.map(BodyId).collect();
@@ -306,7 +309,7 @@ impl<'a> Checker<'a> {
         }
         let (issues, table) = (&mut self.issues, &mut self.world.names.currents);
         if issues.declare_as(table, Noun::Current, &full, name.span).is_some() {
-            self.world_mut().currents.push(Current { name: full, of, by });
+            self.world_mut().currents.push(CurrentBody { name: full, of, by });
         }
     }
 
@@ -332,14 +335,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn signals(&mut self, p: &Placed<'a>) {
+    fn signals(&mut self, p: &PlacedMember<'a>) {
         let Member::Signal { name, ty, to, value } = &p.member.kind else { return };
-        self.check_free(&Env::constants(), Noun::Signal, name);
+        self.check_free(&ExprEnv::constants(), Noun::Signal, name);
         let to: Vec<ActorId> = to.iter().filter_map(|a| self.actor(a)).collect();
-        let ty = self
-            .ty(ty)
-            .filter(|of| self.plain(&crate::types::Layout::Scalar(*of), &name.text, layout::type_span(ty)));
-        let mut env = Env::measured(&p.prefix);
+        let ty = self.ty(ty).filter(|of| {
+            self.plain(&crate::types::TypeLayout::Scalar(*of), &name.text, layout::type_span(ty))
+        });
+        let mut env = ExprEnv::measured(&p.prefix);
         let value = match ty {
             Some(ty) => self.expr_for(value, ty, &mut env),
             None => self.expr(value, &mut env),
@@ -351,11 +354,11 @@ impl<'a> Checker<'a> {
                 self.world.names.broken.insert(full.clone());
             }
             let ty = ty.unwrap_or(crate::Type::Bool);
-            self.world_mut().signals.push(Signal { name: full, ty, to, value, span: p.member.span });
+            self.world_mut().signals.push(TypedSignal { name: full, ty, to, value, span: p.member.span });
         }
     }
 
-    fn rules(&mut self, p: &Placed<'a>) {
+    fn rules(&mut self, p: &PlacedMember<'a>) {
         let Member::Rule(rule) = &p.member.kind else { return };
         let on = match &rule.on {
             SyntaxRuleOn::Event(call) => {
@@ -364,17 +367,17 @@ impl<'a> Checker<'a> {
                 if patterns.next().is_some() {
                     self.report(types::several_events(&call.name.text, call.span));
                 }
-                first.map(RuleOn::Event)
+                first.map(TypedRuleTrigger::Event)
             }
             SyntaxRuleOn::Commanded { command, device } => self.commanded(command, device, &p.prefix),
         };
-        let mut env = Env::measured(&p.prefix);
-        let guard = rule.when.as_ref().map(|e| self.expr_of(e, Kind::Bool, &mut env));
+        let mut env = ExprEnv::measured(&p.prefix);
+        let guard = rule.when.as_ref().map(|e| self.expr_of(e, InferredType::Bool, &mut env));
         let Some(event) = self.event(Noun::Event, &rule.emit.name, None) else { return };
         let fields = self.fields_of(event);
         let args = self.args(Noun::Event, &rule.emit, &fields, &mut env);
         if let Some(on) = on {
-            self.world_mut().rules.push(WorldRule { on, guard, event, args, span: p.member.span });
+            self.world_mut().rules.push(TypedWorldRule { on, guard, event, args, span: p.member.span });
         }
     }
 }

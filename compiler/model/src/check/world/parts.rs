@@ -7,13 +7,13 @@ use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
 
 use crate::check::{
     checker::Checker,
-    state::{issues::too_many, item::Item, scope::Env, template::Givens},
+    state::{issues::too_many, item::ExprItem, scope::ExprEnv, template::TemplateArguments},
 };
 use crate::{
-    Dim, Kind,
+    Dimension, InferredType,
     noun::Noun,
     report::{types, world::bad_world},
-    world::{Frame, Instance},
+    world::{PartFrame, PartInstance},
 };
 
 /// The most members of the world, those of its parts included each time that they are used.
@@ -24,13 +24,13 @@ const MAX_DEPTH: usize = 16;
 
 /// A member of the world, or of a part of it.
 #[derive(Clone)]
-pub(crate) struct Placed<'a> {
+pub(crate) struct PlacedMember<'a> {
     /// `robot.`, or empty
     pub prefix: String,
-    pub frame: Frame,
+    pub frame: PartFrame,
     pub member: &'a WorldMember,
     /// What the parameters of its part stand for.
-    pub given: Option<Rc<Givens>>,
+    pub given: Option<Rc<TemplateArguments>>,
     /// The part of the world that gives them.
     pub instance: Option<(Name, Span)>,
 }
@@ -41,9 +41,9 @@ impl<'a> Checker<'a> {
         &mut self,
         members: &'a [WorldMember],
         prefix: &str,
-        frame: Frame,
+        frame: PartFrame,
         instance: Option<(Name, Span)>,
-    ) -> Vec<Placed<'a>> {
+    ) -> Vec<PlacedMember<'a>> {
         let mut all = Vec::new();
         for member in members {
             self.world.names.members += 1;
@@ -69,7 +69,7 @@ impl<'a> Checker<'a> {
                 | Member::Rule(_)
                 | Member::Error => {
                     let (given, instance) = (self.templates.given.clone(), instance.clone());
-                    all.push(Placed { prefix: prefix.to_owned(), frame, member, given, instance });
+                    all.push(PlacedMember { prefix: prefix.to_owned(), frame, member, given, instance });
                 }
                 Member::Allow(_) => {}
             }
@@ -78,7 +78,12 @@ impl<'a> Checker<'a> {
     }
 
     /// The members of a part that another, or the world, has.
-    fn flatten_part(&mut self, member: &'a WorldMember, prefix: &str, frame: Frame) -> Vec<Placed<'a>> {
+    fn flatten_part(
+        &mut self,
+        member: &'a WorldMember,
+        prefix: &str,
+        frame: PartFrame,
+    ) -> Vec<PlacedMember<'a>> {
         let Member::Part { name, of, args, at, rotated } = &member.kind else { return Vec::new() };
         let inner = self.frame(at, rotated.as_ref());
         let full = format!("{prefix}{}", name.text);
@@ -97,7 +102,7 @@ impl<'a> Checker<'a> {
             return Vec::new();
         }
         let frame = compose(frame, inner);
-        let placed = Instance { name: full.clone(), frame, span: member.span };
+        let placed = PartInstance { name: full.clone(), frame, span: member.span };
         self.world_mut().parts.push(placed);
         let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
         let here = Name { text: full.clone(), span: name.span };
@@ -121,14 +126,16 @@ impl<'a> Checker<'a> {
         of: &Name,
         args: Option<&[ast::Expr]>,
         prefix: &str,
-    ) -> Result<Option<Rc<Givens>>, ()> {
+    ) -> Result<Option<Rc<TemplateArguments>>, ()> {
         match (&part.params, args) {
             (None, None) => Ok(None),
             (params, args) => {
                 let (params, args) = (params.as_deref().unwrap_or_default(), args.unwrap_or_default());
                 let span = of.span.to(args.last().map_or(of.span, |a| a.span));
                 // What is named in the world may not be there yet.
-                self.bind(&part.name, params, args, span, &Env::measured(prefix), false).map(Some).ok_or(())
+                self.bind(&part.name, params, args, span, &ExprEnv::measured(prefix), false)
+                    .map(Some)
+                    .ok_or(())
             }
         }
     }
@@ -164,9 +171,10 @@ impl<'a> Checker<'a> {
     }
 
     /// `at (…) rotated (0 deg, 0 deg, 90 deg)`
-    fn frame(&mut self, at: &ast::Expr, rotated: Option<&ast::Expr>) -> Frame {
-        let position = self.vector(at, Kind::Float(Dim::LENGTH)).unwrap_or_default();
-        let angles = rotated.and_then(|r| self.vector(r, Kind::Float(Dim::ANGLE))).unwrap_or_default();
+    fn frame(&mut self, at: &ast::Expr, rotated: Option<&ast::Expr>) -> PartFrame {
+        let position = self.vector(at, InferredType::Float(Dimension::LENGTH)).unwrap_or_default();
+        let angles =
+            rotated.and_then(|r| self.vector(r, InferredType::Float(Dimension::ANGLE))).unwrap_or_default();
         if let (Some(rotated), true) = (rotated, angles[0] != 0.0 || angles[1] != 0.0) {
             self.report(bad_world(
                 rotated.span,
@@ -174,24 +182,24 @@ impl<'a> Checker<'a> {
                 "write `rotated (0 deg, 0 deg, …)`",
             ));
         }
-        Frame { at: position, yaw: angles[2] }
+        PartFrame { at: position, yaw: angles[2] }
     }
 
     /// Three constants of one kind.
-    pub(in crate::check) fn vector(&mut self, e: &ast::Expr, want: Kind) -> Option<[f64; 3]> {
+    pub(in crate::check) fn vector(&mut self, e: &ast::Expr, want: InferredType) -> Option<[f64; 3]> {
         if let ast::ExprKind::Tuple(parts) = &e.kind
             && parts.len() == 3
         {
             let mut vector = [0.0; 3];
             for (slot, part) in vector.iter_mut().zip(parts) {
-                *slot = self.constant(part, want, &mut Env::constants())?.as_f64()?;
+                *slot = self.constant(part, want, &mut ExprEnv::constants())?.as_f64()?;
             }
             return Some(vector);
         }
         let mut values = Vec::new();
         let known = self.issues.list.len();
-        let item = self.item(e, &mut Env::constants());
-        let whole = matches!(item, Item::Array(..) | Item::Tuple(..));
+        let item = self.item(e, &mut ExprEnv::constants());
+        let whole = matches!(item, ExprItem::Array(..) | ExprItem::Tuple(..));
         item.flatten(&mut values);
         if !whole || values.len() != 3 {
             if self.issues.list.len() == known && e.kind != ast::ExprKind::Error {
@@ -201,8 +209,8 @@ impl<'a> Checker<'a> {
         }
         let mut vector = [0.0; 3];
         for (slot, value) in vector.iter_mut().zip(values) {
-            let value = self.fit(value, want, &mut Env::constants());
-            if value.constant().is_none() && value.ty != Kind::Unknown {
+            let value = self.fit(value, want, &mut ExprEnv::constants());
+            if value.constant().is_none() && value.ty != InferredType::Unknown {
                 self.report(types::not_constant(value.span));
             }
             *slot = value.constant()?.as_f64()?;
@@ -211,14 +219,14 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn not_a_vector(want: Kind, span: Span) -> Diagnostic {
-    let unit = want.dim().and_then(Dim::symbol).unwrap_or_default();
+fn not_a_vector(want: InferredType, span: Span) -> Diagnostic {
+    let unit = want.dim().and_then(Dimension::symbol).unwrap_or_default();
     let zero = format!("0 {unit}");
     let zero = zero.trim();
     types::no_value("this", span).help(format!("three numbers are needed: `({zero}, {zero}, {zero})`"))
 }
 
 /// The frame of `inner`, which is given in the coordinates of `outer`, in the world.
-fn compose(outer: Frame, inner: Frame) -> Frame {
-    Frame { at: outer.place(inner.at), yaw: outer.yaw + inner.yaw }
+fn compose(outer: PartFrame, inner: PartFrame) -> PartFrame {
+    PartFrame { at: outer.place(inner.at), yaw: outer.yaw + inner.yaw }
 }

@@ -4,18 +4,18 @@ use hrdsl_ir::Unit;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name, SampleRange, StimulusStepKind as Step};
 
-use crate::check::state::phase::Phase;
+use crate::check::state::phase::CheckPhase;
 use crate::check::{
     checker::{Checker, NOBODY},
-    state::scope::Env,
+    state::scope::ExprEnv,
     value::measure::text,
 };
 use crate::{
-    ActorId, BinaryOp, BodyRef, Dim, EventId, Expr, GripperId, Kind, Motion, Point, Sample, Stimulus,
-    StimulusStep, Type, Value, WorldAction,
+    ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, GripperId, InferredType, Type, TypedExpr,
+    TypedPoint, TypedSample, TypedStimulus, TypedStimulusStep, TypedWorldAction, Value,
     noun::Noun,
     report::{names, roles, types, world},
-    types::Layout,
+    types::TypeLayout,
 };
 
 const ACTIONS: [&str; 4] = ["move_to", "look_at", "grasp", "let_go"];
@@ -24,7 +24,7 @@ impl Checker<'_> {
     pub(in crate::check) fn stimuli(&mut self) {
         for (index, body) in self.events.stimuli.clone().into_iter().enumerate() {
             if let Some(body) = body
-                && self.source.looks_at(Phase::Stimuli, body.name.span)
+                && self.source.looks_at(CheckPhase::Stimuli, body.name.span)
             {
                 let resolved = self.stimulus(index, body);
                 self.s.events[index].stimulus = Some(resolved);
@@ -32,8 +32,8 @@ impl Checker<'_> {
         }
     }
 
-    fn stimulus(&mut self, index: usize, stimulus: &ast::Stimulus) -> Stimulus {
-        let mut env = Env { noun: Some(Noun::Parameter), ..Env::default() };
+    fn stimulus(&mut self, index: usize, stimulus: &ast::Stimulus) -> TypedStimulus {
+        let mut env = ExprEnv { noun: Some(Noun::Parameter), ..ExprEnv::default() };
         let fields = self.events.fields[index].clone();
         for (syntax, (_, layout)) in stimulus.params.iter().zip(fields.iter()) {
             self.add_local(&mut env, &syntax.name, Noun::Parameter, layout);
@@ -41,17 +41,17 @@ impl Checker<'_> {
         let by = self.s.events[index].from;
         let mut samples = Vec::new();
         let steps = self.steps(&stimulus.body, by, &mut samples, &mut env, true);
-        Stimulus { samples, steps }
+        TypedStimulus { samples, steps }
     }
 
     fn steps(
         &mut self,
         steps: &[ast::StimulusStep],
         by: ActorId,
-        samples: &mut Vec<Sample>,
-        env: &mut Env,
+        samples: &mut Vec<TypedSample>,
+        env: &mut ExprEnv,
         top: bool,
-    ) -> Vec<StimulusStep> {
+    ) -> Vec<TypedStimulusStep> {
         let mut resolved = Vec::new();
         for step in steps {
             match &step.kind {
@@ -64,17 +64,17 @@ impl Checker<'_> {
                 }
                 Step::Emit(call) => resolved.extend(self.emit(call, by, env)),
                 Step::Hold(time) => {
-                    let seconds = self.expr_of(time, Kind::Float(Dim::TIME), env);
-                    resolved.push(StimulusStep::Hold { seconds });
+                    let seconds = self.expr_of(time, InferredType::Float(Dimension::TIME), env);
+                    resolved.push(TypedStimulusStep::Hold { seconds });
                 }
                 Step::Act { path, args } => {
-                    resolved.extend(self.act(path, args, step.span, env).map(StimulusStep::Act));
+                    resolved.extend(self.act(path, args, step.span, env).map(TypedStimulusStep::Act));
                 }
                 Step::If { condition, then, otherwise } => {
-                    let condition = self.expr_of(condition, Kind::Bool, env);
+                    let condition = self.expr_of(condition, InferredType::Bool, env);
                     let then = self.steps(then, by, samples, env, false);
                     let otherwise = self.steps(otherwise, by, samples, env, false);
-                    resolved.push(StimulusStep::If { condition, then, otherwise });
+                    resolved.push(TypedStimulusStep::If { condition, then, otherwise });
                 }
                 Step::Error => {}
             }
@@ -82,38 +82,51 @@ impl Checker<'_> {
         resolved
     }
 
-    fn sample(&mut self, name: &Name, range: &SampleRange, samples: &mut Vec<Sample>, env: &mut Env) {
+    fn sample(
+        &mut self,
+        name: &Name,
+        range: &SampleRange,
+        samples: &mut Vec<TypedSample>,
+        env: &mut ExprEnv,
+    ) {
         let mut bounds = Vec::new();
         let (lo, hi) = self.sample_range(range, env, &mut bounds);
         let ty = match lo.ty {
-            Kind::Int => {
+            InferredType::Int => {
                 let ints = |b: &Value| if let Value::Int(n) = b { Some(*n) } else { None };
                 let numbers: Vec<i64> = bounds.iter().filter_map(ints).collect();
                 let (lo, hi) = (numbers.iter().min().copied(), numbers.iter().max().copied());
                 Type::Int { lo: lo.unwrap_or(0), hi: hi.unwrap_or(0) }
             }
-            Kind::Float(dim) => Type::Float(dim.unit()),
-            Kind::Bool | Kind::Enum(_) | Kind::Text | Kind::List(_) | Kind::Unknown => {
-                Type::Float(Unit::None)
-            }
+            InferredType::Float(dim) => Type::Float(dim.unit()),
+            InferredType::Bool
+            | InferredType::Enum(_)
+            | InferredType::Text
+            | InferredType::List(_)
+            | InferredType::Unknown => Type::Float(Unit::None),
         };
-        if lo.ty == Kind::Unknown {
+        if lo.ty == InferredType::Unknown {
             // Its range has a diagnostic; nothing follows from its type.
             self.check_free(env, Noun::Sample, name);
-            env.push_local(&name.text, name.span, Noun::Sample, Kind::Unknown);
+            env.push_local(&name.text, name.span, Noun::Sample, InferredType::Unknown);
         } else {
-            self.add_local(env, name, Noun::Sample, &Layout::Scalar(ty));
+            self.add_local(env, name, Noun::Sample, &TypeLayout::Scalar(ty));
             // Its dimension may have no unit of its own.
             if let Some(local) = env.locals.last_mut() {
                 local.ty = lo.ty;
             }
         }
         self.s.names.infer(name.span, lo.ty.to_string());
-        samples.push(Sample { name: name.text.clone(), ty, lo, hi });
+        samples.push(TypedSample { name: name.text.clone(), ty, lo, hi });
     }
 
     /// The two ends, each perhaps conditional; `bounds` collects the constant ends.
-    fn sample_range(&mut self, range: &SampleRange, env: &mut Env, bounds: &mut Vec<Value>) -> (Expr, Expr) {
+    fn sample_range(
+        &mut self,
+        range: &SampleRange,
+        env: &mut ExprEnv,
+        bounds: &mut Vec<Value>,
+    ) -> (TypedExpr, TypedExpr) {
         match range {
             SampleRange::Plain(range) => {
                 let lo = self.expr(&range.lo, env);
@@ -121,31 +134,36 @@ impl Checker<'_> {
                     self.report(
                         types::no_value("a range without an upper end", range.span).help("write `lo .. hi`"),
                     );
-                    return (Expr::error(range.span), Expr::error(range.span));
+                    return (TypedExpr::error(range.span), TypedExpr::error(range.span));
                 };
-                let hi = self.expr_of(hi, if lo.ty == Kind::Int { Kind::Unknown } else { lo.ty }, env);
-                let lo = self.fit(lo, if hi.ty == Kind::Int { Kind::Unknown } else { hi.ty }, env);
+                let hi = self.expr_of(
+                    hi,
+                    if lo.ty == InferredType::Int { InferredType::Unknown } else { lo.ty },
+                    env,
+                );
+                let lo =
+                    self.fit(lo, if hi.ty == InferredType::Int { InferredType::Unknown } else { hi.ty }, env);
                 for end in [&lo, &hi] {
                     if !end.ty.is_number() {
-                        let want = Kind::Float(Dim::NUMBER);
+                        let want = InferredType::Float(Dimension::NUMBER);
                         self.report(types::mismatch(want, end.ty, None, end.span));
                     }
                 }
                 self.ordered(&lo, &hi, range.span);
-                if lo.ty == Kind::Int && (lo.constant().is_none() || hi.constant().is_none()) {
+                if lo.ty == InferredType::Int && (lo.constant().is_none() || hi.constant().is_none()) {
                     self.report(types::not_constant(range.span));
                 }
                 bounds.extend(lo.constant().into_iter().chain(hi.constant()));
                 (lo, hi)
             }
             SampleRange::If { condition, then, otherwise } => {
-                let condition = self.expr_of(condition, Kind::Bool, env);
+                let condition = self.expr_of(condition, InferredType::Bool, env);
                 let then = self.sample_range(then, env, bounds);
                 let otherwise = self.sample_range(otherwise, env, bounds);
                 let lo = self.conditional(condition.clone(), then.0, otherwise.0, condition.span, env);
                 let known = self.issues.list.len();
                 let hi = self.conditional(condition.clone(), then.1, otherwise.1, condition.span, env);
-                if lo.ty == Kind::Unknown {
+                if lo.ty == InferredType::Unknown {
                     // The same clash of the upper ends need not be said again.
                     self.issues.list.truncate(known);
                 }
@@ -154,7 +172,7 @@ impl Checker<'_> {
         }
     }
 
-    fn emit(&mut self, call: &ast::Call, by: ActorId, env: &mut Env) -> Option<StimulusStep> {
+    fn emit(&mut self, call: &ast::Call, by: ActorId, env: &mut ExprEnv) -> Option<TypedStimulusStep> {
         let event: EventId = self.event(Noun::Event, &call.name, None)?;
         let from = self.s.events[usize::from(event.0)].from;
         if from != by && from != NOBODY && by != NOBODY {
@@ -171,7 +189,7 @@ impl Checker<'_> {
             self.report(issue);
         }
         let fields = self.fields_of(event);
-        Some(StimulusStep::Emit { event, args: self.args(Noun::Event, call, &fields, env) })
+        Some(TypedStimulusStep::Emit { event, args: self.args(Noun::Event, call, &fields, env) })
     }
 
     fn act(
@@ -179,8 +197,8 @@ impl Checker<'_> {
         path: &ast::Path,
         args: &[ast::Expr],
         span: Span,
-        env: &mut Env,
-    ) -> Option<WorldAction> {
+        env: &mut ExprEnv,
+    ) -> Option<TypedWorldAction> {
         let (action, of) = path.names.split_last()?;
         let chosen = self.choice(Noun::Action, action, &ACTIONS)?;
         if of.is_empty() {
@@ -199,19 +217,23 @@ impl Checker<'_> {
             0 => {
                 let body = self.movable(of);
                 let to = self.point(&args[0], env);
-                let over = self.expr_of(&args[1], Kind::Float(Dim::TIME), env);
-                Some(WorldAction::Move { body: body?, to: to?, over })
+                let over = self.expr_of(&args[1], InferredType::Float(Dimension::TIME), env);
+                Some(TypedWorldAction::Move { body: body?, to: to?, over })
             }
             1 => {
                 let body = self.movable(of);
                 let at = self.body_arg(&args[0], "");
-                let offset = self.expr_of(&args[1], Kind::Float(Dim::LENGTH), env);
-                let distance = self.expr_of(&args[2], Kind::Float(Dim::LENGTH), env);
-                let angle = self.expr_of(&args[3], Kind::Float(Dim::ANGLE), env);
-                Some(WorldAction::Look { body: body?, at: at?, offset, distance, angle })
+                let offset = self.expr_of(&args[1], InferredType::Float(Dimension::LENGTH), env);
+                let distance = self.expr_of(&args[2], InferredType::Float(Dimension::LENGTH), env);
+                let angle = self.expr_of(&args[3], InferredType::Float(Dimension::ANGLE), env);
+                Some(TypedWorldAction::Look { body: body?, at: at?, offset, distance, angle })
             }
-            2 => self.world_name(Noun::Gripper, of, "").map(|g| WorldAction::Grasp { gripper: GripperId(g) }),
-            _ => self.world_name(Noun::Gripper, of, "").map(|g| WorldAction::LetGo { gripper: GripperId(g) }),
+            2 => self
+                .world_name(Noun::Gripper, of, "")
+                .map(|g| TypedWorldAction::Grasp { gripper: GripperId(g) }),
+            _ => self
+                .world_name(Noun::Gripper, of, "")
+                .map(|g| TypedWorldAction::LetGo { gripper: GripperId(g) }),
         }
     }
 
@@ -223,13 +245,13 @@ impl Checker<'_> {
         };
         let body = id.and_then(|id| self.s.world.as_ref()?.bodies.get(usize::from(id.0)));
         match body {
-            Some(body) if body.motion == Motion::Kinematic => id,
+            Some(body) if body.motion == BodyMotion::Kinematic => id,
             Some(_) | None => {
                 let span = names[0].span.to(names[names.len() - 1].span);
                 let message = format!("`{}` is not kinematic: actions cannot move it", text(names));
                 let world = self.s.world.as_ref();
                 let kinematic =
-                    world.iter().flat_map(|w| &w.bodies).filter(|b| b.motion == Motion::Kinematic);
+                    world.iter().flat_map(|w| &w.bodies).filter(|b| b.motion == BodyMotion::Kinematic);
                 let near: Vec<&str> = kinematic.map(|b| b.name.as_str()).collect();
                 let help = match near.as_slice() {
                     [] => "declare the body as `kinematic`".to_owned(),
@@ -242,18 +264,22 @@ impl Checker<'_> {
     }
 
     /// A vector of three lengths, a body, or a body plus such a vector.
-    fn point(&mut self, e: &ast::Expr, env: &mut Env) -> Option<Point> {
+    fn point(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<TypedPoint> {
         match &e.kind {
             Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right }
                 if self.is_body(left, env) =>
             {
                 let of = self.body_arg(left, "");
                 let offset = self.offset(right, *op == BinaryOp::Sub, env);
-                Some(Point { of: Some(of?), offset: offset? })
+                Some(TypedPoint { of: Some(of?), offset: offset? })
             }
             Syntax::Path(path) if self.is_body(e, env) => {
-                let zero = || Expr::value(Value::Float(0.0), Kind::Float(Dim::LENGTH), path.span);
-                Some(Point { of: Some(self.body_ref(&path.names, "")?), offset: [zero(), zero(), zero()] })
+                let zero =
+                    || TypedExpr::value(Value::Float(0.0), InferredType::Float(Dimension::LENGTH), path.span);
+                Some(TypedPoint {
+                    of: Some(self.body_ref(&path.names, "")?),
+                    offset: [zero(), zero(), zero()],
+                })
             }
             Syntax::Tuple(_)
             | Syntax::Path(_)
@@ -261,7 +287,7 @@ impl Checker<'_> {
             | Syntax::Field { .. }
             | Syntax::Binary { .. }
             | Syntax::Unary { .. }
-            | Syntax::If { .. } => Some(Point { of: None, offset: self.offset(e, false, env)? }),
+            | Syntax::If { .. } => Some(TypedPoint { of: None, offset: self.offset(e, false, env)? }),
             Syntax::Error => None,
             Syntax::Bool(_)
             | Syntax::Int(_)
@@ -282,20 +308,20 @@ impl Checker<'_> {
     }
 
     /// Whether a name means a body: it stands for no value.
-    fn is_body(&self, e: &ast::Expr, env: &Env) -> bool {
+    fn is_body(&self, e: &ast::Expr, env: &ExprEnv) -> bool {
         let Syntax::Path(path) = &e.kind else { return false };
         let first = &path.names[0].text;
         env.find(first).is_none() && env.layout(first).is_none() && !self.consts.contains_key(first.as_str())
     }
 
-    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut Env) -> Option<[Expr; 3]> {
+    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut ExprEnv) -> Option<[TypedExpr; 3]> {
         let known = self.issues.list.len();
-        let lengths = Layout::Array(Box::new(Layout::Scalar(Type::Float(Unit::Metre))), 3);
+        let lengths = TypeLayout::Array(Box::new(TypeLayout::Scalar(Type::Float(Unit::Metre))), 3);
         let mut parts = Vec::new();
         self.item_for(e, &lengths, env).flatten(&mut parts);
         if negative {
             for part in &mut parts {
-                let zero = Expr::value(Value::Float(0.0), part.ty, part.span);
+                let zero = TypedExpr::value(Value::Float(0.0), part.ty, part.span);
                 let old = std::mem::replace(part, zero.clone());
                 *part = self.operate(BinaryOp::Sub, zero, old, e.span, env);
             }
@@ -305,7 +331,7 @@ impl Checker<'_> {
         {
             issue.help = not_a_point(e.span).help;
         }
-        <[Expr; 3]>::try_from(parts).ok()
+        <[TypedExpr; 3]>::try_from(parts).ok()
     }
 }
 

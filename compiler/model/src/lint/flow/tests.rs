@@ -9,9 +9,9 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    ActorId, Location, Place, Type, Value,
+    ActorId, Type, TypedLocation, TypedLvalue, Value,
     lint::{
-        facts::Facts,
+        facts::ScenarioFacts,
         interval::tests::{VARS, condition, holds, number, run},
         overflow,
     },
@@ -21,34 +21,34 @@ use crate::{
 const LOCATIONS: u16 = 3;
 const RANGE: std::ops::RangeInclusive<i64> = -2..=6;
 
-fn edge() -> impl Strategy<Value = Edge> {
+fn edge() -> impl Strategy<Value = TypedEdge> {
     let updates = prop::collection::vec((0..VARS as u16, number()), 0..3);
     (0..LOCATIONS, 0..LOCATIONS, prop::option::of(condition()), updates).prop_map(
-        |(from, to, guard, updates)| Edge {
+        |(from, to, guard, updates)| TypedEdge {
             from: LocationId(from),
             to: LocationId(to),
             selects: Vec::new(),
             clock_guard: Vec::new(),
             guard,
-            sync: Sync::Internal,
+            sync: TypedSync::Internal,
             updates: updates.into_iter().map(assign).collect(),
             origin: Span::default(),
         },
     )
 }
 
-fn assign((own, value): (u16, Expr)) -> Update {
-    Update::Assign { place: Place::slot(Leaf::Own(own)), value }
+fn assign((own, value): (u16, TypedExpr)) -> TypedUpdate {
+    TypedUpdate::Assign { place: TypedLvalue::slot(VariableRef::Own(own)), value }
 }
 
-fn automaton(mut edges: Vec<Edge>) -> Automaton {
+fn automaton(mut edges: Vec<TypedEdge>) -> TypedAutomaton {
     let updates = edges.iter_mut().flat_map(|e| &mut e.updates);
     for (at, update) in updates.enumerate() {
-        if let Update::Assign { value: e, .. } = update {
+        if let TypedUpdate::Assign { value: e, .. } = update {
             e.span = Span::new(FileId(0), at, at);
         }
     }
-    let location = |i: u16| Location {
+    let location = |i: u16| TypedLocation {
         name: format!("l{i}"),
         kind: LocationKind::Normal,
         invariant: Vec::new(),
@@ -56,7 +56,7 @@ fn automaton(mut edges: Vec<Edge>) -> Automaton {
         origin: Span::default(),
     };
     let ty = Type::Int { lo: *RANGE.start(), hi: *RANGE.end() };
-    Automaton {
+    TypedAutomaton {
         name: "A".to_owned(),
         actor: Some(ActorId(0)),
         clocks: Vec::new(),
@@ -68,16 +68,16 @@ fn automaton(mut edges: Vec<Edge>) -> Automaton {
     }
 }
 
-type State = (u16, Vec<i64>);
+type RandomState = (u16, Vec<i64>);
 
 /// All states, and the updates that leave their range.
-fn explore(a: &Automaton) -> (BTreeSet<State>, BTreeSet<Span>) {
+fn explore(a: &TypedAutomaton) -> (BTreeSet<RandomState>, BTreeSet<Span>) {
     let first = (0, vec![0; VARS]);
     let (mut seen, mut out) = (BTreeSet::from([first.clone()]), BTreeSet::new());
     let mut queue = vec![first];
     while let Some((at, values)) = queue.pop() {
         for edge in a.edges.iter().filter(|e| e.from.0 == at) {
-            let open = |g: &Expr| run(g, &values) == Some(Value::Bool(true));
+            let open = |g: &TypedExpr| run(g, &values) == Some(Value::Bool(true));
             if !edge.guard.as_ref().is_none_or(open) {
                 continue;
             }
@@ -93,9 +93,12 @@ fn explore(a: &Automaton) -> (BTreeSet<State>, BTreeSet<Span>) {
 }
 
 /// The variables after an edge; `None`: one has no value, or one outside of its range.
-fn updated(edge: &Edge, mut values: Vec<i64>, out: &mut BTreeSet<Span>) -> Option<Vec<i64>> {
+fn updated(edge: &TypedEdge, mut values: Vec<i64>, out: &mut BTreeSet<Span>) -> Option<Vec<i64>> {
     for update in &edge.updates {
-        let Update::Assign { place: Place { slot: Leaf::Own(i), .. }, value: e } = update else { continue };
+        let TypedUpdate::Assign { place: TypedLvalue { slot: VariableRef::Own(i), .. }, value: e } = update
+        else {
+            continue;
+        };
         let Some(Value::Int(n)) = run(e, &values) else { return None };
         if !RANGE.contains(&n) {
             // A constant outside of the range is told by the checker.
@@ -115,7 +118,7 @@ proptest! {
         let automaton = automaton(edges);
         let (states, out) = explore(&automaton);
         let scenario = Scenario { automata: vec![automaton], ..Scenario::default() };
-        let facts = Facts::of(&scenario);
+        let facts = ScenarioFacts::of(&scenario);
         for (at, values) in &states {
             let known = facts.flows[0].states[usize::from(*at)].as_ref();
             let foreseen = known.is_some_and(|k| k.iter().zip(values).all(|(k, n)| holds(*k, Value::Int(*n))));

@@ -4,8 +4,8 @@ use std::cell::{Cell, RefCell};
 
 use hrdsl_ir::{
     Expr, Program, Value,
-    expr::{EvalError, Place, Scope},
-    ta::{AutomatonId, Function, FunctionId, Statement, Time, Var},
+    expr::{EvalError, EvalScope, Lvalue},
+    ta::{AutomatonFunction, AutomatonId, AutomatonVar, FunctionId, FunctionStatement, TimeSum},
 };
 
 use super::{Fault, Stop};
@@ -18,7 +18,7 @@ pub struct Layout<'p> {
     pub p: &'p Program,
     pub members: Vec<usize>,
     /// All variables of the network.
-    pub vars: Vec<&'p Var>,
+    pub vars: Vec<&'p AutomatonVar>,
     /// The first own variable of each member.
     first: Vec<usize>,
 }
@@ -26,7 +26,7 @@ pub struct Layout<'p> {
 impl<'p> Layout<'p> {
     pub fn new(p: &'p Program, members: &[AutomatonId]) -> Self {
         let members: Vec<usize> = members.iter().map(|a| usize::from(a.0)).collect();
-        let mut vars: Vec<&Var> = p.shared.iter().collect();
+        let mut vars: Vec<&AutomatonVar> = p.shared.iter().collect();
         let mut first = Vec::new();
         for &a in &members {
             first.push(vars.len());
@@ -40,7 +40,7 @@ impl<'p> Layout<'p> {
     }
 
     /// What a function's variables are, besides the shared ones and its parameters.
-    fn owner(&self, f: &Function) -> Option<usize> {
+    fn owner(&self, f: &AutomatonFunction) -> Option<usize> {
         f.owner.and_then(|o| self.members.iter().position(|&m| m == usize::from(o.0)))
     }
 }
@@ -49,7 +49,7 @@ impl<'p> Layout<'p> {
 #[derive(Clone, Copy)]
 enum Rest<'a> {
     Binders(&'a [Value]),
-    Locals(&'a Function, &'a RefCell<Vec<i64>>),
+    Locals(&'a AutomatonFunction, &'a RefCell<Vec<i64>>),
 }
 
 /// Where an expression stands.
@@ -113,7 +113,7 @@ impl<'a> Here<'a> {
     }
 
     /// In nanoseconds.
-    pub fn time(&self, t: &Time) -> Result<i64, Stop> {
+    pub fn time(&self, t: &TimeSum) -> Result<i64, Stop> {
         let mut sum = i128::from(t.nanos);
         for term in &t.terms {
             let n = term.value.eval_in(self)?.as_int().ok_or(EvalError::Type)?;
@@ -123,7 +123,7 @@ impl<'a> Here<'a> {
     }
 
     /// The indices of the place first, then the value.
-    pub fn assign(&self, place: &Place, value: &Expr) -> Result<(), Stop> {
+    pub fn assign(&self, place: &Lvalue, value: &Expr) -> Result<(), Stop> {
         let slot = place.resolve(self)?;
         let value = value.eval_in(self)?;
         match self.place(slot) {
@@ -183,7 +183,7 @@ impl<'a> Here<'a> {
         if self.statements.get() > STATEMENTS { Err(EvalError::Endless.into()) } else { Ok(()) }
     }
 
-    fn run(&self, body: &[Statement]) -> Result<Flow, Stop> {
+    fn run(&self, body: &[FunctionStatement]) -> Result<Flow, Stop> {
         for statement in body {
             self.count()?;
             if let back @ Flow::Back(_) = self.step(statement)? {
@@ -193,16 +193,16 @@ impl<'a> Here<'a> {
         Ok(Flow::On)
     }
 
-    fn step(&self, statement: &Statement) -> Result<Flow, Stop> {
+    fn step(&self, statement: &FunctionStatement) -> Result<Flow, Stop> {
         match statement {
-            Statement::Assign { place, value } => self.assign(place, value)?,
-            Statement::Call { function, args } => {
+            FunctionStatement::Assign { place, value } => self.assign(place, value)?,
+            FunctionStatement::Call { function, args } => {
                 self.call(*function, args)?;
             }
-            Statement::If { condition, then, otherwise } => {
+            FunctionStatement::If { condition, then, otherwise } => {
                 return self.run(if self.truth(condition)? { then } else { otherwise });
             }
-            Statement::While { condition, body } => {
+            FunctionStatement::While { condition, body } => {
                 while self.truth(condition)? {
                     self.count()?;
                     if let back @ Flow::Back(_) = self.run(body)? {
@@ -210,17 +210,17 @@ impl<'a> Here<'a> {
                     }
                 }
             }
-            Statement::For { slot, lo, hi, body } => {
+            FunctionStatement::For { slot, lo, hi, body } => {
                 let (lo, hi) = (self.int(lo)?, self.int(hi)?);
                 for n in lo..=hi {
                     self.count()?;
-                    self.assign(&Place::slot(*slot), &Expr::int(n))?;
+                    self.assign(&Lvalue::slot(*slot), &Expr::int(n))?;
                     if let back @ Flow::Back(_) = self.run(body)? {
                         return Ok(back);
                     }
                 }
             }
-            Statement::Return(value) => {
+            FunctionStatement::Return(value) => {
                 return Ok(Flow::Back(value.as_ref().map(|v| v.eval_in(self)).transpose()?));
             }
         }
@@ -232,17 +232,17 @@ impl<'a> Here<'a> {
     }
 }
 
-fn local(f: &Function, at: usize) -> &Var {
+fn local(f: &AutomatonFunction, at: usize) -> &AutomatonVar {
     f.params.iter().chain(&f.locals).nth(at).expect("the slot is a parameter or a local")
 }
 
 /// The number kept for a value, if it is one of the variable's.
-fn within(var: &Var, value: Value) -> Result<i64, EvalError> {
+fn within(var: &AutomatonVar, value: Value) -> Result<i64, EvalError> {
     let n = var.number(value).ok_or(EvalError::Type)?;
     if n < var.lo || n > var.hi { Err(EvalError::Range(n)) } else { Ok(n) }
 }
 
-impl Scope for Here<'_> {
+impl EvalScope for Here<'_> {
     fn var(&self, slot: u16) -> Option<Value> {
         match self.place(slot) {
             Slot::Network(at) => {

@@ -7,7 +7,7 @@ use std::{
 
 use hrdsl_ir::{
     Program,
-    ta::{ClockConstraint, Formula, Location, Network, Time, Update},
+    ta::{ClockConstraint, EdgeAssignment, Location, Network, QueryFormula, TimeSum},
 };
 use rustc_hash::FxHashMap;
 
@@ -85,7 +85,7 @@ pub fn explore<'p>(p: &'p Program, network: &Network, limits: Limits) -> Result<
 fn grain(p: &Program, limits: Limits) -> (i64, Grain) {
     // Formulas count in seconds.
     let (mut unit, mut most, mut set, mut differences) = (1_000_000_000, 0, 0, limits.differences);
-    let mut time = |t: &Time, most: &mut i64| {
+    let mut time = |t: &TimeSum, most: &mut i64| {
         unit = t.terms.iter().fold(gcd(unit, t.nanos), |u, term| gcd(u, term.factor));
         *most = (*most).max(t.nanos.abs());
     };
@@ -100,7 +100,7 @@ fn grain(p: &Program, limits: Limits) -> (i64, Grain) {
             time(&bound, &mut most);
         }
         for u in a.edges.iter().flat_map(|e| &e.updates) {
-            if let Update::Reset { to, .. } = u {
+            if let EdgeAssignment::Reset { to, .. } = u {
                 time(to, &mut set);
             }
         }
@@ -214,15 +214,15 @@ impl Graph<'_> {
     }
 
     /// Whether a formula holds in a state.
-    pub fn holds(&self, at: usize, f: &Formula) -> Result<bool, Stop> {
+    pub fn holds(&self, at: usize, f: &QueryFormula) -> Result<bool, Stop> {
         let s = &self.states[at];
         match f {
-            Formula::At { automaton, location } => Ok(s.at[usize::from(*automaton)] == location.0),
-            Formula::Data(e) => {
+            QueryFormula::At { automaton, location } => Ok(s.at[usize::from(*automaton)] == location.0),
+            QueryFormula::Data(e) => {
                 let (data, statements) = (RefCell::new(s.data.clone()), Cell::new(0));
                 Here::of_query(&self.net.layout, &data, &statements).truth(e)
             }
-            Formula::Clock(c) => {
+            QueryFormula::Clock(c) => {
                 let of = |c: hrdsl_ir::ta::ClockId| s.clocks[usize::from(c.0)];
                 let minus = c.minus.map_or((0, 0), of);
                 if c.bound.nanos % self.net.unit != 0 || !c.bound.terms.is_empty() {
@@ -234,24 +234,24 @@ impl Graph<'_> {
                 region::holds(self.net.grain, of(c.clock), minus, c.op, bound)
                     .ok_or_else(|| Stop::Outside(format!("the bound {bound} of a query")))
             }
-            Formula::Deadlock => Ok(self.deadlock[at]),
-            Formula::Not(f) => Ok(!self.holds(at, f)?),
-            Formula::And(fs) => fs.iter().try_fold(true, |all, f| Ok(all && self.holds(at, f)?)),
-            Formula::Or(fs) => fs.iter().try_fold(false, |any, f| Ok(any || self.holds(at, f)?)),
+            QueryFormula::Deadlock => Ok(self.deadlock[at]),
+            QueryFormula::Not(f) => Ok(!self.holds(at, f)?),
+            QueryFormula::And(fs) => fs.iter().try_fold(true, |all, f| Ok(all && self.holds(at, f)?)),
+            QueryFormula::Or(fs) => fs.iter().try_fold(false, |any, f| Ok(any || self.holds(at, f)?)),
         }
     }
 
-    fn marked(&self, f: &Formula) -> Result<Vec<bool>, String> {
+    fn marked(&self, f: &QueryFormula) -> Result<Vec<bool>, String> {
         (0..self.states.len()).map(|s| self.holds(s, f).map_err(why)).collect()
     }
 
     /// `E<> f`
-    pub fn possibly(&self, f: &Formula) -> Result<bool, String> {
+    pub fn possibly(&self, f: &QueryFormula) -> Result<bool, String> {
         Ok(self.marked(f)?.contains(&true))
     }
 
     /// The states from which a maximal run stays where the formula is `sign`.
-    fn staying(&self, f: &Formula, sign: bool) -> Result<Vec<bool>, String> {
+    fn staying(&self, f: &QueryFormula, sign: bool) -> Result<Vec<bool>, String> {
         let mut stays: Vec<bool> = self.marked(f)?.into_iter().map(|m| m == sign).collect();
         loop {
             let lost: Vec<usize> =
@@ -270,17 +270,17 @@ impl Graph<'_> {
     }
 
     /// `E[] f`
-    pub fn always(&self, f: &Formula) -> Result<bool, String> {
+    pub fn always(&self, f: &QueryFormula) -> Result<bool, String> {
         Ok(self.staying(f, true)?[0])
     }
 
     /// `A<> f`
-    pub fn eventually(&self, f: &Formula) -> Result<bool, String> {
+    pub fn eventually(&self, f: &QueryFormula) -> Result<bool, String> {
         Ok(!self.staying(f, false)?[0])
     }
 
     /// `f --> g`
-    pub fn leads_to(&self, f: &Formula, g: &Formula) -> Result<bool, String> {
+    pub fn leads_to(&self, f: &QueryFormula, g: &QueryFormula) -> Result<bool, String> {
         let (from, stays) = (self.marked(f)?, self.staying(g, false)?);
         Ok(!from.into_iter().zip(stays).any(|(f, s)| f && s))
     }

@@ -6,8 +6,8 @@ use hrdsl_ir::{ArgPattern, EventId};
 use hrdsl_ir::{
     Program, Value,
     ta::{
-        Automaton, AutomatonId, ChannelId, ChannelKind, ClockConstraint, ClockId, Edge, Location,
-        LocationKind, ReceiveArg, Sync, Update, Var,
+        Automaton, AutomatonId, AutomatonVar, ChannelId, ChannelKind, ClockConstraint, ClockId, Edge,
+        EdgeAssignment, Location, LocationKind, ReceiveArg, SyncLabel,
     },
 };
 
@@ -209,9 +209,12 @@ impl<'p> Net<'p> {
         let mut found = Vec::new();
         for (e, edge) in self.automaton(member).edges.iter().enumerate() {
             let this = match &edge.sync {
-                Sync::Receive { event, .. } => over == Over::Event(*event),
-                Sync::Accept { channel, .. } => over == Over::Channel(*channel),
-                Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => false,
+                SyncLabel::Receive { event, .. } => over == Over::Event(*event),
+                SyncLabel::Accept { channel, .. } => over == Over::Channel(*channel),
+                SyncLabel::Internal
+                | SyncLabel::Send { .. }
+                | SyncLabel::Offer { .. }
+                | SyncLabel::Join { .. } => false,
             };
             if this {
                 found.extend(self.ways(s, member, e, values)?);
@@ -224,7 +227,7 @@ impl<'p> Net<'p> {
         let mut found = Vec::new();
         for member in 0..self.members() {
             for (e, edge) in self.automaton(member).edges.iter().enumerate() {
-                if matches!(edge.sync, Sync::Offer { channel, .. } if channel == over) {
+                if matches!(edge.sync, SyncLabel::Offer { channel, .. } if channel == over) {
                     found.extend(self.ways(s, member, e, &[])?);
                 }
             }
@@ -238,9 +241,12 @@ impl<'p> Net<'p> {
         let here = Here::of_member(&self.layout, &data, part.member, &part.binders, &self.statements);
         let p = self.layout.p;
         let (over, args) = match &self.edge(part).sync {
-            Sync::Send { event, args } => (Over::Event(*event), args),
-            Sync::Offer { channel, args } => (Over::Channel(*channel), args),
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => unreachable!(),
+            SyncLabel::Send { event, args } => (Over::Event(*event), args),
+            SyncLabel::Offer { channel, args } => (Over::Channel(*channel), args),
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => unreachable!(),
         };
         let mut values = Vec::new();
         for (at, arg) in args.iter().enumerate() {
@@ -306,7 +312,7 @@ impl<'p> Net<'p> {
             let Some(member) = member else { continue };
             let mut ways = Vec::new();
             for (e, edge) in self.automaton(member).edges.iter().enumerate() {
-                if matches!(edge.sync, Sync::Join { channel } if channel == over) {
+                if matches!(edge.sync, SyncLabel::Join { channel } if channel == over) {
                     ways.extend(self.ways(s, member, e, &[])?);
                 }
             }
@@ -326,15 +332,15 @@ impl<'p> Net<'p> {
         for member in 0..self.members() {
             for (e, edge) in self.automaton(member).edges.iter().enumerate() {
                 match &edge.sync {
-                    Sync::Internal => {
+                    SyncLabel::Internal => {
                         groups.extend(self.ways(s, member, e, &[])?.into_iter().map(|w| vec![w]))
                     }
-                    Sync::Send { .. } => {
+                    SyncLabel::Send { .. } => {
                         for way in self.ways(s, member, e, &[])? {
                             groups.extend(self.broadcasts(s, &way)?);
                         }
                     }
-                    Sync::Offer { channel, .. } => {
+                    SyncLabel::Offer { channel, .. } => {
                         let kind = &self.layout.p.channels[usize::from(channel.0)].kind;
                         for way in self.ways(s, member, e, &[])? {
                             groups.extend(match kind {
@@ -344,7 +350,7 @@ impl<'p> Net<'p> {
                             });
                         }
                     }
-                    Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => {}
+                    SyncLabel::Receive { .. } | SyncLabel::Accept { .. } | SyncLabel::Join { .. } => {}
                 }
             }
         }
@@ -371,11 +377,11 @@ impl<'p> Net<'p> {
             let here = Here::of_member(&self.layout, &data, part.member, &part.binders, &self.statements);
             for update in &edge.updates {
                 match update {
-                    Update::Assign { place, value } => here.assign(place, value)?,
-                    Update::Call { function, args } => {
+                    EdgeAssignment::Assign { place, value } => here.assign(place, value)?,
+                    EdgeAssignment::Call { function, args } => {
                         here.call(*function, args)?;
                     }
-                    Update::Reset { clock, from, to } => {
+                    EdgeAssignment::Reset { clock, from, to } => {
                         let to = self.units(here.time(to)?)?;
                         let at = self.clock(part.member, *clock);
                         let old = from.map_or((0, 0), |f| next.clocks[self.clock(part.member, f)]);
@@ -393,15 +399,21 @@ impl<'p> Net<'p> {
     /// Whether an automaton in a committed location has an edge for what this one sends or offers.
     fn calls_committed(&self, s: &State, sender: &Part) -> bool {
         let over = match &self.edge(sender).sync {
-            Sync::Send { event, .. } => Over::Event(*event),
-            Sync::Offer { channel, .. } => Over::Channel(*channel),
-            Sync::Internal | Sync::Receive { .. } | Sync::Accept { .. } | Sync::Join { .. } => return false,
+            SyncLabel::Send { event, .. } => Over::Event(*event),
+            SyncLabel::Offer { channel, .. } => Over::Channel(*channel),
+            SyncLabel::Internal
+            | SyncLabel::Receive { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. } => return false,
         };
         (0..self.members()).any(|m| {
             let takes = |e: &Edge| match &e.sync {
-                Sync::Receive { event, .. } => over == Over::Event(*event),
-                Sync::Accept { channel, .. } => over == Over::Channel(*channel),
-                Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => false,
+                SyncLabel::Receive { event, .. } => over == Over::Event(*event),
+                SyncLabel::Accept { channel, .. } => over == Over::Channel(*channel),
+                SyncLabel::Internal
+                | SyncLabel::Send { .. }
+                | SyncLabel::Offer { .. }
+                | SyncLabel::Join { .. } => false,
             };
             let committed = m != sender.member && self.location(s, m).kind == LocationKind::Committed;
             committed && self.automaton(m).edges.iter().any(|e| e.from.0 == s.at[m] && takes(e))
@@ -428,10 +440,10 @@ fn product(groups: &[Vec<Part>], ways: &[Part]) -> Vec<Vec<Part>> {
 }
 
 /// What an edge binds of what it takes. `None`: an argument does not match.
-fn bound(sync: &Sync, received: &[Value]) -> Option<Vec<Value>> {
+fn bound(sync: &SyncLabel, received: &[Value]) -> Option<Vec<Value>> {
     let args = match sync {
-        Sync::Receive { args, .. } | Sync::Accept { args, .. } => args.as_slice(),
-        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => {
+        SyncLabel::Receive { args, .. } | SyncLabel::Accept { args, .. } => args.as_slice(),
+        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Offer { .. } | SyncLabel::Join { .. } => {
             return Some(Vec::new());
         }
     };
@@ -447,12 +459,12 @@ fn bound(sync: &Sync, received: &[Value]) -> Option<Vec<Value>> {
     Some(bound)
 }
 
-fn admits(param: &Var, value: Value) -> bool {
+fn admits(param: &AutomatonVar, value: Value) -> bool {
     param.number(value).is_some_and(|n| param.lo <= n && n <= param.hi)
 }
 
 /// Every choice of values.
-fn choices(selects: &[Var]) -> Vec<Vec<Value>> {
+fn choices(selects: &[AutomatonVar]) -> Vec<Vec<Value>> {
     let mut all = vec![Vec::new()];
     for x in selects {
         let values: Vec<Value> = (x.lo..=x.hi).filter_map(|n| x.value(n)).collect();

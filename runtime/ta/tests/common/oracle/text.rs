@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use hrdsl_ir::{
     Expr, Program,
-    expr::{BinaryOp, Place, UnaryOp},
+    expr::{BinaryOp, Lvalue, UnaryOp},
     ta::{
-        Automaton, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge, Function, Location, LocationKind,
-        ReceiveArg, Statement, Sync, Time, Update, Var,
+        Automaton, AutomatonFunction, AutomatonVar, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
+        EdgeAssignment, FunctionStatement, Location, LocationKind, ReceiveArg, SyncLabel, TimeSum,
     },
 };
 
@@ -18,7 +18,7 @@ struct Names {
 }
 
 impl Names {
-    fn new(p: &Program, a: Option<&Automaton>, more: &[&[Var]]) -> Self {
+    fn new(p: &Program, a: Option<&Automaton>, more: &[&[AutomatonVar]]) -> Self {
         let own = a.map_or(&[][..], |a| &a.vars);
         let vars = p.shared.iter().chain(own).chain(more.iter().copied().flatten());
         let clocks = p.clocks.iter().chain(a.map_or(&[][..], |a| &a.clocks));
@@ -33,8 +33,8 @@ impl Names {
         &self.clocks[usize::from(c.0)]
     }
 
-    fn place(&self, p: &Place) -> String {
-        let index = |i: &hrdsl_ir::expr::Index| format!("[{} of {}]", self.expr(&i.at), i.count);
+    fn place(&self, p: &Lvalue) -> String {
+        let index = |i: &hrdsl_ir::expr::ArrayIndex| format!("[{} of {}]", self.expr(&i.at), i.count);
         self.slot(p.slot) + &p.indices.iter().map(index).collect::<String>()
     }
 
@@ -59,7 +59,7 @@ impl Names {
         }
     }
 
-    fn time(&self, t: &Time) -> String {
+    fn time(&self, t: &TimeSum) -> String {
         let mut text = format!("{} s", t.nanos as f64 / 1e9);
         for term in &t.terms {
             let _ = write!(text, " + {} * {} s", self.expr(&term.value), term.factor as f64 / 1e9);
@@ -82,38 +82,42 @@ impl Names {
         cs.iter().map(one).collect()
     }
 
-    fn update(&self, u: &Update) -> String {
+    fn update(&self, u: &EdgeAssignment) -> String {
         match u {
-            Update::Assign { place, value } => format!("{} = {}", self.place(place), self.expr(value)),
-            Update::Call { function, args } => format!("f{}({})", function.0, self.list(args)),
-            Update::Reset { clock, from, to } => {
+            EdgeAssignment::Assign { place, value } => {
+                format!("{} = {}", self.place(place), self.expr(value))
+            }
+            EdgeAssignment::Call { function, args } => format!("f{}({})", function.0, self.list(args)),
+            EdgeAssignment::Reset { clock, from, to } => {
                 let from = from.map_or(String::new(), |f| format!("{} + ", self.clock(f)));
                 format!("{} = {from}{}", self.clock(*clock), self.time(to))
             }
         }
     }
 
-    fn body(&self, body: &[Statement]) -> String {
-        let one = |s: &Statement| match s {
-            Statement::Assign { place, value } => format!("{} = {};", self.place(place), self.expr(value)),
-            Statement::Call { function, args } => format!("f{}({});", function.0, self.list(args)),
-            Statement::If { condition, then, otherwise } => format!(
+    fn body(&self, body: &[FunctionStatement]) -> String {
+        let one = |s: &FunctionStatement| match s {
+            FunctionStatement::Assign { place, value } => {
+                format!("{} = {};", self.place(place), self.expr(value))
+            }
+            FunctionStatement::Call { function, args } => format!("f{}({});", function.0, self.list(args)),
+            FunctionStatement::If { condition, then, otherwise } => format!(
                 "if {} {{ {} }} else {{ {} }}",
                 self.expr(condition),
                 self.body(then),
                 self.body(otherwise)
             ),
-            Statement::While { condition, body } => {
+            FunctionStatement::While { condition, body } => {
                 format!("while {} {{ {} }}", self.expr(condition), self.body(body))
             }
-            Statement::For { slot, lo, hi, body } => format!(
+            FunctionStatement::For { slot, lo, hi, body } => format!(
                 "for {} in {}..{} {{ {} }}",
                 self.slot(*slot),
                 self.expr(lo),
                 self.expr(hi),
                 self.body(body)
             ),
-            Statement::Return(e) => {
+            FunctionStatement::Return(e) => {
                 format!("return {};", e.as_ref().map_or(String::new(), |e| self.expr(e)))
             }
         };
@@ -155,7 +159,7 @@ pub fn program(p: &Program) -> String {
             ChannelKind::HandShake => String::new(),
             ChannelKind::Broadcast => "broadcast".to_owned(),
             ChannelKind::Joint(parties) => {
-                let one = |q: &hrdsl_ir::ta::Party| {
+                let one = |q: &hrdsl_ir::ta::ChannelParticipant| {
                     let name = &p.automata[usize::from(q.automaton.0)].name;
                     format!("{name}{}", if q.optional { "?" } else { "" })
                 };
@@ -173,7 +177,7 @@ pub fn program(p: &Program) -> String {
     text
 }
 
-fn function(p: &Program, at: usize, f: &Function, text: &mut String) {
+fn function(p: &Program, at: usize, f: &AutomatonFunction, text: &mut String) {
     let owner = f.owner.map(|o| &p.automata[usize::from(o.0)]);
     let names = Names::new(p, owner, &[&f.params, &f.locals]);
     let _ =
@@ -206,18 +210,20 @@ fn location(names: &Names, l: &Location, init: &str, text: &mut String) {
     let _ = writeln!(text, "  {init}{kind}location {} {{ {} }}", l.name, parts.join(" && "));
 }
 
-fn named(name: &str) -> Var {
-    Var { name: name.to_owned(), lo: 0, hi: 0, init: 0, is_bool: false, enumeration: None }
+fn named(name: &str) -> AutomatonVar {
+    AutomatonVar { name: name.to_owned(), lo: 0, hi: 0, init: 0, is_bool: false, enumeration: None }
 }
 
 /// One edge of an automaton.
 pub fn edge(p: &Program, a: &Automaton, at: usize, e: &Edge) -> String {
     let takes = match &e.sync {
-        Sync::Receive { args, .. } | Sync::Accept { args, .. } => args.as_slice(),
-        Sync::Internal | Sync::Send { .. } | Sync::Offer { .. } | Sync::Join { .. } => &[],
+        SyncLabel::Receive { args, .. } | SyncLabel::Accept { args, .. } => args.as_slice(),
+        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Offer { .. } | SyncLabel::Join { .. } => {
+            &[]
+        }
     };
     let binds = takes.iter().filter(|t| matches!(t, ReceiveArg::Bind)).count();
-    let bound: Vec<Var> = (0..binds).map(|i| named(&format!("b{i}"))).collect();
+    let bound: Vec<AutomatonVar> = (0..binds).map(|i| named(&format!("b{i}"))).collect();
     let names = Names::new(p, Some(a), &[&e.selects, &bound]);
     let place = |l: hrdsl_ir::ta::LocationId| &a.locations[usize::from(l.0)].name;
     let mut text = format!("{} -> {}", place(e.from), place(e.to));
@@ -232,16 +238,20 @@ pub fn edge(p: &Program, a: &Automaton, at: usize, e: &Edge) -> String {
     let channel = |c: &hrdsl_ir::ta::ChannelId| &p.channels[usize::from(c.0)].name;
     let mut actions = Vec::new();
     match &e.sync {
-        Sync::Internal => {}
-        Sync::Send { event, args } => actions.push(format!("{}({})", p.event(*event).name, names.list(args))),
-        Sync::Offer { channel: c, args } => actions.push(format!("{}({})", channel(c), names.list(args))),
-        Sync::Receive { event, args } => {
+        SyncLabel::Internal => {}
+        SyncLabel::Send { event, args } => {
+            actions.push(format!("{}({})", p.event(*event).name, names.list(args)))
+        }
+        SyncLabel::Offer { channel: c, args } => {
+            actions.push(format!("{}({})", channel(c), names.list(args)))
+        }
+        SyncLabel::Receive { event, args } => {
             let _ = write!(text, " on {}({args:?})", p.event(*event).name);
         }
-        Sync::Accept { channel: c, args } => {
+        SyncLabel::Accept { channel: c, args } => {
             let _ = write!(text, " on {}({args:?})", channel(c));
         }
-        Sync::Join { channel: c } => {
+        SyncLabel::Join { channel: c } => {
             let _ = write!(text, " on {}", channel(c));
         }
     }
